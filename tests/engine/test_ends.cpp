@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include "has.hpp"
-#include "live_rig.hpp"
 #include "rig.hpp"
 
 namespace ends_test {

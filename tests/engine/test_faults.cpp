@@ -10,7 +10,6 @@
 #include <poll.h>
 
 #include "fake_dac.hpp"
-#include "live_rig.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "sink/alsa/pcm_sink.hpp"

@@ -8,7 +8,6 @@
 #include <doctest/doctest.h>
 
 #include "engine/control/feeder.hpp"
-#include "live_rig.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
 

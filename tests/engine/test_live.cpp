@@ -13,7 +13,7 @@
 
 #include "caught.hpp"
 #include "engine/live.hpp"
-#include "live_rig.hpp"
+#include "rig.hpp"
 
 namespace live_test {
 

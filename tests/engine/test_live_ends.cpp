@@ -10,7 +10,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "live_rig.hpp"
+#include "rig.hpp"
 
 namespace live_ends_test {
 

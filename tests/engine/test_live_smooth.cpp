@@ -10,7 +10,7 @@
 
 #include <tactor/error.hpp>
 
-#include "live_rig.hpp"
+#include "rig.hpp"
 
 namespace live_smooth_test {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Limits on the power of the array and on the time that a tactor is driven.
-#include "synth/guard.hpp"
-
+// Limits of a channel, and the power of all channels together.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -11,7 +10,10 @@
 #include <tactor/error.hpp>
 
 #include "pieces.hpp"
+#include "rounds.hpp"
+#include "synth/guard.hpp"
 #include "synth/mix/mixer.hpp"
+#include "synth/tone/make_timbre.hpp"
 
 namespace guard_test {
 
@@ -164,3 +166,227 @@ TEST_CASE("non-numbers reach no format")
 }
 
 } // namespace guard_test
+
+namespace power_test {
+
+using namespace tactor;
+using namespace pieces;
+
+namespace {
+
+constexpr unsigned rate = 48000;
+constexpr double three = 4.771212547196624; ///< channels at full scale, in dB
+
+using signal = std::vector<double>;
+
+/// Makes a voice that rises and falls along a raised cosine, or at once.
+synth::drive_event voice(double start_s, double length_s, double ramp_s, double hz, std::uint32_t channel,
+                         double amplitude, double cycles = 0.0)
+{
+    synth::drive_event e;
+    e.start = static_cast<std::uint64_t>(start_s * rate);
+    e.length = static_cast<std::uint32_t>(length_s * rate);
+    e.window = e.length;
+    e.ramp = std::min(static_cast<std::uint32_t>(ramp_s * rate), e.length / 2);
+    e.cycles_per_frame = hz / rate;
+    e.phase_frame = static_cast<std::uint64_t>(cycles / hz * rate);
+    e.drives = 1;
+    e.drive[0] = {amplitude, amplitude, channel};
+    return e;
+}
+
+synth::guard_settings limit_power(double dbfs)
+{
+    return synth::make_guards({.power_dbfs = dbfs, .max_drive_s = 3600.0, .window_s = 10.0}, rate);
+}
+
+std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigned channels,
+                          std::size_t frames, double dbfs)
+{
+    synth::mixer m(std::vector<double>(channels, 1.0), format_kind::float32, events.size(),
+                   limit_power(dbfs));
+    for (const synth::drive_event& e : events)
+        REQUIRE(m.add(e));
+    std::vector<float> all(frames * channels);
+    m.process(frames, reinterpret_cast<std::byte*>(all.data()));
+    std::vector<signal> x(channels, signal(frames));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        x[i % channels][i / channels] = static_cast<double>(all[i]);
+    return x;
+}
+
+/// Returns the energy above 1 kHz relative to the whole, dB.
+double above_1_khz(const signal& x)
+{
+    synth::spectrum a(x.begin(), x.end());
+    synth::fourier_sum(a);
+    double high = 0.0;
+    double all = 0.0;
+    for (std::size_t k = 0; k < a.size() / 2; ++k) {
+        all += std::norm(a[k]);
+        high +=
+            static_cast<double>(k) * rate / static_cast<double>(a.size()) > 1000.0 ? std::norm(a[k]) : 0.0;
+    }
+    return 10.0 * std::log10(high / all);
+}
+
+double greatest_power(const std::vector<signal>& x)
+{
+    double most = 0.0;
+    for (std::size_t k = 0; k < x[0].size(); ++k) {
+        double sum = 0.0;
+        for (const signal& c : x)
+            sum += c[k] * c[k];
+        most = std::max(most, sum);
+    }
+    return most;
+}
+
+constexpr std::size_t frames = 1 << 16; // 1.37 s
+
+/// Makes random voices that rise and fall over `ramp_s` or more.
+std::vector<synth::drive_event> random_voices(std::mt19937_64& random, double ramp_s, bool one_carrier)
+{
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    std::vector<synth::drive_event> all;
+    for (int i = 0; i < 40; ++i) {
+        const double ramp = ramp_s * (1.0 + 9.0 * unit(random));
+        const double length = 2.0 * ramp + 0.3 * unit(random);
+        const double start = unit(random) * (1.36 - length);
+        const double hz = one_carrier ? 250.0 : 100.0 + 200.0 * unit(random);
+        const auto channel = static_cast<std::uint32_t>(random() % 9);
+        all.push_back(voice(start, length, ramp, hz, channel, 0.25 * unit(random), unit(random)));
+    }
+    return all;
+}
+
+bool within(double power, double dbfs)
+{
+    return power <= std::pow(10.0, dbfs / 10.0) * (1.0 + 1e-6); // samples are rounded to floats
+}
+
+} // namespace
+
+TEST_CASE("tactors that rise slowly together are held down without a click")
+{
+    for (const double ramp : {0.1, 0.5}) {
+        std::vector<synth::drive_event> nine;
+        for (std::uint32_t c = 0; c < 9; ++c)
+            nine.push_back(voice(0.05, 1.25, ramp, 250.0, c, 1.0));
+        for (const double dbfs : {three, 0.0, -20.0}) {
+            CAPTURE(ramp);
+            CAPTURE(dbfs);
+            const std::vector<signal> x = mixed(nine, 9, frames, dbfs);
+            CHECK(above_1_khz(x[0]) < -75.0);
+            CHECK(within(greatest_power(x), dbfs));
+            CHECK_FALSE(within(greatest_power(x), dbfs - 0.01));
+        }
+    }
+}
+
+TEST_CASE("sounding tactors continue without a click when others begin at once")
+{
+    std::vector<synth::drive_event> all;
+    for (std::uint32_t c = 0; c < 3; ++c)
+        all.push_back(voice(0.05, 1.25, 0.2, 250.0, c, 1.0));
+    for (std::uint32_t c = 3; c < 9; ++c)
+        all.push_back(voice(0.45, 0.3, 0.0, 250.0, c, 1.0));
+    for (const double dbfs : {three, -6.0, -20.0}) {
+        CAPTURE(dbfs);
+        const std::vector<signal> x = mixed(all, 9, frames, dbfs);
+        CHECK(above_1_khz(x[0]) < -75.0);
+        CHECK(above_1_khz(x[5]) <
+              above_1_khz(mixed(all, 9, frames, 60.0)[5])); // bursts have edges themselves
+        CHECK(within(greatest_power(x), dbfs));
+        // In the end each has the same.
+        const auto largest = [&x](unsigned c) {
+            const auto at = x[c].begin() + rate / 2;
+            return *std::max_element(at, at + rate / 10);
+        };
+        CHECK(largest(5) == doctest::Approx(largest(0)).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("random mixes of one carrier or of many are held down without a click")
+{
+    std::mt19937_64 random(5);
+    for (int run = 0; run < tactor::test::rounds(16); ++run) {
+        const auto voices = random_voices(random, 0.02, run % 2 == 0);
+        for (const double dbfs : {-6.0, -20.0}) {
+            const std::vector<signal> x = mixed(voices, 9, frames, dbfs);
+            for (std::size_t c = 0; c < x.size(); ++c) {
+                CAPTURE(run);
+                CAPTURE(dbfs);
+                CAPTURE(c);
+                CHECK_FALSE(above_1_khz(x[c]) > -65.0); // not a number: it is silent
+            }
+            CHECK(within(greatest_power(x), dbfs));
+        }
+    }
+}
+
+TEST_CASE("the power is held in the same frames for any block size")
+{
+    std::mt19937_64 random(7);
+    for (int run = 0; run < tactor::test::rounds(8); ++run) {
+        const auto voices = random_voices(random, run % 3 == 0 ? 0.0 : 0.005, run % 2 == 0);
+        const auto played = [&](std::size_t largest_block) {
+            synth::guard_settings g = limit_power(-12.0);
+            g.drive_frames = rate / 5;
+            g.leak = 2.0 / 3.0;
+            synth::mixer m(std::vector<double>(9, 0.4), format_kind::s32, voices.size(), g);
+            for (const synth::drive_event& e : voices)
+                m.add(e);
+            std::vector<std::byte> out(frames * 9 * 4);
+            for (std::size_t done = 0; done < frames;) {
+                const std::size_t n = std::min(frames - done, 1 + random() % largest_block);
+                m.process(n, out.data() + done * 9 * 4);
+                done += n;
+            }
+            CHECK(m.counts().power_limited > 1000);
+            return digest(out);
+        };
+        const std::uint64_t whole = played(1);
+        for (const std::size_t largest_block : {2, 48, 96, 513, 5000}) {
+            CAPTURE(run);
+            CAPTURE(largest_block);
+            CHECK(played(largest_block) == whole);
+        }
+    }
+}
+
+TEST_CASE("beats on a tactor keep their part when others begin in the first frame of a block")
+{
+    constexpr std::size_t begin = std::size_t{20} * 512;
+    // At `begin` a sample of the beat is almost zero, and its crest is not.
+    std::vector<synth::drive_event> all{voice(0.0, 1.0, 0.1, 250.0, 0, 0.5),
+                                        voice(0.0, 1.0, 0.1, 251.0, 0, 0.5)};
+    for (std::uint32_t c = 1; c < 9; ++c) {
+        all.push_back(voice(0.0, 0.5, 0.0, 250.0, c, 1.0));
+        all.back().start = begin;
+    }
+    const auto played = [&](std::size_t first) {
+        synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, all.size(), limit_power(three));
+        for (const synth::drive_event& e : all)
+            REQUIRE(m.add(e));
+        std::vector<std::byte> out(rate / 2 * 9 * 4);
+        m.process(first, out.data());
+        m.process(rate / 2 - first, out.data() + first * 9 * 4);
+        return digest(out);
+    };
+    const std::uint64_t in_the_middle = played(begin - 100);
+    CHECK(played(begin) == in_the_middle);
+    CHECK(played(begin - 1) == in_the_middle);
+}
+
+TEST_CASE("few tactors cannot exceed the limit, and are never checked")
+{
+    std::vector<synth::drive_event> all;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        all.push_back(voice(0.0, 0.5, 0.0, 250.0, c, 1.0));
+        all.push_back(voice(0.1, 0.3, 0.0, 170.0, c, 1.0));
+    }
+    CHECK(mixed(all, 3, rate, three) == mixed(all, 3, rate, 60.0));
+}
+
+} // namespace power_test

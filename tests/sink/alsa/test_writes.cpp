@@ -4,19 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <alsa/asoundlib.h>
+#include <dlfcn.h>
 #include <doctest/doctest.h>
 #include <poll.h>
 
 #include <tactor/alsa.hpp>
 
 #include "caught.hpp"
-#include "device_says.hpp"
 #include "fake_dac.hpp"
 #include "has.hpp"
 #include "rt/clock.hpp"
@@ -24,14 +25,100 @@
 #include "sink/alsa/pcm_sink.hpp"
 #include "sink/pacer.hpp"
 
+namespace {
+
+// Answers of kernel drivers that no plugin can give.
+struct device_answers {
+    int card = -1;
+    bool batch = false;
+    bool takes_periods = true; ///< their number can be set
+    std::optional<unsigned> channels = {};
+    std::optional<unsigned> rate = {};
+    std::optional<snd_pcm_uframes_t> period_frames = {};
+    std::optional<snd_pcm_uframes_t> buffer_frames = {};
+};
+
+const device_answers* answers = nullptr;
+
+// Makes every PCM answer this as long as it lives.
+class device_says {
+public:
+    explicit device_says(const device_answers& a) { answers = &a; }
+    ~device_says() { answers = nullptr; }
+    device_says(const device_says&) = delete;
+    device_says& operator=(const device_says&) = delete;
+};
+
+template <typename Function>
+Function* real(Function*, const char* name)
+{
+    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+} // namespace
+
+// These replace libasound's functions in this program.
+extern "C" {
+
+int snd_pcm_info_get_card(const snd_pcm_info_t* info)
+{
+    return answers != nullptr ? answers->card : real(snd_pcm_info_get_card, "snd_pcm_info_get_card")(info);
+}
+
+int snd_pcm_hw_params_is_batch(const snd_pcm_hw_params_t* p)
+{
+    return answers != nullptr ? static_cast<int>(answers->batch)
+                              : real(snd_pcm_hw_params_is_batch, "snd_pcm_hw_params_is_batch")(p);
+}
+
+int snd_pcm_hw_params_set_periods_near(snd_pcm_t* pcm, snd_pcm_hw_params_t* p, unsigned* n, int* direction)
+{
+    if (answers != nullptr && !answers->takes_periods)
+        return -EINVAL;
+    return real(snd_pcm_hw_params_set_periods_near, "snd_pcm_hw_params_set_periods_near")(pcm, p, n,
+                                                                                          direction);
+}
+
+int snd_pcm_hw_params_get_channels(const snd_pcm_hw_params_t* p, unsigned* n)
+{
+    const int code = real(snd_pcm_hw_params_get_channels, "snd_pcm_hw_params_get_channels")(p, n);
+    if (answers != nullptr)
+        *n = answers->channels.value_or(*n);
+    return code;
+}
+
+int snd_pcm_hw_params_get_rate(const snd_pcm_hw_params_t* p, unsigned* n, int* direction)
+{
+    const int code = real(snd_pcm_hw_params_get_rate, "snd_pcm_hw_params_get_rate")(p, n, direction);
+    if (answers != nullptr)
+        *n = answers->rate.value_or(*n);
+    return code;
+}
+
+int snd_pcm_hw_params_get_period_size(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* n, int* direction)
+{
+    const int code =
+        real(snd_pcm_hw_params_get_period_size, "snd_pcm_hw_params_get_period_size")(p, n, direction);
+    if (answers != nullptr)
+        *n = answers->period_frames.value_or(*n);
+    return code;
+}
+
+int snd_pcm_hw_params_get_buffer_size(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* n)
+{
+    const int code = real(snd_pcm_hw_params_get_buffer_size, "snd_pcm_hw_params_get_buffer_size")(p, n);
+    if (answers != nullptr)
+        *n = answers->buffer_frames.value_or(*n);
+    return code;
+}
+
+} // extern "C"
+
 namespace writes_test {
 
 using namespace tactor;
 using namespace tactor::test;
 using detail::virtual_queue;
-using test::device_answers;
-using test::device_says;
-using test::fake_dac;
 
 namespace {
 
@@ -180,8 +267,8 @@ TEST_CASE("cards of the kernel, the first one too, have a ring")
 {
     for (const int card : {-1, 0, 3}) {
         CAPTURE(card);
-        const test::device_answers answers{.card = card};
-        const test::device_says it(answers);
+        const device_answers answers{.card = card};
+        const device_says it(answers);
         stream s(false);
         s.pass();
         s.dac.advance(96);
