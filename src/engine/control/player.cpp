@@ -399,7 +399,19 @@ void player::impl::start(const player_options& o)
         check_start(audio, stream, o);
         made = out->setup();
         log_start(o);
-        start_lines(o);
+        // Below the audio thread, which it watches, but high, because the line's holder waits for 150 ms
+        // only.
+        if (lines.amplifier != nullptr)
+            amplifier = std::make_unique<engine::amplifier_thread>(
+                link, *lines.amplifier, driver_options(lines, out->setup()),
+                thread_options(o, "tactor-amp", -5, false));
+        // Above the audio thread: it sleeps nearly always, and its work takes microseconds.
+        if (lines.sync_out != nullptr) {
+            pulses = std::make_unique<engine::trigger_thread>(link, *lines.sync_out,
+                                                              to_ns(lines.pulse_s, "pulse_s"),
+                                                              thread_options(o, "tactor-sync", 1, true));
+            feed.set_pulses(*pulses);
+        }
         control = std::make_unique<control_thread>(*this);
         if (lines.trigger != nullptr)
             listen();
@@ -423,21 +435,6 @@ void player::impl::listen()
                   "keep edge_input::descriptor() open as long as the input lives"),
             code);
     control->watch(fd);
-}
-
-void player::impl::start_lines(const player_options& o)
-{
-    // Below the audio thread, which it watches, but high, because the line's holder waits for 150 ms only.
-    if (lines.amplifier != nullptr)
-        amplifier = std::make_unique<engine::amplifier_thread>(link, *lines.amplifier,
-                                                               driver_options(lines, out->setup()),
-                                                               thread_options(o, "tactor-amp", -5, false));
-    if (lines.sync_out == nullptr)
-        return;
-    // Above the audio thread: it sleeps nearly always, and its work takes microseconds.
-    pulses = std::make_unique<engine::trigger_thread>(link, *lines.sync_out, to_ns(lines.pulse_s, "pulse_s"),
-                                                      thread_options(o, "tactor-sync", 1, true));
-    feed.set_pulses(*pulses);
 }
 
 void player::impl::log_start(const player_options& o) const

@@ -289,9 +289,9 @@ namespace {
 
 bool is_on_card(snd_pcm_t* p)
 {
-    snd_pcm_info_t* info = nullptr;
-    snd_pcm_info_alloca(&info);
-    return snd_pcm_info(p, info) == 0 && snd_pcm_info_get_card(info) >= 0;
+    const auto info =
+        allocate<std::unique_ptr<snd_pcm_info_t, deleter<snd_pcm_info_free>>>(snd_pcm_info_malloc);
+    return snd_pcm_info(p, info.get()) == 0 && snd_pcm_info_get_card(info.get()) >= 0;
 }
 
 // Configures a PCM. `top`: the configuration that defines it; null: none does.

@@ -115,24 +115,20 @@ void voice_list::activate(std::uint64_t before) noexcept
 {
     while (!heap_.empty() && heap_.front().start < before) {
         std::pop_heap(heap_.begin(), heap_.end(), std::greater<>{});
-        insert(heap_.back().slot);
+        const std::uint32_t slot = heap_.back().slot;
         heap_.pop_back();
+        const voice& v = voices_[slot];
+        // Searches from the end: only a late voice has others after it.
+        auto place = active_.end();
+        while (place != active_.begin()) {
+            const voice& earlier = voices_[*(place - 1)];
+            if (earlier.start < v.start || (earlier.start == v.start && earlier.order < v.order))
+                break;
+            --place;
+        }
+        active_.insert(place, slot);
+        earliest_end_ = std::min(earliest_end_, v.end);
     }
-}
-
-void voice_list::insert(std::uint32_t slot) noexcept
-{
-    // Searches from the end: only a late voice has others after it.
-    const voice& v = voices_[slot];
-    auto place = active_.end();
-    while (place != active_.begin()) {
-        const voice& before = voices_[*(place - 1)];
-        if (before.start < v.start || (before.start == v.start && before.order < v.order))
-            break;
-        --place;
-    }
-    active_.insert(place, slot);
-    earliest_end_ = std::min(earliest_end_, v.end);
 }
 
 std::uint64_t voice_list::next_start() const noexcept

@@ -143,7 +143,6 @@ private:
         std::uint32_t slot;
         auto operator<=>(const waiting&) const = default;
     };
-    void insert(std::uint32_t slot) noexcept;
     template <class Test>
     void forget_active(Test test) noexcept;
 
