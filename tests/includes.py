@@ -59,7 +59,7 @@ ONLY_IN = {
     "CLI/": ["src/cli/"],
     "pybind11/": ["src/python/"],
     "cairo": ["src/plot/"],
-    "lo/": ["src/net/osc_lo.cpp"],
+    "lo/": ["src/net/osc.cpp"],
     "kainjow/": ["src/study/"],
     "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/python/", "src/server/", "src/session/", "src/study/"],
 }

@@ -1,21 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "net/connection.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <utility>
 
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 namespace tactor::net {
 namespace {
+
+namespace asio = boost::asio;
 
 constexpr std::chrono::seconds linger{1};
 
 // Large messages of a peer that wait. It is not read any further with so many.
 constexpr unsigned most_large = 4;
 
+constexpr std::size_t chunk_bytes = 16U << 10;
+constexpr std::size_t most_block_bytes = 128U << 10; // of a line that is large
+constexpr std::size_t most_drained = 128U << 10;
+constexpr std::size_t lines_at_once = 16;
+constexpr char line_end = '\n';
+
+constexpr auto accept_pause = std::chrono::milliseconds(100);
+
 } // namespace
 
-connection::connection(const boost::asio::any_io_executor& executor, const message_limits& l)
+connection::connection(const asio::any_io_executor& executor, const message_limits& l)
     : limits_(l), deadline_(executor), linger_(executor)
 {
 }
@@ -81,7 +98,7 @@ void connection::arm(double seconds)
     deadline_.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
         // The timer may have been set again while this was queued.
         if (!e && self->armed_ && !self->closed_ &&
-            self->deadline_.expiry() <= boost::asio::steady_timer::clock_type::now())
+            self->deadline_.expiry() <= asio::steady_timer::clock_type::now())
             self->time_out();
     });
 }
@@ -99,7 +116,7 @@ void connection::queue(std::string message, bool file)
     if (!file && waiting_ + message.size() > limits_.waiting_bytes) {
         finishing_ = true;
         // Does not close here, because the caller may be iterating over all peers.
-        return boost::asio::post(executor(), [self = shared_from_this()] { self->close(); });
+        return asio::post(executor(), [self = shared_from_this()] { self->close(); });
     }
     if (file)
         ++files_;
@@ -187,10 +204,204 @@ void connection::close()
     linger_.cancel();
     shut();
     if (handlers_.closed)
-        boost::asio::post(executor(), [self] {
+        asio::post(executor(), [self] {
             const auto h = std::exchange(self->handlers_, {});
             h.closed();
         });
+}
+
+line_connection::line_connection(socket_type s, const message_limits& l)
+    : connection(s.get_executor(), l), socket_(std::move(s)), chunk_(chunk_bytes)
+{
+}
+
+// Handles one line at a time, so that other peers have their turn between two.
+void line_connection::read()
+{
+    if (!reads())
+        return;
+    scanned_ = std::min(text_.find(line_end, scanned_), text_.size());
+    if (scanned_ == text_.size())
+        return read_more();
+    asio::post(executor(), [this, self = shared_from_this()] { within_memory([&] { next_line(); }); });
+}
+
+void line_connection::next_line()
+{
+    if (!reads())
+        return;
+    std::size_t size = block_bytes_ + scanned_ - begin_;
+    const std::size_t begin = std::exchange(begin_, ++scanned_);
+    const char last = scanned_ - begin > 1 ? text_[scanned_ - 2]
+                      : blocks_.empty()    ? '\0'
+                                           : blocks_.back().back();
+    const bool has_return = last == '\r';
+    size -= has_return ? 1 : 0;
+    if (size > limits().message_bytes)
+        return fail(connection_fault::too_long);
+    message_ends();
+    if (size <= large_message)
+        return handle({text_.data() + begin, size});
+    std::vector<std::string> parts = std::exchange(blocks_, {});
+    parts.push_back(text_.substr(begin, scanned_ - 1 - begin));
+    block_bytes_ = 0;
+    if (has_return) // which may be all of the last part
+        (parts.back().empty() ? parts[parts.size() - 2] : parts.back()).pop_back();
+    handle_large(std::move(parts));
+}
+
+void line_connection::read_more()
+{
+    text_.erase(0, std::exchange(begin_, 0));
+    const bool may_end = text_.ends_with('\r');
+    if (block_bytes_ + text_.size() > limits().message_bytes + (may_end ? 1 : 0))
+        return fail(connection_fault::too_long);
+    // Keeps blocks: one string would be copied as it grows, and all peers' may grow in one turn.
+    if (text_.size() + chunk_bytes > most_block_bytes) {
+        block_bytes_ += text_.size();
+        blocks_.push_back(std::exchange(text_, {}));
+    }
+    if (text_.empty())
+        std::string().swap(text_); // returns its memory
+    scanned_ = text_.size();
+    if (over_) {
+        stop_reading();
+        // Notices that the other end is gone. A Unix socket reports it when the peer closes, TCP when we
+        // write.
+        socket_.async_wait(socket_type::wait_error,
+                           [this, self = shared_from_this()](const boost::system::error_code& e) {
+                               if (!e)
+                                   fail(connection_fault::gone);
+                           });
+        return calls().input_ended();
+    }
+    if (block_bytes_ + text_.size() != 0)
+        message_begins();
+    socket_.async_read_some(asio::buffer(chunk_), [this, self = shared_from_this()](
+                                                      const boost::system::error_code& e, std::size_t n) {
+        if (closed() || e == asio::error::operation_aborted)
+            return;
+        if (e && e != asio::error::eof)
+            return fail(connection_fault::gone);
+        within_memory([&] {
+            over_ = e.failed();
+            text_.append(chunk_.data(), n);
+            // The end of the input also ends a line: an incomplete one is no JSON, so the peer gets an
+            // error.
+            if (over_ && block_bytes_ + text_.size() != 0)
+                text_ += line_end;
+            read();
+        });
+    });
+}
+
+void line_connection::write()
+{
+    const std::size_t lines = std::min(queued().size(), lines_at_once);
+    std::vector<asio::const_buffer> buffers;
+    for (std::size_t i = 0; i < lines; ++i) {
+        buffers.push_back(asio::buffer(queued()[i].text));
+        buffers.push_back(asio::buffer(&line_end, 1));
+    }
+    asio::async_write(
+        socket_, buffers,
+        [this, self = shared_from_this(), lines](const boost::system::error_code& e, std::size_t) {
+            if (e)
+                fail(connection_fault::gone);
+            else
+                wrote(lines);
+        });
+}
+
+void line_connection::shut()
+{
+    boost::system::error_code ignored;
+    // Reads what is left: unread input would turn the last message into a reset.
+    socket_.shutdown(asio::socket_base::shutdown_send, ignored);
+    for (std::size_t drained = 0; drained < most_drained && socket_.available(ignored) != 0 && !ignored;)
+        drained += socket_.read_some(asio::buffer(chunk_), ignored);
+    socket_.close(ignored);
+}
+
+listener::listener(asio::io_context& io, int fd, std::string when_full,
+                   std::function<void(socket_type)> taken)
+    : io_(io), fd_(io, fd), pause_(io), when_full_(std::move(when_full)), taken_(std::move(taken))
+{
+    keep_spare();
+}
+
+listener::~listener()
+{
+    fd_.release();
+}
+
+void listener::keep_spare() noexcept
+{
+    if (!spare_)
+        spare_ = detail::owned_fd(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+}
+
+void listener::start()
+{
+    fd_.async_wait(asio::posix::descriptor_base::wait_read, [this](const boost::system::error_code& e) {
+        if (!e)
+            take();
+    });
+}
+
+void listener::stop()
+{
+    boost::system::error_code ignored;
+    fd_.cancel(ignored);
+    pause_.cancel();
+}
+
+void listener::take()
+{
+    sockaddr address{};
+    socklen_t size = sizeof address;
+    const int fd = ::accept4(fd_.native_handle(), &address, &size, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd >= 0) {
+        boost::system::error_code failed;
+        socket_type s(io_);
+        s.assign(asio::generic::stream_protocol(address.sa_family, 0), fd, failed);
+        if (failed)
+            ::close(fd);
+        else
+            try {
+                taken_(std::move(s));
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): the socket closes, others stay
+            }
+        return start();
+    }
+    if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)
+        return start();
+    if ((errno == EMFILE || errno == ENFILE) && turn_away())
+        return start();
+    // Memory ran out, or another process took the spare descriptor. An attempt without a pause would only
+    // take time.
+    pause_.expires_after(accept_pause);
+    pause_.async_wait([this](const boost::system::error_code& e) {
+        if (!e)
+            start();
+    });
+}
+
+// Accepts on the spare descriptor, sends the refusal as far as the socket takes it, and closes.
+bool listener::turn_away() noexcept
+{
+    keep_spare();
+    if (!spare_)
+        return false;
+    spare_.close();
+    detail::owned_fd next(::accept4(fd_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    const bool came = static_cast<bool>(next);
+    if (came)
+        static_cast<void>(
+            ::send(next.get(), when_full_.data(), when_full_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+    next.close();
+    keep_spare();
+    return came;
 }
 
 } // namespace tactor::net

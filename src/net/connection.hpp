@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A peer's connection: messages come in one by one, others wait in a bounded queue to be written. One
-/// thread: the context's.
+/// Connections of peers on stream sockets: a listener accepts them, messages come in one by one, others wait
+/// in a bounded queue to be written. One thread: the context's.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <new>
 #include <string>
@@ -14,11 +15,82 @@
 #include <vector>
 
 #include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "net/peer.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::net {
+
+/// Bytes of a message that is handled in the thread of the sockets. A larger one is given away.
+constexpr std::size_t large_message = 64U << 10;
+
+/// The way to a peer, over a connection of any kind.
+class peer {
+public:
+    peer() = default;
+    peer(const peer&) = delete;
+    peer& operator=(const peer&) = delete;
+    virtual ~peer() = default;
+
+    /// Queues a message. Drops a peer that lets too much wait.
+    virtual void send(std::string message) = 0;
+    /// Queues a message of any size that the peer asked for. Beside it as much may wait as without it.
+    virtual void send_file(std::string message) { send(std::move(message)); }
+    /// Returns true if such a message has not been read yet.
+    virtual bool has_file() const { return false; }
+    /// Returns the bytes that the peer has not read, without files.
+    virtual std::size_t waiting() const = 0;
+    /// Stops reading, and closes when everything is written, or after a second.
+    virtual void finish() = 0;
+    /// Closes in the same way. `why`, of at most 123 bytes, is for a peer that can be told.
+    virtual void turn_out(const char* /*why*/) { finish(); }
+};
+
+/// Reason why a connection is given up.
+enum class connection_fault {
+    too_long, ///< a message beyond message_bytes
+    too_slow, ///< no whole message within message_s
+    memory,   ///< there is not enough memory for its input
+    gone,     ///< the socket failed
+};
+
+struct web_reply {
+    unsigned status = 200;
+    std::string type = "text/plain; charset=utf-8";
+    std::string body = {};
+    std::string policy = {}; ///< Content-Security-Policy; empty: the page may load nothing
+    std::string gzip = {};   ///< the body, compressed, for browsers that take it; empty: there is none
+    double after_s = 0.0;    ///< it is sent so late
+};
+
+/// Calls of a connection to its server.
+struct peer_handlers {
+    /// Handles a message: a line without its end, or a text. Returns false to close the connection.
+    std::function<bool(std::string_view)> message;
+    /// Called once, when the socket is closed. The connection may be forgotten.
+    std::function<void()> closed;
+    /// Returns true once the first message, which the peer owes, has come. None: any message that is not
+    /// empty counts.
+    std::function<bool()> met = {};
+    /// Handles a message above `large_message`, which comes in parts, and calls `done` later with the result
+    /// that `message` would return. Smaller ones are handled in the meantime. Owed where a message may be
+    /// that large.
+    std::function<void(std::vector<std::string> parts, std::function<void(bool)> done)> large = {};
+    /// Lines: the peer sends no more; it may still read.
+    std::function<void()> input_ended = {};
+    /// Lines: called before the connection closes for any fault but `gone`; send() still works.
+    std::function<void(connection_fault)> fault = {};
+
+    /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
+    /// Bearer".
+    std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get = {};
+    /// Browsers: returns true if there is a place for a WebSocket. From then on `message` is called, and
+    /// `closed` is its end.
+    std::function<bool()> upgrade = {};
+};
 
 struct message_limits {
     std::size_t message_bytes = 1U << 20;
@@ -126,6 +198,59 @@ private:
     bool reading_ = true;
     bool finishing_ = false;
     bool closed_ = false;
+};
+
+/// A peer that exchanges lines with the server.
+class line_connection final : public connection {
+public:
+    using socket_type = boost::asio::generic::stream_protocol::socket;
+
+    line_connection(socket_type s, const message_limits& l);
+
+private:
+    void read() override;
+    void write() override;
+    void shut() override;
+    void next_line();
+    void read_more();
+
+    socket_type socket_;
+    std::vector<char> chunk_;
+    std::vector<std::string> blocks_; ///< the start of a line that is longer than a block
+    std::size_t block_bytes_ = 0;     ///< of them
+    std::string text_;        ///< the rest of it, or lines that were not handled, and the start of one
+    std::size_t begin_ = 0;   ///< start of the next line in it
+    std::size_t scanned_ = 0; ///< no line ends between begin_ and this place
+    bool over_ = false;       ///< the peer sends no more
+};
+
+/// A listening socket that accepts connections one after the other. When no descriptors are left, it accepts
+/// a client on a spare one, sends a refusal and closes.
+class listener {
+public:
+    using socket_type = boost::asio::generic::stream_protocol::socket;
+
+    /// Listens on `fd`, which stays its owner's. `when_full`: refusal when descriptors run out.
+    listener(boost::asio::io_context& io, int fd, std::string when_full,
+             std::function<void(socket_type)> taken);
+    ~listener();
+    listener(const listener&) = delete;
+    listener& operator=(const listener&) = delete;
+
+    void start();
+    void stop();
+
+private:
+    void take();
+    bool turn_away() noexcept;
+    void keep_spare() noexcept;
+
+    boost::asio::io_context& io_;
+    boost::asio::posix::stream_descriptor fd_;
+    boost::asio::steady_timer pause_;
+    std::string when_full_;
+    std::function<void(socket_type)> taken_;
+    detail::owned_fd spare_;
 };
 
 } // namespace tactor::net

@@ -39,8 +39,4 @@ std::vector<osc_message> parse_osc(std::string_view packet);
 /// Encodes a message as an OSC packet: integers as i, clamped to 32 bits, reals as f, text as s.
 std::string osc_packet(const std::string& address, const std::vector<osc_value>& values);
 
-/// Parses a message (not a bundle) of a packet by liblo.
-/// \throws error (bad_input) for one that does not begin with an address.
-osc_message parse_osc_message(std::string_view bytes);
-
 } // namespace tactor::net

@@ -11,7 +11,7 @@ bool osc_is_built() noexcept
     return false;
 }
 
-osc_message parse_osc_message(std::string_view)
+std::vector<osc_message> parse_osc(std::string_view)
 {
     throw error(error_kind::bad_input, "OSC", "this build was made without it");
 }

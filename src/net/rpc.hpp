@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -77,5 +78,10 @@ reply_json notification(std::string_view method, reply_json params);
 
 /// Returns the JSON on one line, without its end. Replaces bytes that are not UTF-8.
 std::string json_line(const reply_json& j);
+
+/// Appends bytes in base64 (RFC 4648, section 4), as messages carry files.
+void append_base64(std::string& to, std::string_view bytes);
+/// Returns the bytes; none if the text is no base64 with its padding.
+std::optional<std::string> read_base64(std::string_view text);
 
 } // namespace tactor::net

@@ -36,10 +36,9 @@
 
 #include <tactor/error.hpp>
 
-#include "net/line_connection.hpp"
-#include "net/listener.hpp"
+#include "net/connection.hpp"
 #include "net/osc.hpp"
-#include "net/web_connection.hpp"
+#include "net/web.hpp"
 #include "rt/clock.hpp"
 #include "server/osc/clients.hpp"
 

@@ -26,7 +26,7 @@
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
 
-#include "net/peer.hpp"
+#include "net/connection.hpp"
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
 #include "server/planners.hpp"

@@ -20,7 +20,7 @@
 #include "files/plan/plan_file.hpp"
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
-#include "net/base64.hpp"
+#include "net/rpc.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "server/faults.hpp"

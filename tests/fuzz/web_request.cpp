@@ -11,7 +11,7 @@
 
 #include "holds.hpp"
 #include "net/access.hpp"
-#include "net/web_connection.hpp"
+#include "net/web.hpp"
 
 using namespace tactor;
 

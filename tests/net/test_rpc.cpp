@@ -16,7 +16,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "net/line_connection.hpp"
+#include "net/connection.hpp"
 #include "net/rpc.hpp"
 
 namespace rpc_test {

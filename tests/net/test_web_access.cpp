@@ -18,8 +18,8 @@
 #include "folder.hpp"
 #include "has.hpp"
 #include "net/access.hpp"
-#include "net/base64.hpp"
 #include "net/listen.hpp"
+#include "net/rpc.hpp"
 
 namespace web_access_test {
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "net/base64.hpp"
+#include "net/rpc.hpp"
 #include "server/tool_line.hpp"
 #include "service_rig.hpp"
 

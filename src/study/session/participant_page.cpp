@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "net/web_connection.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::study {

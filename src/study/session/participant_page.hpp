@@ -11,7 +11,7 @@
 #include <tactor/array.hpp>
 
 #include "net/listen.hpp"
-#include "net/page_server.hpp"
+#include "net/web.hpp"
 #include "rt/event_fd.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/page_dialogue.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "net/web_connection.hpp"
+#include "net/web.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -19,7 +20,6 @@
 #include <unistd.h>
 
 #include "net/access.hpp"
-#include "net/listen.hpp"
 
 namespace tactor::net {
 namespace {
@@ -31,6 +31,11 @@ namespace websocket = beast::websocket;
 
 constexpr std::size_t most_header_bytes = 8U << 10;
 constexpr std::size_t read_at_once = 16U << 10;
+
+// WebSockets of a page: its own, its reloads and a few visitors by mistake.
+constexpr std::size_t most_visitors = 16;
+constexpr std::size_t most_connections = 32;
+constexpr message_limits page_limits{.message_bytes = 4096, .message_s = 10.0, .waiting_bytes = 1U << 20};
 
 std::string_view view(boost::string_view s)
 {
@@ -367,6 +372,71 @@ void turn_away(int socket)
 std::string no_descriptors_for_browsers()
 {
     return unavailable("the server has as many files open as it may");
+}
+
+page_server::page_server(owned_fd listening, const page_document& document, handlers h)
+    : fd_(std::move(listening)),
+      document_(document),
+      calls_(std::move(h)),
+      door_(io_, fd_.get(), no_descriptors_for_browsers(),
+            [this](listener::socket_type s) { take(std::move(s)); })
+{
+    door_.start();
+    thread_ = std::thread([this] { io_.run(); });
+}
+
+page_server::~page_server()
+{
+    asio::post(io_, [this] {
+        door_.stop();
+        for (const auto& c : std::set(all_))
+            c->finish();
+        work_.reset();
+    });
+    thread_.join();
+}
+
+void page_server::take(listener::socket_type s)
+{
+    if (all_.size() >= most_connections)
+        return turn_away(s.native_handle()); // then the socket closes
+    const auto c = connect_browser(io_, std::move(s), page_limits, {});
+    if (!c)
+        return;
+    all_.insert(c);
+    const visitor n = ++last_;
+    c->start({.message = [this, n](std::string_view text) { return calls_.said(n, text); },
+              .closed =
+                  [this, n, weak = std::weak_ptr(c)] {
+                      all_.erase(weak.lock());
+                      if (visitors_.erase(n) != 0)
+                          calls_.left(n);
+                  },
+              .get =
+                  [this](std::string_view path, std::string_view host, std::string_view) {
+                      return path == "/" ? make_page(document_, host)
+                                         : web_reply{404, "text/plain", "there are / and /rpc\n", ""};
+                  },
+              .upgrade =
+                  [this, n, weak = std::weak_ptr(c)] {
+                      return visitors_.size() < most_visitors && visitors_.emplace(n, weak.lock()).second;
+                  }});
+}
+
+void page_server::send(visitor to, std::string text)
+{
+    asio::post(io_, [this, to, text = std::move(text)]() mutable {
+        if (const auto found = visitors_.find(to); found != visitors_.end())
+            found->second->send(std::move(text));
+    });
+}
+
+void page_server::finish(visitor v)
+{
+    asio::post(io_, [this, v] {
+        if (const auto found = visitors_.find(v); found != visitors_.end())
+            found->second->finish();
+    });
 }
 
 } // namespace tactor::net
