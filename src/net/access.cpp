@@ -2,7 +2,7 @@
 #include "net/access.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <cstdint>
 #include <utility>
 
 #include <boost/asio/ip/address.hpp>
@@ -13,6 +13,8 @@
 #include <tactor/error.hpp>
 
 #include "core/prefix_bits.hpp"
+#include "core/split.hpp"
+#include "core/words.hpp"
 
 namespace tactor::net {
 namespace {
@@ -32,16 +34,7 @@ bool within(const ip::address& a, const address_prefix& p)
 
 bool same_name(std::string_view a, std::string_view b)
 {
-    const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [&](char x, char y) { return lower(x) == lower(y); });
-}
-
-bool is_port(std::string_view text)
-{
-    constexpr std::size_t most_digits = 5;
-    return !text.empty() && text.size() <= most_digits &&
-           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return in_small_letters(std::string(a)) == in_small_letters(std::string(b));
 }
 
 // Splits "[::1]:4003" into "::1" and "4003". The port is empty if there is none; both are empty for nonsense.
@@ -57,7 +50,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
         return {}; // only IPv6 addresses have brackets
     if (rest.empty())
         return {name, {}};
-    if (rest.front() != ':' || !is_port(rest.substr(1)))
+    if (rest.front() != ':' || !detail::number_in<std::uint16_t>(rest.substr(1)))
         return {};
     return {name, rest.substr(1)};
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "net/listen.hpp"
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -314,22 +314,20 @@ std::string bound_path(int fd)
 std::vector<std::pair<std::string, owned_fd>> inherited_sockets()
 {
     constexpr int first = 3;
+    constexpr int most = 64;
     std::vector<std::pair<std::string, owned_fd>> found;
     const char* pid = std::getenv("LISTEN_PID");
     const char* count = std::getenv("LISTEN_FDS");
     const char* names = std::getenv("LISTEN_FDNAMES");
     if (pid == nullptr || count == nullptr || std::to_string(::getpid()) != pid)
         return found;
-    int n = 0;
-    std::from_chars(count, count + std::strlen(count), n);
-    std::string left = names == nullptr ? "" : names;
-    for (int fd = first; fd < first + n && fd < first + 64; ++fd) {
-        const auto colon = left.find(':');
-        std::string name = left.substr(0, colon);
-        left = colon == std::string::npos ? "" : left.substr(colon + 1);
-        ::fcntl(fd, F_SETFD, FD_CLOEXEC);
-        ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
-        found.emplace_back(std::move(name), owned_fd(fd));
+    std::vector<std::string_view> all_names = detail::split(names == nullptr ? "" : names, ':');
+    all_names.resize(std::clamp(detail::number_in<int>(count).value_or(0), 0, most));
+    for (const std::string_view name : all_names) {
+        owned_fd fd(first + static_cast<int>(found.size()));
+        ::fcntl(fd.get(), F_SETFD, FD_CLOEXEC);
+        ::fcntl(fd.get(), F_SETFL, ::fcntl(fd.get(), F_GETFL) | O_NONBLOCK);
+        found.emplace_back(name, std::move(fd));
     }
     for (const char* v : {"LISTEN_PID", "LISTEN_FDS", "LISTEN_FDNAMES"})
         ::unsetenv(v);
