@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/owned.hpp"
-#include "files/input_files.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::detail {
 

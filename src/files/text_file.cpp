@@ -2,7 +2,10 @@
 #include "files/text_file.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
+#include <map>
+#include <mutex>
 #include <new>
 #include <string>
 #include <system_error>
@@ -10,6 +13,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <tactor/error.hpp>
@@ -21,7 +25,37 @@
 namespace tactor::detail {
 namespace {
 
+namespace fs = std::filesystem;
 using std::string_view_literals::operator""sv;
+
+constexpr std::size_t least_forgotten = 64;
+
+/// A file that was read.
+struct input {
+    dev_t device = 0;
+    ino_t inode = 0;
+    owner_kind owner = owner_kind::user;
+
+    bool is(const struct stat& s) const noexcept { return device == s.st_dev && inode == s.st_ino; }
+
+    /// Returns false for a file that is gone: a file system gives its number to the next one.
+    bool is_still(const fs::path& name) const noexcept
+    {
+        struct stat now {};
+        return ::stat(name.c_str(), &now) == 0 && is(now);
+    }
+};
+
+struct inputs {
+    std::mutex guard;
+    std::map<fs::path, input> all; ///< by absolute name
+};
+
+inputs& known_inputs()
+{
+    static inputs i;
+    return i;
+}
 
 // Returns the first line with something on it that is not a comment.
 std::string_view find_first_line(std::string_view text)
@@ -98,6 +132,42 @@ void refuse_other_kind(std::string_view text, const std::string& name, std::stri
 
 } // namespace
 
+void note_input(const fs::path& file, owner_kind owner)
+{
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode))
+        return;
+    std::error_code ignored;
+    fs::path whole = fs::absolute(file, ignored);
+    inputs& i = known_inputs();
+    const std::lock_guard locked(i.guard);
+    const auto old = i.all.find(whole);
+    if (old != i.all.end())
+        owner = std::min(owner, old->second.owner); // once the user's, always the user's
+    // A process may live long: forgets what is gone where the number of files reaches a power of two.
+    else if (i.all.size() >= least_forgotten && std::has_single_bit(i.all.size()))
+        std::erase_if(i.all, [](const auto& e) { return !e.second.is_still(e.first); });
+    i.all[std::move(whole)] = {s.st_dev, s.st_ino, owner};
+}
+
+void refuse_input(const struct stat& file, const fs::path& output, owner_kind writer)
+{
+    inputs& i = known_inputs();
+    const std::lock_guard locked(i.guard);
+    for (const auto& [read, what] : i.all) {
+        const bool own_record = writer == owner_kind::program && what.owner == owner_kind::program;
+        if (writer == owner_kind::caller || own_record || !what.is(file) || !what.is_still(read))
+            continue;
+        std::error_code ignored;
+        const bool named_so = fs::absolute(output, ignored) == read || read.string().starts_with("/dev/fd/");
+        throw error(error_kind::bad_input, source_place{output.string()},
+                    named_so
+                        ? "it is read as input"
+                        : fmt::format("it is the same file as {}, which is read as input", read.string()),
+                    "name another file for the output");
+    }
+}
+
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes)
 {
     constexpr std::size_t first_bytes = std::size_t{1} << 16;
@@ -127,10 +197,10 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
     }
 }
 
-whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes, owner_kind owner)
+whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kind owner)
 {
     std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored))
+    if (fs::is_directory(file, ignored))
         throw error(error_kind::bad_input, source_place{file.string()}, "is a folder", "name a file in it")
             .with_os_code(EISDIR);
     const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
@@ -204,7 +274,7 @@ std::string_view without_mark(std::string_view text) noexcept
 
 std::string stem(const std::string& name)
 {
-    return std::filesystem::path(name).stem().string();
+    return fs::path(name).stem().string();
 }
 
 source_place find_place(std::string_view text, std::size_t offset, const std::string& name)

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "files/input_files.hpp"
 #include "files/text_file.hpp"
 #include "options/settle.hpp"
 #include "rt/variable.hpp"

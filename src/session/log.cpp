@@ -16,7 +16,7 @@
 
 #include <tactor/error.hpp>
 
-#include "files/input_files.hpp"
+#include "files/text_file.hpp"
 #include "rt/clock.hpp"
 #include "session/say.hpp"
 

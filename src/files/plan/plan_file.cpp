@@ -15,7 +15,6 @@
 
 #include "core/kind_names.hpp"
 #include "core/words.hpp"
-#include "files/input_files.hpp"
 #include "files/json/reader.hpp"
 #include "files/plan/plan_members.hpp"
 #include "files/text_file.hpp"

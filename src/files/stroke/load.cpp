@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "files/input_files.hpp"
 #include "files/stroke/toml.hpp"
 #include "files/text_file.hpp"
 
