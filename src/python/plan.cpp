@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "files/plan/plan_file.hpp"
 #include "files/plan/plan_json.hpp"
 #include "python/plan_handle.hpp"
 

@@ -17,7 +17,7 @@
 #include "core/bounds.hpp"
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
-#include "files/plan/plan_file.hpp"
+#include "files/plan/plan_json.hpp"
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
 #include "net/rpc.hpp"

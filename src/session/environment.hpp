@@ -13,7 +13,7 @@
 #include <tactor/render.hpp>
 #include <tactor/tactor.hpp>
 
-#include "files/plan/plan_file.hpp"
+#include "files/plan/plan_json.hpp"
 #include "options/option.hpp"
 #include "options/serve.hpp"
 

@@ -24,7 +24,7 @@
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/warnings.hpp"
-#include "files/plan/plan_file.hpp"
+#include "files/plan/plan_json.hpp"
 #include "files/text_file.hpp"
 #include "session/interrupt.hpp"
 #include "session/live_remarks.hpp"

@@ -36,11 +36,6 @@ public:
         add<T>(name, what, false);
     }
     template <class T>
-    void operator()(const char* name, const T*, const detail::about& what)
-    {
-        add<T>(name, what, false);
-    }
-    template <class T>
     void or_null(const char* name, const std::optional<T>&, const detail::about& what)
     {
         add<std::optional<T>>(name, what, true);

@@ -47,12 +47,6 @@ public:
             (*this)(name, *v, what);
     }
     template <class T>
-    void operator()(const char* name, const T* v, const detail::about& what)
-    {
-        if (v != nullptr)
-            (*this)(name, *v, what);
-    }
-    template <class T>
     void or_null(const char* name, const std::optional<T>& v, const detail::about&)
     {
         begin(name);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "files/plan/plan_file.hpp"
+// Plans read back.
+#include "files/plan/plan_members.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -15,8 +17,6 @@
 
 #include "core/kind_names.hpp"
 #include "core/words.hpp"
-#include "files/json/reader.hpp"
-#include "files/plan/plan_members.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::files {
@@ -28,6 +28,71 @@ constexpr const char* hint = "see tactor-json(5)";
 constexpr const char* how_to_make = "{command:plan} makes one";
 
 constexpr std::uint64_t most_way_points = 10000;
+
+bool is_same(const recording_facts& f, const recording& r)
+{
+    return f.sha256 == r.sha256 && f.frames == r.samples.size() && f.rate == r.rate_hz;
+}
+
+// Returns the recording if it lies beside the plan, where both may have been moved.
+std::optional<waveform> find_beside(const std::string& file, const plan_sound& s)
+{
+    namespace fs = std::filesystem;
+    const fs::path beside = fs::path(file).parent_path() / fs::path(*s.waveform).filename();
+    std::error_code unknown;
+    if (!s.recording || !fs::is_regular_file(beside, unknown))
+        return {};
+    try {
+        waveform w;
+        w.kind = waveform_kind::recording;
+        w.recorded = std::make_shared<const recording>(load_recording(beside));
+        return is_same(*s.recording, *w.recorded) ? std::optional(w) : std::nullopt;
+    } catch (const error&) { // another file of that name
+        return {};
+    }
+}
+
+// Refuses a recording that has changed: other samples would sound under the plan's name.
+void check_recording(const recording_facts& f, const recording& r)
+{
+    if (!is_same(f, r))
+        throw error(error_kind::bad_input, source_place{r.file},
+                    "the recording has changed since the plan was made",
+                    "plan the stroke again, or bring the old file back");
+}
+
+// Reads the waveform, from its file or the one beside the plan.
+waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings_kind recordings)
+{
+    if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
+        stroke["waveform"].refuse(fmt::format("is a file, {}, and this text is none", *s.waveform));
+    const auto found = find_beside(stroke.file(), s);
+    try {
+        return found ? *found : parse_waveform(*s.waveform);
+    } catch (const error& e) {
+        stroke["waveform"].refuse(fmt::format("{}: {}", e.subject(), e.why()));
+    }
+}
+
+// Puts the sound into the plan; reads the WAV file that it names, or refuses it. `stroke` is where it stands.
+void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recordings_kind recordings)
+{
+    if (s.waveform)
+        p.wave = read_waveform(s, stroke, recordings);
+    if (p.wave.recorded && s.recording)
+        check_recording(*s.recording, *p.wave.recorded);
+    p.wave.seed = s.noise_seed.value_or(p.wave.seed);
+    p.wave.texture = s.texture.value_or(p.wave.texture);
+    p.wave.texture_mm = s.texture_mm.value_or(p.wave.texture_mm);
+    if (s.am_hz.has_value() != s.am_depth.has_value())
+        stroke["am_hz"].refuse("goes with am_depth");
+    if (s.am_hz)
+        p.am = {*s.am_hz, *s.am_depth};
+    p.course = s.course.value_or(p.course);
+    for (std::size_t i = 1; i < p.course.size(); ++i)
+        if (p.course[i].t_s < p.course[i - 1].t_s)
+            stroke["course"].refuse("has a point out of order");
+}
 
 // Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
 void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
@@ -297,8 +362,7 @@ plan_file read_plans(std::string_view text, const std::string& name, recordings_
 
 bool holds_plans(std::string_view text) noexcept
 {
-    const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-    return first != std::string_view::npos && text[first] == '{';
+    return detail::find_text_form(text) == "json";
 }
 
 void check_same_array(const std::string& file, const array& made_for, const array& in_use)

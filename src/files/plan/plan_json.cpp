@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -37,7 +40,7 @@ struct written_plan {
     const std::optional<fitting>& fit;
     const array& tactors;
     const render_options& options;
-    const compensated_plan* moved; ///< null without compensation
+    std::optional<compensated_plan> moved;
     bool is_sampled;
     double step_s;
     std::uint64_t start_frame;
@@ -63,6 +66,99 @@ bool has_taps(const prediction& r, observer_kind by)
 }
 
 } // namespace
+
+thresholds find_thresholds(const tactor_spec& t)
+{
+    if (t.thresholds.empty())
+        return t.threshold_dbfs ? thresholds{*t.threshold_dbfs} : thresholds{};
+    std::vector<std::array<double, 2>> all;
+    for (const threshold_point& p : t.thresholds)
+        all.push_back({p.hz, p.dbfs});
+    return {all};
+}
+
+void set_thresholds(tactor_spec& t, const thresholds& v)
+{
+    if (!v.value)
+        return;
+    if (const double* const one = std::get_if<double>(&*v.value))
+        t.threshold_dbfs = *one;
+    else
+        for (const auto& [hz, dbfs] : std::get<1>(*v.value))
+            t.thresholds.push_back({hz, dbfs});
+}
+
+std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o)
+{
+    std::vector<std::optional<double>> all;
+    for (const tactor_spec& t : a.tactors) {
+        all.emplace_back(o.level_dbfs + t.gain_db);
+        if (!o.sl_db)
+            continue;
+        const auto threshold = threshold_at(t, carrier_hz);
+        all.back() = threshold ? std::optional(*threshold + *o.sl_db) : std::nullopt;
+    }
+    return all;
+}
+
+std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f)
+{
+    if (!f)
+        return {};
+    const auto matrix = [&f](double a, double across, double d) {
+        const point origin = (*f)({0.0, 0.0});
+        return fit_matrix{f->margin_mm, {a, across, across, d, origin.x_mm, origin.y_mm}};
+    };
+    if (!f->line)
+        return matrix(f->scale, 0.0, f->scale);
+    const auto [x, y] = *f->line;
+    return matrix(f->scale * x * x, f->scale * x * y, f->scale * y * y);
+}
+
+fitting make_fitting(const fit_matrix& given)
+{
+    const auto& m = given.matrix;
+    fitting f{.to = {m[4], m[5]}, .scale = m[0], .margin_mm = given.margin_mm};
+    if (m[0] != m[3] || m[1] != 0.0) {
+        f.scale = m[0] + m[3];
+        f.line = {std::sqrt(m[0] / f.scale), std::copysign(std::sqrt(m[3] / f.scale), m[1])};
+    }
+    return f;
+}
+
+std::string note_text(note_kind n)
+{
+    return n == note_kind::reconstructed
+               ? "reconstructed: the figure that shows it is not in the paper's text"
+               : "";
+}
+
+plan_sound record_sound(const plan& p)
+{
+    const waveform& w = p.wave;
+    plan_sound s;
+    if (w.kind != waveform_kind::sine)
+        s.waveform = waveform_text(w);
+    if (w.kind == waveform_kind::noise)
+        s.noise_seed = w.seed;
+    if (w.kind == waveform_kind::recording) {
+        // Its whole path: the plan may be played in another folder.
+        std::error_code nowhere;
+        if (const auto whole = std::filesystem::absolute(*s.waveform, nowhere); !nowhere)
+            s.waveform = whole.string();
+        s.recording = {*s.waveform, w.recorded->sha256, w.recorded->samples.size(), w.recorded->rate_hz};
+        s.texture = w.texture;
+        if (w.texture == texture_kind::length)
+            s.texture_mm = w.texture_mm;
+    }
+    if (p.am.hz > 0.0) {
+        s.am_hz = p.am.hz;
+        s.am_depth = p.am.depth;
+    }
+    if (!p.course.empty())
+        s.course = p.course;
+    return s;
+}
 
 std::vector<double> piece::starts_s() const
 {
@@ -94,7 +190,7 @@ void write_plans(const plan_record& r, const text_sink& out)
                                  r.made.fit,
                                  r.tactors,
                                  r.options,
-                                 r.made.moved.empty() ? nullptr : &r.made.moved[i],
+                                 r.made.moved.empty() ? std::nullopt : std::optional(r.made.moved[i]),
                                  p.curve.has_value(),
                                  continuous_step_s,
                                  r.samples.starts()[i],

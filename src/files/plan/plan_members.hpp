@@ -19,7 +19,7 @@
 
 #include "core/members.hpp"
 #include "files/json/json_value.hpp"
-#include "files/plan/plan_file.hpp"
+#include "files/plan/plan_json.hpp"
 
 namespace tactor::files {
 
@@ -46,10 +46,6 @@ struct plan_sound {
 };
 
 plan_sound record_sound(const plan& p);
-
-/// Puts the sound into the plan; reads the WAV file that it names, or refuses it. `stroke` is where it
-/// stands. \throws error (bad_input).
-void set_sound(plan& p, const plan_sound& sound, const json_value& stroke, recordings_kind recordings);
 
 template <class Io, either<recording_facts> Facts>
 void members(Io& io, Facts& f)
@@ -304,11 +300,8 @@ void stroke_members(Io& io, Parts& r)
     members(io, r.sound);
     io.with("note", detail::omit_empty(note_text(r.note)),
             [&r](const auto& given) {
-                const auto all = all_values<note_kind>();
-                const auto n = std::find_if(all.begin(), all.end(),
-                                            [&given](note_kind k) { return given == note_text(k); });
-                if (n != all.end())
-                    r.note = *n;
+                if (given == note_text(note_kind::reconstructed))
+                    r.note = note_kind::reconstructed;
             },
             {"only of park2016-1 to -4: that they are reconstructed"});
     io.with("fit", make_matrix(r.fit),
