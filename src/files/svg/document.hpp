@@ -24,9 +24,6 @@
 
 namespace tactor::detail {
 
-/// Larger numbers are nonsense in any unit.
-inline constexpr double max_user_units = 1e9;
-
 inline constexpr double mm_per_px = 25.4 / 96.0;
 
 struct svg_length {
@@ -40,10 +37,7 @@ struct svg_view_box {
     double height = 0.0;
 };
 
-/// Reads one number. Like all readers of values here, throws value_fault.
-double svg_number(std::string_view text);
-/// Reads numbers with blanks or commas between. Skips `unit` behind each.
-std::vector<double> svg_numbers(std::string_view text, std::string_view unit = {});
+/// Reads a length. Like all readers of values here, throws value_fault.
 svg_length parse_svg_length(std::string_view text);
 svg_view_box parse_svg_view_box(std::string_view text);
 /// Reads a list of transforms in small letters, also with the deg and px of a style. A px is a user unit, as
