@@ -23,7 +23,6 @@ constexpr std::chrono::seconds linger{1};
 constexpr unsigned most_large = 4;
 
 constexpr std::size_t chunk_bytes = 16U << 10;
-constexpr std::size_t most_block_bytes = 128U << 10; // of a line that is large
 constexpr std::size_t most_drained = 128U << 10;
 constexpr std::size_t lines_at_once = 16;
 constexpr char line_end = '\n';
@@ -53,10 +52,10 @@ void connection::handle(std::string_view text)
         read();
 }
 
-void connection::handle_large(std::vector<std::string> parts)
+void connection::handle_large(std::string text)
 {
     ++large_;
-    handlers_.large(std::move(parts), [self = shared_from_this()](bool go_on) {
+    handlers_.large(std::move(text), [self = shared_from_this()](bool go_on) {
         const bool waited = self->large_-- == most_large;
         if (self->handled(go_on) && waited)
             self->read();
@@ -230,37 +229,24 @@ void line_connection::next_line()
 {
     if (!reads())
         return;
-    std::size_t size = block_bytes_ + scanned_ - begin_;
-    const std::size_t begin = std::exchange(begin_, ++scanned_);
-    const char last = scanned_ - begin > 1 ? text_[scanned_ - 2]
-                      : blocks_.empty()    ? '\0'
-                                           : blocks_.back().back();
-    const bool has_return = last == '\r';
-    size -= has_return ? 1 : 0;
-    if (size > limits().message_bytes)
+    std::string_view line = std::string_view(text_).substr(begin_, scanned_ - begin_);
+    if (line.ends_with('\r'))
+        line.remove_suffix(1);
+    begin_ = ++scanned_;
+    if (line.size() > limits().message_bytes)
         return fail(connection_fault::too_long);
     message_ends();
-    if (size <= large_message)
-        return handle({text_.data() + begin, size});
-    std::vector<std::string> parts = std::exchange(blocks_, {});
-    parts.push_back(text_.substr(begin, scanned_ - 1 - begin));
-    block_bytes_ = 0;
-    if (has_return) // which may be all of the last part
-        (parts.back().empty() ? parts[parts.size() - 2] : parts.back()).pop_back();
-    handle_large(std::move(parts));
+    if (line.size() <= large_message)
+        return handle(line);
+    handle_large(std::string(line));
 }
 
 void line_connection::read_more()
 {
     text_.erase(0, std::exchange(begin_, 0));
     const bool may_end = text_.ends_with('\r');
-    if (block_bytes_ + text_.size() > limits().message_bytes + (may_end ? 1 : 0))
+    if (text_.size() > limits().message_bytes + (may_end ? 1 : 0))
         return fail(connection_fault::too_long);
-    // Keeps blocks: one string would be copied as it grows, and all peers' may grow in one turn.
-    if (text_.size() + chunk_bytes > most_block_bytes) {
-        block_bytes_ += text_.size();
-        blocks_.push_back(std::exchange(text_, {}));
-    }
     if (text_.empty())
         std::string().swap(text_); // returns its memory
     scanned_ = text_.size();
@@ -275,7 +261,7 @@ void line_connection::read_more()
                            });
         return calls().input_ended();
     }
-    if (block_bytes_ + text_.size() != 0)
+    if (!text_.empty())
         message_begins();
     socket_.async_read_some(asio::buffer(chunk_), [this, self = shared_from_this()](
                                                       const boost::system::error_code& e, std::size_t n) {
@@ -288,7 +274,7 @@ void line_connection::read_more()
             text_.append(chunk_.data(), n);
             // The end of the input also ends a line: an incomplete one is no JSON, so the peer gets an
             // error.
-            if (over_ && block_bytes_ + text_.size() != 0)
+            if (over_ && !text_.empty())
                 text_ += line_end;
             read();
         });

@@ -75,10 +75,9 @@ struct peer_handlers {
     /// Returns true once the first message, which the peer owes, has come. None: any message that is not
     /// empty counts.
     std::function<bool()> met = {};
-    /// Handles a message above `large_message`, which comes in parts, and calls `done` later with the result
-    /// that `message` would return. Smaller ones are handled in the meantime. Owed where a message may be
-    /// that large.
-    std::function<void(std::vector<std::string> parts, std::function<void(bool)> done)> large = {};
+    /// Handles a message above `large_message`, and calls `done` later with the result that `message` would
+    /// return. Smaller ones are handled in the meantime. Owed where a message may be that large.
+    std::function<void(std::string text, std::function<void(bool)> done)> large = {};
     /// Lines: the peer sends no more; it may still read.
     std::function<void()> input_ended = {};
     /// Lines: called before the connection closes for any fault but `gone`; send() still works.
@@ -140,7 +139,7 @@ protected:
     /// Handles a message, and reads on.
     void handle(std::string_view text);
     /// Gives a large one away, and reads on.
-    void handle_large(std::vector<std::string> parts);
+    void handle_large(std::string text);
     /// Notes that a part of a message has come.
     void message_begins();
     /// Notes that a message is complete.
@@ -216,9 +215,7 @@ private:
 
     socket_type socket_;
     std::vector<char> chunk_;
-    std::vector<std::string> blocks_; ///< the start of a line that is longer than a block
-    std::size_t block_bytes_ = 0;     ///< of them
-    std::string text_;        ///< the rest of it, or lines that were not handled, and the start of one
+    std::string text_;        ///< lines that were not handled, and the start of one
     std::size_t begin_ = 0;   ///< start of the next line in it
     std::size_t scanned_ = 0; ///< no line ends between begin_ and this place
     bool over_ = false;       ///< the peer sends no more

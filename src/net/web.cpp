@@ -276,9 +276,7 @@ void web_connection::received()
         buffer_.shrink_to_fit();
     if (text.size() <= large_message)
         return handle(text);
-    std::vector<std::string> parts;
-    parts.push_back(std::move(text));
-    handle_large(std::move(parts));
+    handle_large(std::move(text));
     if (!is_reading_)
         look_after(false);
 }

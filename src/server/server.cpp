@@ -288,8 +288,8 @@ private:
                 .closed = [this, n] { closed(*n); },
                 .met = [this, n] { return service_.is_admitted(*n); },
                 .large =
-                    [this, n](std::vector<std::string> parts, std::function<void(bool)> done) {
-                        service_.receive_large(*n, std::move(parts), std::move(done));
+                    [this, n](std::string text, std::function<void(bool)> done) {
+                        service_.receive_large(*n, std::move(text), std::move(done));
                     }};
     }
 

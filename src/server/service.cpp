@@ -33,19 +33,17 @@ net::rpc_message within_memory(Parse parse)
     }
 }
 
-// A message that came in parts, while it is parsed on another thread.
-struct message_in_parts {
-    std::vector<std::string> parts;
+// A large message, while it is parsed on another thread.
+struct message_aside {
+    std::string text;
     std::size_t bytes = 0;
     net::rpc_message message = {};
 
     net::rpc_message parse(const service_limits& l)
     {
-        std::string text;
-        for (const std::string& part : std::exchange(parts, {}))
-            text += part;
-        bytes = text.size();
-        net::rpc_message m = net::parse_rpc(text, l.max_nesting);
+        const std::string whole = std::exchange(text, {});
+        bytes = whole.size();
+        net::rpc_message m = net::parse_rpc(whole, l.max_nesting);
         for (auto& part : m.parts)
             if (auto* r = std::get_if<net::rpc_request>(&part); r != nullptr && r->params.is_object())
                 pack_points(r->params);
@@ -218,8 +216,7 @@ bool service::receive(client_number number, std::string_view text)
 }
 
 // Parses on a planner's thread. What stops come in the meantime holds for the message.
-void service::receive_large(client_number number, std::vector<std::string> parts,
-                            std::function<void(bool)> done)
+void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
 {
     client* c = find(number);
     if (c == nullptr || !c->greeted)
@@ -228,7 +225,7 @@ void service::receive_large(client_number number, std::vector<std::string> parts
         send(*c, net::error_reply(nullptr, no_hello()));
         return done(true);
     }
-    const auto l = std::make_shared<message_in_parts>(message_in_parts{std::move(parts)});
+    const auto l = std::make_shared<message_aside>(message_aside{std::move(text)});
     ++c->unanswered;
     planners_.add(
         number, {.work = [this, l] { l->message = within_memory([&] { return l->parse(options_.limits); }); },

@@ -98,9 +98,9 @@ public:
     client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
-    /// Handles a large message in parts, which another thread parses. Calls `done` with the result in this
+    /// Handles a large message, which another thread parses. Calls `done` with the result in this
     /// thread.
-    void receive_large(client_number number, std::vector<std::string> parts, std::function<void(bool)> done);
+    void receive_large(client_number number, std::string text, std::function<void(bool)> done);
     /// Ends the live strokes of a client that sends no more. Returns true if no message to it is outstanding.
     bool input_ended(client_number number);
     /// Sets the handler for the moment when no message to such a client is outstanding any more.

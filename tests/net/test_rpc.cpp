@@ -56,10 +56,8 @@ struct pair {
              .closed = [this] { closed = true; },
              .met = is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>(),
              .large =
-                 [this](const std::vector<std::string>& parts, std::function<void(bool)> done) {
-                     std::string& whole = lines.emplace_back();
-                     for (const std::string& part : parts)
-                         whole += part;
+                 [this](std::string text, std::function<void(bool)> done) {
+                     lines.push_back(std::move(text));
                      large_done.push_back(std::move(done));
                  },
              .input_ended = [this] { input_over = true; },

@@ -188,8 +188,7 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
         points.push_back({i * 1e-4, 20, 20});
     std::vector<bool> done;
     const auto large = [&](const std::string& text) {
-        rig.all->receive_large(c.number, {text.substr(0, 9), text.substr(9)},
-                               [&](bool go_on) { done.push_back(go_on); });
+        rig.all->receive_large(c.number, text, [&](bool go_on) { done.push_back(go_on); });
         const std::size_t before = done.size();
         rig.until([&] { return done.size() != before; });
     };
@@ -211,7 +210,7 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
     CHECK(c.box->all.back().dump().size() < 1500);
     CHECK(done == std::vector{true, true, true});
     const auto stranger = rig.client(server::client_kind::network);
-    rig.all->receive_large(stranger.number, {noise}, [&](bool go_on) { done.push_back(go_on); });
+    rig.all->receive_large(stranger.number, noise, [&](bool go_on) { done.push_back(go_on); });
     rig.until([&] { return done.size() == 4; });
     CHECK_FALSE(done.back()); // no hello
 }
