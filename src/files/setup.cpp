@@ -65,7 +65,7 @@ written_value read_value(const toml_table& t, const toml_table::said_key& e, con
     return {std::string(e.key), t.plain(n, e.key), in_list, t.where(n), e.key_at};
 }
 
-constexpr bounds any_level_db{min_db, 0.0};
+constexpr bounds limit_db{min_db, 0.0};
 constexpr bounds spread_db{0.0, -min_db};
 constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 
@@ -78,19 +78,12 @@ calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*
         t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, entries[i]->where().text()),
                "it is measured once in a calibration");
     entries[i] = &t;
-    calibrated_tactor r{i, t.number("threshold_dbfs", any_level_db), t.number("sd_db", spread_db),
-                        t.need(t.whole("trials", 0, any_number), "trials")};
-    for (const char* key : {"check_right", "check_below_right", "staircases"})
-        t.whole(key, 0, any_number);
-    if (const toml::array* all = t.list("reversals_dbfs", "levels"))
-        for (const toml::node& n : *all)
-            t.to_number(n, "reversals_dbfs", any_level_db);
-    return r;
+    return {i, t.number("threshold_dbfs", limit_db), t.number("sd_db", spread_db),
+            t.need(t.whole("trials", 0, any_number), "trials")};
 }
 
 constexpr unsigned longest_chain = 16;
 constexpr bounds anywhere{-max_mm, max_mm};
-constexpr bounds limit_db{min_db, 0.0};
 constexpr bounds body_mm{1.0, 3000.0};
 constexpr bounds displacement_um{0.0, max_displacement_um, true};
 

@@ -281,28 +281,23 @@ pace_keys read_pace(const toml_table& t)
     return p;
 }
 
-/// Returns a movement along a path at the pace in the file; `own_s` is the time of a preset, for a file that
-/// gives none.
+/// Returns a movement along a path at the pace in the file, or in `usual_s`.
 trajectory make_motion(const toml_table& t, std::string_view kind, const path& way, const pace_keys& keys,
-                       std::optional<double> own_s)
+                       double usual_s)
 {
-    const bool speeds = !keys.moves.speed_mm_s.empty();
-    std::optional<double> seconds = keys.time_s(way.length_mm());
-    std::string_view key = keys.speed_mm_s || speeds ? "speed_mm_s" : keys.duration_s ? "duration_s" : kind;
-    if (!seconds && !speeds)
-        seconds = own_s.value_or(way.length_mm() / default_speed_mm_s);
     movement m = keys.moves;
-    m.duration_s = seconds;
+    m.duration_s = keys.time_s(way.length_mm());
+    if (!m.duration_s && m.speed_mm_s.empty())
+        m.duration_s = usual_s;
     // A speed, and a preset's own time, are of the movement: pauses come on top.
-    if (seconds && !keys.duration_s)
+    if (m.duration_s && !keys.duration_s)
         for (const rest& r : m.rests)
             *m.duration_s += r.time_s;
-    if (!m.rests.empty())
-        key = "pauses";
-    return t.at_key(key, [&] {
-        return keys.uneven.empty() ? trajectory::along(way, *seconds, keys.intensity)
-                                   : trajectory::along(way, m, keys.intensity);
-    });
+    const std::string_view key = !m.rests.empty()      ? "pauses"
+                                 : t.has("speed_mm_s") ? "speed_mm_s"
+                                 : keys.duration_s     ? "duration_s"
+                                                       : kind;
+    return t.at_key(key, [&] { return trajectory::along(way, m, keys.intensity); });
 }
 
 path read_points(const toml_table& t)
@@ -326,8 +321,8 @@ path read_arc(const toml_table& t)
     return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
-// Reads a recording, whose intensities are multiplied by `intensity`. Adds remarks to `warnings`.
-trajectory read_timed(const toml_table& t, double intensity, double intensity_max,
+// Reads a recording, in its own time unless the file gives another. Adds remarks to `warnings`.
+trajectory read_timed(const toml_table& t, const pace_keys& keys, double intensity_max,
                       std::vector<std::string>& warnings)
 {
     const toml::node* row = t.node("timed");
@@ -352,18 +347,12 @@ trajectory read_timed(const toml_table& t, double intensity, double intensity_ma
     std::vector<timed_point> points = points_read.take();
     warnings = points_read.warnings();
     for (timed_point& p : points)
-        p.intensity *= intensity;
-    return t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
-}
-
-// Returns a movement that has its own time in the time that the file gives.
-trajectory with_pace(const toml_table& t, const pace_keys& p, trajectory own)
-{
-    const auto seconds = p.time_s(own.length_mm());
-    if (!seconds)
-        return own;
-    const char* key = p.speed_mm_s ? "speed_mm_s" : "duration_s";
-    return t.at_key(key, [&] { return own.with_duration(*seconds); });
+        p.intensity *= keys.intensity;
+    const trajectory own = t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
+    const auto seconds = keys.time_s(own.length_mm());
+    return seconds ? t.at_key(keys.speed_mm_s ? "speed_mm_s" : "duration_s",
+                              [&] { return own.with_duration(*seconds); })
+                   : own;
 }
 
 // Reads name, movement and carrier of a stroke.
@@ -383,7 +372,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
                    fmt::format("timed points have times and intensities of their own, and {} is for a path",
                                keys.uneven),
                    "leave it out, or give the path as points");
-        s.motion = with_pace(t, keys, read_timed(t, keys.intensity, intensity_max, s.warnings));
+        s.motion = read_timed(t, keys, intensity_max, s.warnings);
         return s;
     }
     if (kind == "preset") {
@@ -393,8 +382,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
         s.note = preset.note;
         s.made_for = preset.made_for;
         const path& way = std::get<drawn_path>(access::of(preset.motion).law).way;
-        s.motion = keys.uneven.empty() ? with_pace(t, keys, preset.motion.with_intensity(keys.intensity))
-                                       : make_motion(t, kind, way, keys, preset.motion.duration_s());
+        s.motion = make_motion(t, kind, way, keys, preset.motion.duration_s());
         s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
         return s;
     }
@@ -402,7 +390,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
                      : kind == "arc"
                          ? read_arc(t)
                          : t.at_key(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
-    s.motion = make_motion(t, kind, way, keys, {});
+    s.motion = make_motion(t, kind, way, keys, way.length_mm() / default_speed_mm_s);
     s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
     s.usual_pace = !keys.duration_s && !s.speed_mm_s;
     if (s.usual_pace)
