@@ -223,25 +223,9 @@ std::vector<toml_table::said_key> toml_table::entries() const
     return all;
 }
 
-bool toml_table::has(std::string_view key) const
-{
-    return table_->contains(key);
-}
-
-const toml::node* toml_table::node(std::string_view key) const
-{
-    return table_->get(key);
-}
-
 source_place toml_table::where(const toml::node& n) const
 {
     return {*file_, n.source().begin.line, n.source().begin.column};
-}
-
-source_place toml_table::where() const
-{
-    // The root begins nowhere in particular.
-    return where(*table_);
 }
 
 source_place toml_table::where(std::string_view key) const

@@ -48,11 +48,11 @@ public:
     /// Returns the keys in the order of the file.
     std::vector<said_key> entries() const;
 
-    bool has(std::string_view key) const;
+    bool has(std::string_view key) const { return node(key) != nullptr; }
     const std::string& title() const noexcept { return title_; }
 
-    source_place where() const;                     ///< where the table begins
-    source_place where(std::string_view key) const; ///< where the value of a key begins
+    source_place where() const { return where(*table_); } ///< where the table begins
+    source_place where(std::string_view key) const;       ///< where the value of a key begins
     source_place where(const toml::node& n) const;
 
     /// Return the value; nothing if the key is missing. All throw error for a wrong type or range.
@@ -77,7 +77,7 @@ public:
     /// Returns an array of tables, [[key]]; an empty list if there is none.
     std::vector<toml_table> tables(std::string_view key) const;
     const toml::array* list(std::string_view key, std::string_view of_what) const;
-    const toml::node* node(std::string_view key) const;
+    const toml::node* node(std::string_view key) const { return table_->get(key); }
 
     /// Reads [x, y] in mm.
     std::optional<point> place(std::string_view key) const;

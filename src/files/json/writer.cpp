@@ -34,12 +34,4 @@ void json_writer::begin(const char* name)
     out_ += "\":";
 }
 
-void json_writer::pass_on()
-{
-    if (sink_ == nullptr)
-        return;
-    (*sink_)(out_);
-    out_.clear();
-}
-
 } // namespace tactor::files

@@ -127,7 +127,10 @@ public:
         for_each([&](const T& v) {
             out_ += std::exchange(first, false) ? "\n  " : ",\n  ";
             braces([&](auto& io) { each(io, v); });
-            pass_on();
+            if (sink_ == nullptr)
+                return;
+            (*sink_)(out_);
+            out_.clear();
         });
         out_ += ']';
     }
@@ -154,10 +157,11 @@ public:
             append_number(out_, v);
         else if constexpr (std::is_enum_v<T>)
             append_text(out_, to_string(v));
+        else if constexpr (std::same_as<T, std::string>)
+            append_text(out_, v);
         else
             braces([&v](auto& io) { members(io, v); });
     }
-    void put(const std::string& text) { append_text(out_, text); }
     template <class T>
     void put(const std::optional<T>& v)
     {
@@ -189,7 +193,6 @@ public:
 
 private:
     void begin(const char* name);
-    void pass_on();
     template <class Body>
     void braces(const Body& body)
     {

@@ -330,11 +330,6 @@ plan_file read_from(Input&& in, const std::string& name, recordings_kind recordi
 
 } // namespace
 
-bool is_plan_file(const std::string& argument)
-{
-    return std::filesystem::path(argument).extension() == ".json";
-}
-
 plan_file load_plans(const std::string& file)
 {
     std::ifstream in(file, std::ios::binary);

@@ -79,8 +79,11 @@ struct plan_file {
     render_options render; ///< with rate, channels and marker
 };
 
-/// Returns true if a STROKE argument names such a file: if its extension is .json.
-bool is_plan_file(const std::string& argument);
+/// Returns true if a STROKE argument names such a file.
+inline bool is_plan_file(std::string_view argument) noexcept
+{
+    return argument.ends_with(".json");
+}
 
 /// Reads burst by burst, so that the text is never in memory. Blocks on the file system.
 /// \throws error (bad_input) with the line and column, or the field.
