@@ -374,13 +374,6 @@ TEST_CASE("a file of more than 16 MB is refused, an endless one too")
     CHECK(file_complaint("/dev/zero") == "/dev/zero: longer than 16 MB (is it the right file?)");
 }
 
-TEST_CASE("messages name the file as it was given")
-{
-    const folder f;
-    const fs::path bad = f.write("bad.toml", "\n\n[output]\n rat = 1\n");
-    CHECK(file_complaint(bad) == bad.string() + ":4:2: unknown key 'rat' in [output] (did you mean 'rate'?)");
-}
-
 TEST_CASE("an array from another file, relative to the file that names it")
 {
     const folder f;

@@ -48,11 +48,7 @@ struct pair {
         s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
         end = std::make_shared<line_connection>(std::move(s), l);
         end->start(
-            {.message =
-                 [this](std::string_view t) {
-                     lines.emplace_back(t);
-                     return true;
-                 },
+            {.message = [this](std::string_view t) { return take(t); },
              .closed = [this] { closed = true; },
              .met = is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>(),
              .large =
@@ -61,7 +57,11 @@ struct pair {
                      large_done.push_back(std::move(done));
                  },
              .input_ended = [this] { input_over = true; },
-             .fault = [this](connection_fault f) { faults.push_back(f); }});
+             .fault =
+                 [this](connection_fault f) {
+                     faults.push_back(f);
+                     end->send("why");
+                 }});
     }
     ~pair()
     {
@@ -86,6 +86,10 @@ struct pair {
     int peer = -1;
     std::shared_ptr<line_connection> end;
     std::vector<std::string> lines;
+    std::function<bool(std::string_view)> take = [this](std::string_view line) {
+        lines.emplace_back(line);
+        return true;
+    };
     std::vector<connection_fault> faults;
     std::vector<std::function<void(bool)>> large_done; ///< of each large line
     bool input_over = false;
@@ -456,28 +460,15 @@ TEST_CASE("a message beyond memory drops only its peer")
 {
     const auto both = std::make_shared<boost::asio::io_context>();
     pair other({}, both);
-    // The handler fails like an allocation.
-    int fds[2] = {-1, -1};
-    REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fds) == 0);
-    line_connection::socket_type s(*both);
-    s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
-    const auto end = std::make_shared<line_connection>(std::move(s), message_limits{});
-    std::vector<connection_fault> faults;
-    end->start({.message = [](std::string_view) -> bool { throw std::bad_alloc(); },
-                .closed = [] {},
-                .fault =
-                    [&](connection_fault f) {
-                        faults.push_back(f);
-                        end->send("why");
-                    }});
-    REQUIRE(::write(fds[1], "x\n", 2) == 2);
+    pair p({}, both);
+    p.take = [](std::string_view) -> bool { throw std::bad_alloc(); }; // as an allocation fails
+    p.write("x\n");
     other.write("one\n");
-    other.until([&] { return other.lines.size() == 1 && !faults.empty(); });
+    other.until([&] { return other.lines.size() == 1 && !p.faults.empty(); });
     both->poll();
-    CHECK(faults == std::vector<connection_fault>{connection_fault::memory});
+    CHECK(p.faults == std::vector<connection_fault>{connection_fault::memory});
     char bytes[10];
-    CHECK(::read(fds[1], bytes, sizeof bytes) == 4);
-    ::close(fds[1]);
+    CHECK(::read(p.peer, bytes, sizeof bytes) == 4);
 }
 
 } // namespace rpc_test
