@@ -346,134 +346,113 @@ void check_lines(const setup& s)
                         "give each purpose a GPIO line of its own");
 }
 
-void read_output(const toml_table& root, located_setup& out)
+void read_output(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("output", "[output]", "[output]");
-    if (!t)
-        return;
-    t->only({"pcm", "rate", "channels", "period_frames", "periods"});
+    t.only({"pcm", "rate", "channels", "period_frames", "periods"});
     output_settings& o = out.contents.output;
-    if (t->has("pcm")) {
-        o.pcm = t->text("pcm");
-        o.pcm_at = t->where("pcm");
+    if (t.has("pcm")) {
+        o.pcm = t.text("pcm");
+        o.pcm_at = t.where("pcm");
         o.pcm_included = false;
     }
-    if (t->has("rate"))
-        o.rate = t->whole("rate", bounds_of::rate_hz);
-    if (t->has("channels")) {
-        o.channels = t->whole("channels", bounds_of::device_channels);
-        out.channels_at = t->where("channels");
+    if (t.has("rate"))
+        o.rate = t.whole("rate", bounds_of::rate_hz);
+    if (t.has("channels")) {
+        o.channels = t.whole("channels", bounds_of::device_channels);
+        out.channels_at = t.where("channels");
     }
-    if (t->has("period_frames"))
-        o.period_frames = t->whole("period_frames", {double(least_period_frames(o.rate.value_or(48'000))),
-                                                     bounds_of::period_frames.high});
-    if (t->has("periods"))
-        o.periods = t->whole("periods", bounds_of::periods);
+    if (t.has("period_frames"))
+        o.period_frames = t.whole("period_frames", {double(least_period_frames(o.rate.value_or(48'000))),
+                                                    bounds_of::period_frames.high});
+    if (t.has("periods"))
+        o.periods = t.whole("periods", bounds_of::periods);
 }
 
-void read_amplifier(const toml_table& root, located_setup& out)
+void read_amplifier(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("amplifier", "[amplifier]", "[amplifier]");
-    if (!t)
-        return;
-    t->only({"line", "active_low", "settle_ms"});
-    const toml_table line = t->need(t->table("line", "line", "line = { chip, offset } or { name }"), "line");
+    t.only({"line", "active_low", "settle_ms"});
+    const toml_table line = t.need(t.table("line", "line", "line = { chip, offset } or { name }"), "line");
     amplifier_settings a;
     line.only({"chip", "offset", "name"});
     a.line = read_line(line);
-    a.active_low = t->boolean("active_low").value_or(a.active_low);
-    a.settle_s = seconds(t->number("settle_ms", {0.0, 10000.0})).value_or(a.settle_s);
+    a.active_low = t.boolean("active_low").value_or(a.active_low);
+    a.settle_s = seconds(t.number("settle_ms", {0.0, 10000.0})).value_or(a.settle_s);
     out.contents.amplifier = a;
 }
 
-void read_sync(const toml_table& root, located_setup& out)
+void read_sync(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("sync", "[sync]", "[sync]");
-    if (!t)
-        return;
-    t->only({"out", "channel", "in"});
+    t.only({"out", "channel", "in"});
     sync_settings s;
-    if (const auto pulse = t->table("out", "out", "out = { chip, offset, pulse_ms }")) {
+    if (const auto pulse = t.table("out", "out", "out = { chip, offset, pulse_ms }")) {
         pulse->only({"chip", "offset", "name", "pulse_ms"});
         s.out = read_line(*pulse);
         s.pulse_s = seconds(pulse->number("pulse_ms", {0.0, 10000.0, true})).value_or(s.pulse_s);
     }
-    if (const auto edge = t->table("in", "in", "in = { chip, offset, edge }")) {
+    if (const auto edge = t.table("in", "in", "in = { chip, offset, edge }")) {
         edge->only({"chip", "offset", "name", "edge", "debounce_ms", "pull"});
         s.in = read_line(*edge);
         s.edge = edge->kind<edge_kind>("edge").value_or(s.edge);
         s.debounce_s = seconds(edge->number("debounce_ms", {0.0, 10000.0})).value_or(s.debounce_s);
         s.pull = edge->kind<pull_kind>("pull").value_or(s.pull);
     }
-    s.channel = t->whole("channel", bounds_of::marker_channel);
-    out.sync_channel_at = t->where("channel");
+    s.channel = t.whole("channel", bounds_of::marker_channel);
+    out.sync_channel_at = t.where("channel");
     out.contents.sync = s;
 }
 
-void read_limits(const toml_table& root, located_setup& out)
+void read_limits(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("limits", "[limits]", "[limits]");
-    if (!t)
-        return;
-    t->only({"power_dbfs", "max_drive_s", "window_s"});
+    t.only({"power_dbfs", "max_drive_s", "window_s"});
     limit_settings l;
-    l.power_dbfs = t->number("power_dbfs", bounds_of::power_dbfs);
-    l.max_drive_s = t->number("max_drive_s", bounds_of::drive_s);
-    l.window_s = t->number("window_s", bounds_of::drive_s);
+    l.power_dbfs = t.number("power_dbfs", bounds_of::power_dbfs);
+    l.max_drive_s = t.number("max_drive_s", bounds_of::drive_s);
+    l.window_s = t.number("window_s", bounds_of::drive_s);
     out.contents.limits = l;
 }
 
 // Reads [defaults] as it is written.
-void read_defaults(const toml_table& root, setup& out)
+void read_defaults(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("defaults", "[defaults]", "[defaults]");
-    if (!t)
-        return;
-    for (const toml_table::said_key& e : t->entries()) {
-        std::erase_if(out.defaults, [&e](const written_value& d) { return d.name == e.key; });
-        out.defaults.push_back(read_value(*t, e, *e.value, false));
+    for (const toml_table::said_key& e : t.entries()) {
+        std::erase_if(out.contents.defaults, [&e](const written_value& d) { return d.name == e.key; });
+        out.contents.defaults.push_back(read_value(t, e, *e.value, false));
     }
 }
 
 // Reads [serve] as it is written.
-void read_serve(const toml_table& root, setup& out)
+void read_serve(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("serve", "[serve]", "[serve]");
-    if (!t)
-        return;
-    out.serve.clear();
-    for (const toml_table::said_key& e : t->entries())
+    out.contents.serve.clear();
+    for (const toml_table::said_key& e : t.entries())
         if (const toml::array* list = e.value->as_array())
             for (const toml::node& n : *list)
-                out.serve.push_back(read_value(*t, e, n, true));
+                out.contents.serve.push_back(read_value(t, e, n, true));
         else
-            out.serve.push_back(read_value(*t, e, *e.value, false));
+            out.contents.serve.push_back(read_value(t, e, *e.value, false));
 }
 
 // Reads and checks [calibration] and [[calibration.tactor]], which say how thresholds were measured, after
 // the array. Keeps the participant and the carrier.
-void read_calibration(const toml_table& root, located_setup& out)
+void read_calibration(const toml_table& t, located_setup& out)
 {
-    const auto t = root.table("calibration", "[calibration]", "[calibration]");
-    if (!t)
-        return;
     if (!out.contents.array)
-        t->fail("there is no array that it is of",
-                "it stands in an array file, as {command:calibrate} writes it");
-    t->only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date",
-             "seed", "simulated", "tactor"});
+        t.fail("there is no array that it is of",
+               "it stands in an array file, as {command:calibrate} writes it");
+    t.only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date", "seed",
+            "simulated", "tactor"});
     calibration_origin r;
-    r.participant = t->need(t->text("participant"), "participant");
-    r.method = t->need(t->choice("method", {"staircase", "adjustment"}), "method");
-    r.rule = t->choice("rule", {"1up3down", "1up2down"});
-    r.carrier_hz = t->need(t->number("carrier_hz", bounds_of::carrier_hz), "carrier_hz");
-    r.interval_s = t->need(t->number("interval_s", bounds_of::interval_s), "interval_s");
-    r.feedback = t->boolean("feedback");
-    r.masker = t->text("masker");
-    r.date = t->text("date");
-    r.seed = t->whole("seed", 0, any_number);
-    r.simulated = t->boolean("simulated").value_or(false);
-    const std::vector<toml_table> entries = t->tables("tactor");
+    r.participant = t.need(t.text("participant"), "participant");
+    r.method = t.need(t.choice("method", {"staircase", "adjustment"}), "method");
+    r.rule = t.choice("rule", {"1up3down", "1up2down"});
+    r.carrier_hz = t.need(t.number("carrier_hz", bounds_of::carrier_hz), "carrier_hz");
+    r.interval_s = t.need(t.number("interval_s", bounds_of::interval_s), "interval_s");
+    r.feedback = t.boolean("feedback");
+    r.masker = t.text("masker");
+    r.date = t.text("date");
+    r.seed = t.whole("seed", 0, any_number);
+    r.simulated = t.boolean("simulated").value_or(false);
+    const std::vector<toml_table> entries = t.tables("tactor");
     std::vector<const toml_table*> seen(out.contents.array->tactors.size());
     for (const toml_table& e : entries)
         r.tactors.push_back(read_tactor(e, seen));
@@ -545,13 +524,16 @@ located_setup read_setup(std::string_view text, const setup_source& source)
 
     located_setup out;
     read_array(root, source, out);
-    read_calibration(root, out);
-    read_output(root, out);
-    read_amplifier(root, out);
-    read_sync(root, out);
-    read_limits(root, out);
-    read_serve(root, out.contents);
-    read_defaults(root, out.contents);
+    constexpr std::pair<const char*, void (*)(const toml_table&, located_setup&)> tables[] = {
+        {"calibration", read_calibration}, {"output", read_output},
+        {"amplifier", read_amplifier},     {"sync", read_sync},
+        {"limits", read_limits},           {"serve", read_serve},
+        {"defaults", read_defaults}};
+    for (const auto& [name, read] : tables) {
+        const std::string title = fmt::format("[{}]", name);
+        if (const auto t = root.table(name, title, title))
+            read(*t, out);
+    }
 
     if (out.contents.array)
         validate(*out.contents.array);
