@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -52,15 +53,6 @@ std::optional<waveform> find_beside(const std::string& file, const plan_sound& s
     }
 }
 
-// Refuses a recording that has changed: other samples would sound under the plan's name.
-void check_recording(const recording_facts& f, const recording& r)
-{
-    if (!is_same(f, r))
-        throw error(error_kind::bad_input, source_place{r.file},
-                    "the recording has changed since the plan was made",
-                    "plan the stroke again, or bring the old file back");
-}
-
 // Reads the waveform, from its file or the one beside the plan.
 waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings_kind recordings)
 {
@@ -79,8 +71,11 @@ void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recording
 {
     if (s.waveform)
         p.wave = read_waveform(s, stroke, recordings);
-    if (p.wave.recorded && s.recording)
-        check_recording(*s.recording, *p.wave.recorded);
+    // Other samples would sound under the plan's name.
+    if (p.wave.recorded && s.recording && !is_same(*s.recording, *p.wave.recorded))
+        throw error(error_kind::bad_input, source_place{p.wave.recorded->file},
+                    "the recording has changed since the plan was made",
+                    "plan the stroke again, or bring the old file back");
     p.wave.seed = s.noise_seed.value_or(p.wave.seed);
     p.wave.texture = s.texture.value_or(p.wave.texture);
     p.wave.texture_mm = s.texture_mm.value_or(p.wave.texture_mm);
@@ -95,15 +90,16 @@ void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recording
 }
 
 // Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
-void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
+void check_amplitudes(const json_value& f, const std::string& name, const plan& p, double intensity,
+                      std::span<const drive> drives)
 {
     constexpr double rounding = 1e-9;
     if (!detail::find_kind<phantom_kind>(p.phantom))
         return;
-    for (const drive& d : b.drives)
-        if (d.amplitude > b.intensity * (1.0 + rounding))
+    for (const drive& d : drives)
+        if (d.amplitude > intensity * (1.0 + rounding))
             f[name].refuse(fmt::format("drives tactor {} at {}, above its intensity of {}", d.tactor,
-                                       d.amplitude, b.intensity));
+                                       d.amplitude, intensity));
 }
 
 // Drives and their order as planners make them.
@@ -122,18 +118,16 @@ void check_bursts(const json_value& f, const array& a, const plan& p, const std:
             if (k > 0 && b.drives[k].tactor <= b.drives[k - 1].tactor)
                 refuse("its drives are not in order of tactor");
         }
-        check_amplitudes(f, fmt::format("bursts[{}]", i), p, b);
+        check_amplitudes(f, fmt::format("bursts[{}]", i), p, b.intensity, b.drives);
     }
 }
 
 void check_samples(const json_value& f, const array& a, const plan& p, const curve_samples& samples)
 {
-    burst b;
     for (std::size_t i = 0; i < samples.ends.size(); ++i) {
-        const drive* const first = samples.drives.data() + (i == 0 ? 0 : samples.ends[i - 1]);
-        b.intensity = samples.intensities[i];
-        b.drives.assign(first, samples.drives.data() + samples.ends[i]);
-        check_amplitudes(f, fmt::format("points[{}]", i), p, b);
+        const std::size_t first = i == 0 ? 0 : samples.ends[i - 1];
+        check_amplitudes(f, fmt::format("points[{}]", i), p, samples.intensities[i],
+                         std::span(samples.drives).subspan(first, samples.ends[i] - first));
     }
     for (const drive& d : samples.drives)
         if (d.tactor >= a.tactors.size())
@@ -166,7 +160,6 @@ void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> burst
 stroke read_stroke(const json_value& f, const plan_parts& parts)
 {
     const plan& p = parts.plan;
-    const auto& moved = parts.moved;
     std::vector<timed_point> way;
     const auto add = [&](double t_s, const burst& b) {
         if (way.empty())
@@ -175,15 +168,14 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
             way.push_back({t_s, b.position, b.intensity});
     };
     burst last;
-    const bool elsewhere = moved && !moved->taps.empty(); // silent bursts are where they were asked for
-    for (const tap& t : elsewhere ? moved->taps : std::vector<tap>{}) {
-        last.position = t.target;
-        add(t.onset_s, last);
-    }
-    for (const burst& b : elsewhere ? std::vector<burst>{} : p.bursts) {
-        add(b.tau_s.value_or(b.onset_s), b);
-        last = b;
-    }
+    if (parts.moved && !parts.moved->taps.empty())
+        for (const tap& t : parts.moved->taps) {
+            last.position = t.target;
+            add(t.onset_s, last);
+        }
+    else
+        for (const burst& b : p.bursts)
+            add(b.tau_s.value_or(b.onset_s), last = b);
     // For a picture: no more points than people can tell apart.
     const std::uint64_t step = p.curve ? 1 + p.curve->size() / most_way_points : 1;
     for (std::uint64_t k = 0; p.curve && k < p.curve->size(); k += step) {
@@ -197,15 +189,12 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
     stroke s{.name = parts.name};
     // A level of its own takes a stroke above the others.
-    const double most =
-        std::max_element(way.begin(), way.end(), [](const timed_point& a, const timed_point& b) {
-            return a.intensity < b.intensity;
-        })->intensity;
-    if (most > 1.0) {
-        for (timed_point& q : way)
-            q.intensity /= most;
-        s.choices.level_db = 20.0 * std::log10(most);
-    }
+    double most = 1.0;
+    for (const timed_point& q : way)
+        most = std::max(most, q.intensity);
+    for (timed_point& q : way)
+        q.intensity /= most;
+    s.choices.level_db = 20.0 * std::log10(most);
     s.motion = trajectory::timed(std::move(way));
     s.sound.carrier_hz = p.carrier_hz;
     s.sound.wave = p.wave;
