@@ -429,11 +429,6 @@ void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
         t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("at most {}", most_strokes));
 }
 
-start_from_kind read_from(const toml_table& t)
-{
-    return t.kind<start_from_kind>("start_from").value_or(start_from_kind::piece);
-}
-
 /// Strokes one after the other as the keys start_s and start_from of their tables say.
 class sequence {
 public:
@@ -444,10 +439,7 @@ public:
     void add(const toml_table& t, file_entry e)
     {
         check_count(t, "stroke", all_.strokes.size() + e.strokes.size());
-        if (all_.strokes.empty())
-            place_first(t, e.strokes.front(), e.lead_s);
-        else
-            place(t, e.strokes.front(), e.lead_s);
+        place(t, e.strokes.front(), e.lead_s);
         last_size_ = e.strokes.size();
         last_lead_s_ = e.lead_s;
         std::move(e.strokes.begin(), e.strokes.end(), std::back_inserter(all_.strokes));
@@ -456,26 +448,22 @@ public:
     file_entry take() && { return std::move(all_); }
 
 private:
-    void place_first(const toml_table& t, stroke& first, double lead_s)
+    void place(const toml_table& t, stroke& first, double lead_s)
     {
-        static_cast<void>(read_from(t)); // whatever it is, there is nothing before
-        const auto start_s = t.number("start_s", {0.0, longest_stroke_s});
-        const double after_s = start_s.value_or(0.0) + lead_s;
-        if (in_group_)
-            all_.lead_s = after_s;
-        else if (start_s || lead_s > 0.0)
-            start(first, after_s, start_from_kind::piece, 1);
-    }
-
-    void place(const toml_table& t, stroke& first, double lead_s) const
-    {
-        const start_from_kind from = read_from(t);
+        start_from_kind from = t.kind<start_from_kind>("start_from").value_or(start_from_kind::piece);
+        const bool begins = all_.strokes.empty();
+        if (begins) // whatever it counts from, there is nothing before
+            from = start_from_kind::piece;
         const double least_s = from == start_from_kind::piece ? 0.0 : -longest_stroke_s;
         const auto start_s = t.number("start_s", {least_s, longest_stroke_s});
         const double after_s = start_s.value_or(0.0) + lead_s;
         if (start_s && *start_s < 0.0)
             first.places.start = t.where("start_s");
-        if (from == start_from_kind::end || (!start_s && !t.has("start_from")))
+        if (begins && in_group_)
+            all_.lead_s = after_s;
+        else if (begins && !start_s && lead_s == 0.0)
+            return;
+        else if (from == start_from_kind::end || (!begins && !start_s && !t.has("start_from")))
             follow(first, after_s, last_size_);
         else if (from == start_from_kind::start)
             start(first, after_s - last_lead_s_, from, last_size_);
