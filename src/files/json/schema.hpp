@@ -113,7 +113,7 @@ private:
     template <class T>
     void add(const char* name, const detail::about& what, bool required)
     {
-        put(name, described(kind<T>::schema(what.range), what), required);
+        put(name, described(kind(std::type_identity<T>{}, what.range), what), required);
     }
     void put(const char* name, nlohmann::ordered_json schema, bool required);
     nlohmann::ordered_json result() &&;
@@ -123,62 +123,54 @@ private:
     static nlohmann::ordered_json null_or(nlohmann::ordered_json schema);
 
     template <class T>
-    struct kind {
-        static nlohmann::ordered_json schema(const detail::bounds& range)
-        {
-            if constexpr (std::same_as<T, bool>) {
-                return {{"type", "boolean"}};
-            } else if constexpr (std::same_as<T, std::string>) {
-                return {{"type", "string"}};
-            } else if constexpr (std::integral<T>) {
-                detail::bounds whole = range;
-                if (std::is_unsigned_v<T> && !(whole.low > 0.0))
-                    whole.low = 0.0;
-                return number("integer", whole);
-            } else if constexpr (std::floating_point<T>) {
-                return number("number", range);
-            } else if constexpr (std::is_enum_v<T>) {
-                return {{"enum", detail::kind_names<T>()}};
-            } else {
-                T v{};
-                return describe_object([&v](auto& io) { members(io, v); });
-            }
+    static nlohmann::ordered_json kind(std::type_identity<T>, const detail::bounds& range)
+    {
+        if constexpr (std::same_as<T, bool>) {
+            return {{"type", "boolean"}};
+        } else if constexpr (std::same_as<T, std::string>) {
+            return {{"type", "string"}};
+        } else if constexpr (std::integral<T>) {
+            detail::bounds whole = range;
+            if (std::is_unsigned_v<T> && !(whole.low > 0.0))
+                whole.low = 0.0;
+            return number("integer", whole);
+        } else if constexpr (std::floating_point<T>) {
+            return number("number", range);
+        } else if constexpr (std::is_enum_v<T>) {
+            return {{"enum", detail::kind_names<T>()}};
+        } else {
+            T v{};
+            return describe_object([&v](auto& io) { members(io, v); });
         }
-    };
+    }
     template <class T>
-    struct kind<std::optional<T>> {
-        static nlohmann::ordered_json schema(const detail::bounds& range)
-        {
-            return null_or(kind<T>::schema(range));
-        }
-    };
+    static nlohmann::ordered_json kind(std::type_identity<std::optional<T>>, const detail::bounds& range)
+    {
+        return null_or(kind(std::type_identity<T>{}, range));
+    }
     template <class T>
-    struct kind<detail::nullable<T>> : kind<std::optional<T>> {
-    };
+    static nlohmann::ordered_json kind(std::type_identity<detail::nullable<T>>, const detail::bounds& range)
+    {
+        return null_or(kind(std::type_identity<T>{}, range));
+    }
     template <class... T>
-    struct kind<std::variant<T...>> {
-        static nlohmann::ordered_json schema(const detail::bounds& range)
-        {
-            return {{"anyOf", {kind<T>::schema(range)...}}};
-        }
-    };
+    static nlohmann::ordered_json kind(std::type_identity<std::variant<T...>>, const detail::bounds& range)
+    {
+        return {{"anyOf", {kind(std::type_identity<T>{}, range)...}}};
+    }
     template <class T>
-    struct kind<std::vector<T>> {
-        static nlohmann::ordered_json schema(const detail::bounds& range)
-        {
-            return make_list(kind<T>::schema(range));
-        }
-    };
+    static nlohmann::ordered_json kind(std::type_identity<std::vector<T>>, const detail::bounds& range)
+    {
+        return make_list(kind(std::type_identity<T>{}, range));
+    }
     template <class T, std::size_t Size>
-    struct kind<std::array<T, Size>> {
-        static nlohmann::ordered_json schema(const detail::bounds& range)
-        {
-            nlohmann::ordered_json j = make_list(kind<T>::schema(range));
-            j["minItems"] = Size;
-            j["maxItems"] = Size;
-            return j;
-        }
-    };
+    static nlohmann::ordered_json kind(std::type_identity<std::array<T, Size>>, const detail::bounds& range)
+    {
+        nlohmann::ordered_json j = make_list(kind(std::type_identity<T>{}, range));
+        j["minItems"] = Size;
+        j["maxItems"] = Size;
+        return j;
+    }
 
     nlohmann::ordered_json properties_ = nlohmann::ordered_json::object();
     nlohmann::ordered_json required_ = nlohmann::ordered_json::array();
