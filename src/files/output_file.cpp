@@ -191,41 +191,33 @@ bool output_file::wait_for_room()
     return true;
 }
 
+// The file gets the owner and rights of the one that it replaces, as far as the system allows: only root may
+// give files away. Sets the owner first, since that may take rights away.
 void output_file::open_beside()
 {
+    constexpr mode_t rights = 0777;
     const std::string stem = target_.filename().string().substr(0, longest_stem);
     std::random_device seed;
-    for (int i = 0; i < attempts; ++i) {
+    int code = EEXIST;
+    for (int i = 0; i < attempts && code == EEXIST; ++i) {
         temporary_ = parent_folder(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
         fd_ = owned_fd(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-        if (fd_) {
-            keep_owner_and_rights();
-            return;
-        }
-        if (errno != EEXIST)
-            break;
+        code = fd_ ? 0 : errno;
     }
-    const int code = errno;
-    temporary_.clear();
-    fail(code);
-}
-
-// Does as much as the system allows: only root may give files away. Sets the owner first, since that may
-// take rights away.
-void output_file::keep_owner_and_rights() noexcept
-{
-    constexpr mode_t rights = 0777;
-    struct stat there {};
-    if (::stat(target_.c_str(), &there) != 0)
+    if (code != 0) {
+        temporary_.clear();
+        fail(code);
+    }
+    struct stat old {};
+    if (::stat(target_.c_str(), &old) != 0)
         return;
     struct stat ours {};
-    if (::fstat(fd_.get(), &ours) == 0 && (ours.st_uid != there.st_uid || ours.st_gid != there.st_gid) &&
-        ::fchown(fd_.get(), there.st_uid, there.st_gid) != 0 &&
-        ::fchown(fd_.get(), uid_t(-1), there.st_gid) != 0) {
+    if (::fstat(fd_.get(), &ours) == 0 && (ours.st_uid != old.st_uid || ours.st_gid != old.st_gid) &&
+        ::fchown(fd_.get(), old.st_uid, old.st_gid) != 0 && ::fchown(fd_.get(), uid_t(-1), old.st_gid) != 0) {
         // Another group's members may then read no more than anybody.
-        there.st_mode &= ~mode_t{S_IRWXG} | ((there.st_mode & S_IRWXO) << 3U);
+        old.st_mode &= ~mode_t{S_IRWXG} | ((old.st_mode & S_IRWXO) << 3U);
     }
-    (void)::fchmod(fd_.get(), there.st_mode & rights);
+    (void)::fchmod(fd_.get(), old.st_mode & rights);
 }
 
 output_file::~output_file()

@@ -62,7 +62,6 @@ private:
     void open_descriptor(int descriptor, owner_kind writer);
     void open_directly();
     void open_beside();
-    void keep_owner_and_rights() noexcept;
     bool still_wanted();
     bool wait_for_room();
 
