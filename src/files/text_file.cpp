@@ -2,7 +2,6 @@
 #include "files/text_file.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <map>
 #include <mutex>
@@ -27,8 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::string_view_literals::operator""sv;
-
-constexpr std::size_t least_forgotten = 64;
 
 /// A file that was read.
 struct input {
@@ -141,13 +138,8 @@ void note_input(const fs::path& file, owner_kind owner)
     fs::path whole = fs::absolute(file, ignored);
     inputs& i = known_inputs();
     const std::lock_guard locked(i.guard);
-    const auto old = i.all.find(whole);
-    if (old != i.all.end())
-        owner = std::min(owner, old->second.owner); // once the user's, always the user's
-    // A process may live long: forgets what is gone where the number of files reaches a power of two.
-    else if (i.all.size() >= least_forgotten && std::has_single_bit(i.all.size()))
-        std::erase_if(i.all, [](const auto& e) { return !e.second.is_still(e.first); });
-    i.all[std::move(whole)] = {s.st_dev, s.st_ino, owner};
+    input& read = i.all.try_emplace(std::move(whole), input{.owner = owner}).first->second;
+    read = {s.st_dev, s.st_ino, std::min(owner, read.owner)}; // once the user's, always the user's
 }
 
 void refuse_input(const struct stat& file, const fs::path& output, owner_kind writer)

@@ -29,8 +29,8 @@ enum class owner_kind {
     caller,  ///< writes text through the library
 };
 
-/// Remembers a file that is read; a descriptor's name is /dev/fd/N. Pipes and devices do not count. Forgets
-/// files that are gone from time to time. Any thread; blocks on the file system.
+/// Remembers a file that is read; a descriptor's name is /dev/fd/N. Pipes and devices do not count. Any
+/// thread; blocks on the file system.
 void note_input(const std::filesystem::path& file, owner_kind owner = owner_kind::user);
 
 /// Refuses to replace a file that was read and that this writer may not replace. An input that has been

@@ -195,20 +195,6 @@ TEST_CASE("text of the library's caller replaces an input, and sound still does 
     }
 }
 
-TEST_CASE("an input is remembered beside many deleted ones")
-{
-    const folder dir;
-    std::ofstream(dir / "kept") << "mine";
-    static_cast<void>(detail::read_text_file(dir / "kept", 100));
-    for (int i = 0; i < 300; ++i) {
-        const std::string name = std::to_string(i);
-        std::ofstream(dir / name) << "another";
-        static_cast<void>(detail::read_text_file(dir / name, 100));
-        fs::remove(dir / name);
-    }
-    CHECK_THROWS_AS(detail::output_file(dir / "kept"), error);
-}
-
 TEST_CASE("the program updates its own records, and no file of the user's")
 {
     const folder dir;
