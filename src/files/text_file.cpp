@@ -89,41 +89,39 @@ bool looks_like_csv(std::string_view line)
 // Refuses text that begins as sound, a picture or an archive does.
 void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
 {
-    struct other_kind {
-        std::string_view begin; ///< ? is any byte
-        std::string_view what;
-    };
-    constexpr other_kind others[] = {{"\x89PNG", "a PNG picture"},
-                                     {"\xFF\xD8\xFF", "a JPEG picture"},
-                                     {"GIF8", "a GIF picture"},
-                                     {"II*\0"sv, "a TIFF picture"},
-                                     {"MM\0*"sv, "a TIFF picture"},
-                                     {"RIFF????WEBP", "a WebP picture"},
-                                     {"????ftypheic", "a HEIC or AVIF picture"},
-                                     {"????ftypheix", "a HEIC or AVIF picture"},
-                                     {"????ftypmif1", "a HEIC or AVIF picture"},
-                                     {"????ftypmsf1", "a HEIC or AVIF picture"},
-                                     {"????ftypavif", "a HEIC or AVIF picture"},
-                                     {"????ftyp????", "a film or sound in MP4"},
-                                     {"RIFF????WAVE", "a WAV file"},
-                                     {"RF64????WAVE", "a WAV file"},
-                                     {"fLaC", "FLAC sound"},
-                                     {"OggS", "Ogg sound"},
-                                     {"ID3", "MP3 sound"},
-                                     {"%PDF-", "a PDF document"},
-                                     {"\xD0\xCF\x11\xE0", "an old Excel or Word document"},
-                                     {"PK\x03\x04", "a ZIP archive or office document"},
-                                     {"\x1F\x8B", "compressed by gzip"},
-                                     {"\x93NUMPY", "an array of NumPy"},
-                                     {"\x89HDF", "HDF5 data"},
-                                     {"MATLAB 5.0", "data of MATLAB"}};
+    // A ? stands for any byte.
+    constexpr std::pair<std::string_view, std::string_view> others[] = {
+        {"\x89PNG", "a PNG picture"},
+        {"\xFF\xD8\xFF", "a JPEG picture"},
+        {"GIF8", "a GIF picture"},
+        {"II*\0"sv, "a TIFF picture"},
+        {"MM\0*"sv, "a TIFF picture"},
+        {"RIFF????WEBP", "a WebP picture"},
+        {"????ftypheic", "a HEIC or AVIF picture"},
+        {"????ftypheix", "a HEIC or AVIF picture"},
+        {"????ftypmif1", "a HEIC or AVIF picture"},
+        {"????ftypmsf1", "a HEIC or AVIF picture"},
+        {"????ftypavif", "a HEIC or AVIF picture"},
+        {"????ftyp????", "a film or sound in MP4"},
+        {"RIFF????WAVE", "a WAV file"},
+        {"RF64????WAVE", "a WAV file"},
+        {"fLaC", "FLAC sound"},
+        {"OggS", "Ogg sound"},
+        {"ID3", "MP3 sound"},
+        {"%PDF-", "a PDF document"},
+        {"\xD0\xCF\x11\xE0", "an old Excel or Word document"},
+        {"PK\x03\x04", "a ZIP archive or office document"},
+        {"\x1F\x8B", "compressed by gzip"},
+        {"\x93NUMPY", "an array of NumPy"},
+        {"\x89HDF", "HDF5 data"},
+        {"MATLAB 5.0", "data of MATLAB"}};
     const auto begins = [text](std::string_view pattern) {
         return text.size() >= pattern.size() && std::equal(pattern.begin(), pattern.end(), text.begin(),
                                                            [](char p, char c) { return p == '?' || p == c; });
     };
-    for (const other_kind& o : others)
-        if (begins(o.begin))
-            throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", o.what),
+    for (const auto& [begin, what] : others)
+        if (begins(begin))
+            throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what),
                         hint);
 }
 

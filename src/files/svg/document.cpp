@@ -235,23 +235,18 @@ std::vector<outline> path_element(const element& e)
 
 svg_length parse_svg_length(std::string_view text)
 {
-    struct known_unit {
-        std::string_view name;
-        double mm;
-    };
-    constexpr std::array units{known_unit{"mm", 1.0},        known_unit{"cm", 10.0},
-                               known_unit{"in", 25.4},       known_unit{"pt", 25.4 / 72.0},
-                               known_unit{"pc", 25.4 / 6.0}, known_unit{"px", mm_per_px},
-                               known_unit{"q", 0.25}};
+    constexpr std::pair<std::string_view, double> units[] = {
+        {"mm", 1.0},        {"cm", 10.0},      {"in", 25.4}, {"pt", 25.4 / 72.0},
+        {"pc", 25.4 / 6.0}, {"px", mm_per_px}, {"q", 0.25}};
     std::size_t at = 0;
     skip_blanks(text, at);
     const double v = number_at(text, at);
     const std::string unit = in_small_letters(std::string(without_blanks(text.substr(at))));
     if (unit.empty())
         return {v};
-    for (const known_unit& u : units)
-        if (u.name == unit)
-            return {v * u.mm, true};
+    for (const auto& [name, mm] : units)
+        if (name == unit)
+            return {v * mm, true};
     throw value_fault{at, fmt::format("unit {} is not known", detail::quoted(unit)),
                       "known units: mm, cm, in, pt, pc, px, Q"};
 }
