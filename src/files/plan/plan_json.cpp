@@ -160,11 +160,6 @@ plan_sound record_sound(const plan& p)
     return s;
 }
 
-std::vector<double> piece::starts_s() const
-{
-    return start_times_s(plans);
-}
-
 double piece::total_s() const
 {
     double end = 0.0;

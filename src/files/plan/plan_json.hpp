@@ -30,7 +30,7 @@ struct piece {
     std::vector<compensated_plan> moved = {};
 
     /// Returns the start of each plan and the end of the last, s from the start of all.
-    std::vector<double> starts_s() const;
+    std::vector<double> starts_s() const { return start_times_s(plans); }
     double total_s() const;
 };
 

@@ -375,24 +375,23 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
         s.motion = read_timed(t, keys, intensity_max, s.warnings);
         return s;
     }
+    std::optional<stroke> preset;
     if (kind == "preset") {
-        const stroke preset = t.at_key(kind, [&, id = *t.text("preset")] { return preset_stroke(id); });
+        preset = t.at_key(kind, [&, id = *t.text("preset")] { return preset_stroke(id); });
         if (!t.has("name"))
-            s.name = preset.name;
-        s.note = preset.note;
-        s.made_for = preset.made_for;
-        const path& way = std::get<drawn_path>(access::of(preset.motion).law).way;
-        s.motion = make_motion(t, kind, way, keys, preset.motion.duration_s());
-        s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
-        return s;
+            s.name = preset->name;
+        s.note = preset->note;
+        s.made_for = preset->made_for;
     }
-    const path way = kind == "points" ? read_points(t)
+    const path way = preset             ? std::get<drawn_path>(access::of(preset->motion).law).way
+                     : kind == "points" ? read_points(t)
                      : kind == "arc"
                          ? read_arc(t)
                          : t.at_key(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
-    s.motion = make_motion(t, kind, way, keys, way.length_mm() / default_speed_mm_s);
+    s.motion = make_motion(t, kind, way, keys,
+                           preset ? preset->motion.duration_s() : way.length_mm() / default_speed_mm_s);
     s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
-    s.usual_pace = !keys.duration_s && !s.speed_mm_s;
+    s.usual_pace = !preset && !keys.duration_s && !s.speed_mm_s;
     if (s.usual_pace)
         s.speed_mm_s = default_speed_mm_s;
     return s;
