@@ -184,28 +184,19 @@ TEST_CASE("a file with the reused number of a deleted input is no input")
     CHECK(dir.bytes("b") == "new");
 }
 
-TEST_CASE("text of the library's caller replaces an input, and sound still does not")
+TEST_CASE("the library's caller replaces any input, the program its own records, and sound none")
 {
+    using detail::owner_kind;
     const folder dir;
-    for (const auto owner : {detail::owner_kind::program, detail::owner_kind::user}) {
-        std::ofstream(dir / "stroke") << "old";
-        static_cast<void>(detail::read_text_file(dir / "stroke", 100, owner));
-        CHECK_THROWS_AS(detail::output_file(dir / "stroke"), error);
-        CHECK_NOTHROW(detail::output_file(dir / "stroke", {}, detail::owner_kind::caller));
-    }
-}
-
-TEST_CASE("the program updates its own records, and no file of the user's")
-{
-    const folder dir;
-    for (const auto owner : {detail::owner_kind::program, detail::owner_kind::user}) {
-        std::ofstream(dir / "record") << "old";
-        static_cast<void>(detail::read_text_file(dir / "record", 100, owner));
-        CHECK_THROWS_AS(detail::output_file(dir / "record"), error);
-        if (owner == detail::owner_kind::program)
-            CHECK_NOTHROW(detail::output_file(dir / "record", {}, owner));
+    for (const auto owner : {owner_kind::program, owner_kind::user}) {
+        std::ofstream(dir / "input") << "old";
+        static_cast<void>(detail::read_text_file(dir / "input", 100, owner));
+        CHECK_THROWS_AS(detail::output_file(dir / "input"), error);
+        CHECK_NOTHROW(detail::output_file(dir / "input", {}, owner_kind::caller));
+        if (owner == owner_kind::program)
+            CHECK_NOTHROW(detail::output_file(dir / "input", {}, owner_kind::program));
         else
-            CHECK_THROWS_AS(detail::output_file(dir / "record", {}, detail::owner_kind::program), error);
+            CHECK_THROWS_AS(detail::output_file(dir / "input", {}, owner_kind::program), error);
     }
 }
 

@@ -79,23 +79,15 @@ void check_same(const trajectory& a, const trajectory& b)
 
 } // namespace
 
-TEST_CASE("the extension gives the kind of a stroke file, in any case")
+TEST_CASE("the extension gives the kind of a stroke file, in any case, and the text that of others")
 {
     const folder f;
-    CHECK(length(tactor::load_strokes(f.write("a.csv", csv))) == 6.0);
-    CHECK(length(tactor::load_strokes(f.write("A.CSV", csv))) == 6.0);
-    CHECK(length(tactor::load_strokes(f.write("a.svg", svg))) == 6.0);
-    CHECK(length(tactor::load_strokes(f.write("a.toml", toml))) == 6.0);
+    for (const auto& [name, text] :
+         {std::pair("a.csv", csv), std::pair("A.CSV", csv), std::pair("a.svg", svg),
+          std::pair("a.toml", toml), std::pair("a.txt", csv), std::pair("a", svg), std::pair("b", toml)})
+        CHECK(length(tactor::load_strokes(f.write(name, text))) == 6.0);
     CHECK(tactor::load_strokes(f.write("touch.csv", csv))[0].name == "touch");
     CHECK(refusal(f.write("b.csv", svg)).find("b.csv:1") != std::string::npos);
-}
-
-TEST_CASE("other extensions, or none, are guessed from the text")
-{
-    const folder f;
-    CHECK(length(tactor::load_strokes(f.write("a.txt", csv))) == 6.0);
-    CHECK(length(tactor::load_strokes(f.write("a", svg))) == 6.0);
-    CHECK(length(tactor::load_strokes(f.write("b", toml))) == 6.0);
 }
 
 TEST_CASE("the kind of stroke text is guessed from its first line")
