@@ -404,8 +404,7 @@ TEST_CASE("each peer has one line a turn")
 
 TEST_CASE("a long line comes whole, and is given away")
 {
-    for (const std::size_t size :
-         {65'536U, 65'537U, 114'688U, 131'072U, 131'073U, 229'375U, 229'376U, 500'000U}) {
+    for (const std::size_t size : {65'536U, 65'537U, 500'000U}) {
         CAPTURE(size);
         std::string text;
         for (std::size_t i = 0; i < size; ++i)
