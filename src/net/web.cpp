@@ -68,7 +68,6 @@ private:
     void read_first() override;
     void answer_request();
     void respond(web_reply r);
-    void send_response();
     void upgrade();
     // WebSocket.
     void look_after(bool is_read);
@@ -181,20 +180,14 @@ void web_connection::respond(web_reply r)
     response_.prepare_payload();
     if (parser_.get().method() == http::verb::head)
         response_.body().clear(); // the header still gives its length
-    if (r.after_s == 0.0)
-        return send_response();
     later_.expires_after(steady_seconds(r.after_s));
     later_.async_wait([this, self = shared_from_this()](const beast::error_code& e) {
-        if (!e && !closed())
-            send_response();
+        if (e || closed())
+            return;
+        arm(limits().message_s);
+        http::async_write(socket_, response_,
+                          [this, self](const beast::error_code&, std::size_t) { close(); });
     });
-}
-
-void web_connection::send_response()
-{
-    arm(limits().message_s);
-    http::async_write(socket_, response_,
-                      [this, self = shared_from_this()](const beast::error_code&, std::size_t) { close(); });
 }
 
 void web_connection::upgrade()
