@@ -3,7 +3,6 @@
 /// Open Sound Control 1.0: packets to messages, and messages to packets. Pure functions of their arguments.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

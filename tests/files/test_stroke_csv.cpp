@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"

@@ -7,8 +7,6 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/error.hpp>
-
 #include "caught.hpp"
 #include "has.hpp"
 

@@ -3,7 +3,6 @@
 #include "files/stroke/toml.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>

@@ -2,7 +2,6 @@
 // Stroke files in TOML, and the keys that they share with array files.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <unordered_set>
