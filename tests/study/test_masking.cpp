@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/masking/masking_stream.hpp"
+#include "study/masking/masking.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,6 @@
 #include "caught.hpp"
 #include "has.hpp"
 #include "rounds.hpp"
-#include "study/masking/masker.hpp"
 
 namespace tactor::study::test_masking {
 namespace {

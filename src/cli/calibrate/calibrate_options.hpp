@@ -11,7 +11,7 @@
 #include "cli/session/page_options.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/masking/masking_stream.hpp"
+#include "study/masking/masking.hpp"
 
 namespace CLI {
 class App;

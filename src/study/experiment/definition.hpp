@@ -18,7 +18,7 @@
 #include <tactor/stroke.hpp>
 
 #include "study/data/outline.hpp"
-#include "study/masking/masking_stream.hpp"
+#include "study/masking/masking.hpp"
 
 namespace tactor::study {
 

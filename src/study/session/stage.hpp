@@ -12,7 +12,7 @@
 
 #include "session/environment.hpp"
 #include "session/play_session.hpp"
-#include "study/masking/masker.hpp"
+#include "study/masking/masking.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
