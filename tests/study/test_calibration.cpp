@@ -14,9 +14,7 @@
 #include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "study/calibrate/log.hpp"
-#include "study/calibrate/observer.hpp"
-#include "study/calibrate/result.hpp"
+#include "study/calibrate/calibration_files.hpp"
 
 namespace tactor::study::test_calibration {
 namespace {

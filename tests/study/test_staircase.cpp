@@ -12,9 +12,7 @@
 #include <fmt/format.h>
 
 #include "study/calibrate/calibration.hpp"
-#include "study/calibrate/observer.hpp"
-#include "study/calibrate/result.hpp"
-#include "study/calibrate/staircase.hpp"
+#include "study/calibrate/calibration_files.hpp"
 
 namespace tactor::study::test_staircase {
 namespace {

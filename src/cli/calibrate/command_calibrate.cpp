@@ -16,10 +16,9 @@
 #include "core/words.hpp"
 #include "session/device.hpp"
 #include "session/pipes.hpp"
-#include "study/calibrate/log.hpp"
-#include "study/calibrate/observer.hpp"
+#include "study/calibrate/calibration.hpp"
+#include "study/calibrate/calibration_files.hpp"
 #include "study/calibrate/person.hpp"
-#include "study/calibrate/result.hpp"
 
 namespace tactor::cli {
 namespace {

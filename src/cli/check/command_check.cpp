@@ -17,7 +17,7 @@
 #include "files/setup_text.hpp"
 #include "session/device.hpp"
 #include "session/interrupt.hpp"
-#include "study/calibrate/result.hpp"
+#include "study/calibrate/calibration_files.hpp"
 
 namespace tactor::cli {
 namespace {

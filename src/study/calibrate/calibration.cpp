@@ -2,12 +2,28 @@
 #include "study/calibrate/calibration.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
+#include "core/split.hpp"
+#include "core/words.hpp"
+#include "study/statistics/tests.hpp"
+
 namespace tactor::study {
 namespace {
+
+constexpr std::size_t tries = 10;        // at the ceiling, at the floor
+constexpr std::size_t enough = 8;        // of them, and of check trials
+constexpr std::size_t counted_after = 8; // reversals where there were more than asked for
+constexpr std::size_t most_staircases = 2;
+constexpr double check_db = 6.0; // above and below the threshold
+constexpr double halves_may_differ_db = 2.0;
 
 constexpr double series_from_db = 15.0;
 
@@ -24,7 +40,180 @@ staircase_options settle_stairs(const calibration_settings& s, std::size_t place
     return o;
 }
 
+constexpr const char* subject = "--simulate";
+constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
+
+[[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)
+{
+    throw error(error_kind::bad_input, subject, why, hint);
+}
+
+double number(std::string_view key, std::string_view text, double low, double high)
+{
+    const auto v = detail::number_in<double>(text);
+    if (!v)
+        refuse(fmt::format("{}: \"{}\" is not a number", key, text));
+    if (!(*v >= low && *v <= high))
+        refuse(fmt::format("{} is {}", key, text),
+               fmt::format("{} to {}", plain_number(low), plain_number(high)));
+    return *v;
+}
+
+std::uint64_t whole(std::string_view key, std::string_view text)
+{
+    const double v = number(key, text, 0.0, 0x1p53);
+    if (v != std::floor(v))
+        refuse(fmt::format("{} is {}", key, text), "a whole number");
+    return static_cast<std::uint64_t>(v);
+}
+
+void take(observer_settings& o, std::string_view key, std::string_view value)
+{
+    if (key == "threshold")
+        o.thresholds_dbfs.push_back(number(key, value, -200.0, 1000.0));
+    else if (key == "spread")
+        o.spread_db = number(key, value, 0.0, 100.0);
+    else if (key == "lapse")
+        o.lapse = number(key, value, 0.0, 0.5);
+    else if (key == "seed")
+        o.seed = whole(key, value);
+    else
+        refuse(fmt::format("\"{}\" is not known", key));
+}
+
+// Keeps the entries of the measured tactors, if the list has one for each tactor of the array.
+void choose_measured(observer_settings& o, const std::vector<unsigned>& measured, std::size_t all)
+{
+    const std::size_t n = o.thresholds_dbfs.size();
+    if (n == 1 || n == measured.size())
+        return;
+    if (n != all)
+        refuse(fmt::format("{} for {}", counted(n, "threshold"), counted(measured.size(), "tactor")),
+               "one for all, or one for each");
+    std::vector<double> own;
+    for (const unsigned t : measured)
+        own.push_back(o.thresholds_dbfs[t]);
+    o.thresholds_dbfs = std::move(own);
+}
+
+constexpr double usual_answer_s = 1.5; // from the last interval on
+constexpr double before_s = 0.5;
+constexpr double series_s = 20.0; // of an adjustment
+
 } // namespace
+
+reversal_mean average_reversals(std::span<const double> reversals_dbfs, std::size_t counted)
+{
+    const std::span<const double> v = reversals_dbfs.last(counted);
+    reversal_mean m{mean(v)};
+    m.sd_db = deviation(v, m.mean_dbfs);
+    m.halves_db = std::abs(mean(v.first(v.size() / 2)) - mean(v.last(v.size() / 2)));
+    return m;
+}
+
+staircase::staircase(staircase_options o) : o_(std::move(o)), level_(o_.start_dbfs)
+{
+}
+
+bool staircase::answer(bool right)
+{
+    ++trials_;
+    if (run_.threshold) {
+        check(right);
+        return false;
+    }
+    note_at_ceiling(right);
+    note_at_floor(right);
+    const bool turned = step(right);
+    if (!end_ && run_.reversals.size() >= o_.reversals)
+        settle();
+    return turned;
+}
+
+// Steps down at each right answer until the first reversal. Three answers a step would need so many trials
+// that a lapse on the way is likely, which would end the large steps far above the threshold.
+bool staircase::step(bool right)
+{
+    const unsigned for_down = run_.reversals.empty() ? 1 : o_.right_for_down;
+    if (right && ++run_.right_in_row < for_down)
+        return false;
+    run_.right_in_row = 0;
+    const bool up = !right;
+    const bool turned = turn(up);
+    const double by = o_.steps_db[std::min(run_.reversals.size() / 2, o_.steps_db.size() - 1)];
+    go_to(up ? level_ + by : level_ - by);
+    return turned;
+}
+
+void staircase::go_to(double level_dbfs)
+{
+    const double rounded = std::round(level_dbfs * 1e6) / 1e6; // steps of 0.1 dB add up to decimal numbers
+    level_ = std::clamp(rounded, floor_dbfs, o_.ceiling_dbfs);
+}
+
+// A step that the ceiling blocks has a direction all the same.
+bool staircase::turn(bool up)
+{
+    const bool turned = run_.up && *run_.up != up;
+    run_.up = up;
+    if (turned)
+        run_.reversals.push_back(level_);
+    return turned;
+}
+
+void staircase::note_at_ceiling(bool right)
+{
+    if (level_ < o_.ceiling_dbfs)
+        return;
+    std::vector<bool>& all = run_.at_ceiling;
+    all.push_back(right);
+    if (all.size() >= tries &&
+        std::count(all.end() - tries, all.end(), true) < static_cast<std::ptrdiff_t>(enough))
+        end_ = staircase_end::not_felt;
+}
+
+void staircase::note_at_floor(bool right)
+{
+    run_.right_at_floor = right && level_ <= floor_dbfs ? run_.right_at_floor + 1 : 0;
+    if (run_.right_at_floor == tries)
+        end_ = staircase_end::below_range;
+}
+
+void staircase::settle()
+{
+    const std::vector<double>& all = run_.reversals;
+    const std::size_t kept = (all.size() - o_.discard) / 2 * 2;
+    const std::size_t counted = all.size() == o_.reversals ? kept : std::min(kept, counted_after);
+    // Two more at a time, so that the number asked for and this one are both even or both odd.
+    if ((all.size() - o_.reversals) % 2 != 0)
+        return;
+    const reversal_mean m = average_reversals(all, counted);
+    if (m.halves_db > halves_may_differ_db && all.size() + 2 <= most_reversals)
+        return;
+    run_.threshold = m;
+    go_to(m.mean_dbfs + check_db);
+}
+
+// Below the threshold half of all guesses are right. Somebody who is right there more often feels it: a lapse
+// held the staircase above, and it runs once more.
+void staircase::check(bool right)
+{
+    const bool above = run_.above.given < check_count;
+    check_trials& trials = above ? run_.above : run_.below;
+    trials.right += right ? 1 : 0;
+    if (++trials.given < check_count)
+        return;
+    if (above && trials.right >= enough) {
+        go_to(run_.threshold->mean_dbfs - check_db);
+    } else if (above) {
+        end_ = staircase_end::not_felt;
+    } else if (trials.right < too_many_below || staircases_ == most_staircases) {
+        end_ = staircase_end::felt;
+    } else {
+        run_ = {};
+        ++staircases_;
+    }
+}
 
 std::string rule_name(const calibration_settings& s)
 {
@@ -133,6 +322,96 @@ void calibration::finish_tactor(tactor_threshold t)
     thresholds_.push_back(std::move(t));
     ++place_;
     begin_tactor();
+}
+
+observer_settings parse_observer(std::string_view text, const std::vector<unsigned>& measured,
+                                 std::size_t all)
+{
+    observer_settings o;
+    std::vector<std::string_view> seen;
+    for (std::string_view item : detail::split(text, ',')) {
+        if (const std::size_t equals = item.find('='); equals != item.npos) {
+            if (std::find(seen.begin(), seen.end(), item.substr(0, equals)) != seen.end())
+                refuse(fmt::format("{} is said twice", item.substr(0, equals)));
+            seen.push_back(item.substr(0, equals));
+            item.remove_prefix(equals + 1);
+        } else if (seen.empty() || seen.back() != "threshold") {
+            refuse(fmt::format("\"{}\" has no =", item));
+        }
+        take(o, seen.back(), item);
+    }
+    if (o.thresholds_dbfs.empty())
+        refuse("threshold is missing");
+    choose_measured(o, measured, all);
+    return o;
+}
+
+double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs)
+{
+    if (o.spread_db == 0.0) // a step
+        return level_dbfs < threshold_dbfs ? 0.5 : 1.0 - o.lapse;
+    const double z = (level_dbfs - threshold_dbfs) / o.spread_db;
+    return 0.5 + (0.5 - o.lapse) * 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+observer::observer(observer_settings o, const calibration_settings& s)
+    : o_(std::move(o)),
+      tactors_(s.tactors),
+      r_(fmt::format("{}/calibrate/{}/observer", o_.seed.value_or(s.seed), s.participant))
+{
+}
+
+double observer::find_threshold(unsigned tactor) const
+{
+    if (o_.thresholds_dbfs.size() == 1)
+        return o_.thresholds_dbfs.front();
+    const auto at = std::find(tactors_.begin(), tactors_.end(), tactor) - tactors_.begin();
+    return o_.thresholds_dbfs[static_cast<std::size_t>(at)];
+}
+
+calibration_answer observer::answer(const calibration_trial& t)
+{
+    if (t.interval == 0)
+        return adjust(t);
+    const bool right = r_.unit() < right_at(o_, find_threshold(t.tactor), t.level_dbfs);
+    return {.interval = right ? t.interval : 3 - t.interval};
+}
+
+// Goes by 2 dB until it is near to what it feels as the threshold this time, then by half a dB.
+calibration_answer observer::adjust(const calibration_trial& t)
+{
+    const double aim = find_threshold(t.tactor) + o_.spread_db * r_.normal();
+    if (aim > t.ceiling_dbfs)
+        return {};
+    double level = t.level_dbfs;
+    for (const double by : {2.0, 0.5})
+        while (std::abs(level - aim) > by / 2.0) {
+            const double to = std::clamp(level < aim ? level + by : level - by, floor_dbfs, t.ceiling_dbfs);
+            if (to == level || std::abs(to - aim) >= std::abs(level - aim))
+                break;
+            level = to;
+        }
+    return {.set_dbfs = level};
+}
+
+std::string time_text(const calibration& c)
+{
+    const calibration_settings& s = c.settings();
+    calibration rest = c;
+    observer typical({.thresholds_dbfs = {-45.0}}, s);
+    const double trial_s = before_s + 2.0 * s.interval_s + interval_gap_s + usual_answer_s;
+    double seconds = 0.0;
+    std::size_t trials = 0;
+    std::set<unsigned> tactors;
+    for (; !rest.done(); ++trials) {
+        const calibration_trial t = rest.next();
+        tactors.insert(t.tactor);
+        seconds += t.interval != 0 ? trial_s : series_s;
+        static_cast<void>(rest.answer(typical.answer(t)));
+    }
+    const auto minutes = static_cast<std::uint64_t>(std::max(1.0, std::round(seconds / 60.0)));
+    return fmt::format("{}, about {}: some {}", counted(tactors.size(), "tactor"), counted(trials, "trial"),
+                       counted(minutes, "minute"));
 }
 
 } // namespace tactor::study

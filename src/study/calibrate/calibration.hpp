@@ -1,20 +1,116 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A calibration of several tactors: the next trial, the effect of an answer, and the thresholds. Uses no
-/// clock and no device: the same settings and answers give the same trials.
+/// A calibration of several tactors: the adaptive staircase of each (Levitt 1971), the next trial, the effect
+/// of an answer, the thresholds; and a simulated observer, who tests the chain and says nothing about people.
+/// Uses no clock and no device: the same settings and answers give the same trials.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "study/calibrate/staircase.hpp"
 #include "study/random/random.hpp"
 
 namespace tactor::study {
+
+/// Lowest level: below it nothing is left of a sample of 24 bits.
+inline constexpr double floor_dbfs = -144.0;
+/// Reversals after which the threshold stands as it is.
+inline constexpr std::size_t most_reversals = 24;
+
+/// Check trials above the threshold, and as many below it; and right ones below it that show that it is too
+/// high. Guesses reach that in 11 of 1024 series.
+inline constexpr std::size_t check_count = 10;
+inline constexpr std::size_t too_many_below = 9;
+
+struct staircase_options {
+    unsigned right_for_down = 3; ///< 3: 79.4 %, 2: 70.7 %
+    double start_dbfs = -20.0;
+    double ceiling_dbfs = 0.0;
+    std::vector<double> steps_db = {4.0, 2.0, 1.0}; ///< the next from every second reversal on
+    std::size_t reversals = 12;                     ///< at most most_reversals
+    std::size_t discard = 4;                        ///< the first of them; two at least are left
+};
+
+enum class staircase_end {
+    felt,
+    not_felt,
+    below_range, ///< right at floor_dbfs: by something else than what the skin feels
+};
+
+/// Mean and standard deviation (n - 1) of the reversals that count, an even number of the last ones.
+struct reversal_mean {
+    double mean_dbfs = 0.0;
+    double sd_db = 0.0;
+    double halves_db = 0.0; ///< how far the means of the halves are apart
+};
+/// Averages the last `counted` reversals.
+reversal_mean average_reversals(std::span<const double> reversals_dbfs, std::size_t counted);
+
+/// A tactor's measurement: a staircase, check trials above its threshold, check trials below it. Where the
+/// trials below are right the staircase runs once more, from there.
+class staircase {
+public:
+    explicit staircase(staircase_options o);
+
+    /// Returns the level of the next trial; check trials included.
+    double level_dbfs() const noexcept { return level_; }
+    std::optional<staircase_end> end() const noexcept { return end_; }
+    /// Takes the answer to the trial at level_dbfs(). Returns true if it turned the direction.
+    bool answer(bool right);
+
+    /// Trials of both staircases, and their check trials.
+    std::size_t trials() const noexcept { return trials_; }
+    /// Staircases begun: 1 or 2.
+    std::size_t staircases() const noexcept { return staircases_; }
+    /// Reversals of the last staircase. The functions below are about that one, too.
+    const std::vector<double>& reversals_dbfs() const noexcept { return run_.reversals; }
+    /// Right answers to the check trials above and below the threshold; nothing before there were any.
+    std::optional<std::size_t> check_right() const noexcept { return run_.above.right_answers(); }
+    std::optional<std::size_t> check_below_right() const noexcept { return run_.below.right_answers(); }
+    /// Threshold by the reversals; also of a tactor that was not felt, if it came so far.
+    std::optional<reversal_mean> threshold() const noexcept { return run_.threshold; }
+
+private:
+    struct check_trials {
+        std::size_t given = 0;
+        std::size_t right = 0;
+
+        std::optional<std::size_t> right_answers() const noexcept
+        {
+            return given == 0 ? std::nullopt : std::optional(right);
+        }
+    };
+    struct run {
+        unsigned right_in_row = 0;
+        std::optional<bool> up = {};
+        std::vector<double> reversals = {};
+        std::vector<bool> at_ceiling = {}; ///< right or not
+        unsigned right_at_floor = 0;
+        std::optional<reversal_mean> threshold = {};
+        check_trials above = {};
+        check_trials below = {};
+    };
+
+    bool step(bool right);
+    bool turn(bool up);
+    void note_at_ceiling(bool right);
+    void note_at_floor(bool right);
+    void settle();
+    void check(bool right);
+    void go_to(double level_dbfs);
+
+    staircase_options o_;
+    double level_;
+    run run_ = {};
+    std::size_t staircases_ = 1;
+    std::size_t trials_ = 0;
+    std::optional<staircase_end> end_ = {};
+};
 
 enum class calibration_method { staircase, adjustment };
 constexpr std::string_view to_string(calibration_method m) noexcept
@@ -120,5 +216,41 @@ private:
     calibration_trial trial_ = {};
     std::vector<tactor_threshold> thresholds_ = {};
 };
+
+struct observer_settings {
+    std::vector<double> thresholds_dbfs = {}; ///< one for all, or one for each tactor that is measured
+    double spread_db = 2.0;                   ///< 0: a step at the threshold
+    double lapse = 0.0;                       ///< 0 to 0.5
+    std::optional<std::uint64_t> seed = {};   ///< none: the session's
+};
+
+/// Reads "seed=1,threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the
+/// tactors that are measured, of `all` that the array has: a list has as many entries as the one or the
+/// other. \throws error (bad_input) naming simulate.
+observer_settings parse_observer(std::string_view text, const std::vector<unsigned>& measured,
+                                 std::size_t all);
+
+/// Returns the chance of a right answer: 0.5 + (0.5 - lapse) Phi((level - threshold) / spread).
+double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs);
+
+/// Answers trials in order. One that resumes must answer all of them again.
+class observer {
+public:
+    observer(observer_settings o, const calibration_settings& s);
+
+    calibration_answer answer(const calibration_trial& t);
+
+private:
+    double find_threshold(unsigned tactor) const;
+    calibration_answer adjust(const calibration_trial& t);
+
+    observer_settings o_;
+    std::vector<unsigned> tactors_;
+    random_numbers r_;
+};
+
+/// Returns "9 tactors, about 480 trials: some 30 minutes" for what is left of a calibration: what a simulated
+/// observer needs, with time for the answers.
+std::string time_text(const calibration& c);
 
 } // namespace tactor::study
