@@ -1,27 +1,354 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "cli/calibrate/calibrate_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/input.hpp"
 #include "cli/say.hpp"
+#include "cli/session/page_options.hpp"
+#include "cli/settings.hpp"
 #include "core/sha256.hpp"
+#include "core/split.hpp"
 #include "core/words.hpp"
+#include "options/option.hpp"
 #include "session/device.hpp"
 #include "session/pipes.hpp"
+#include "study/bids/study_folder.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_files.hpp"
 #include "study/calibrate/person.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/experiment/sequence.hpp"
+#include "study/masking/masking.hpp"
 
 namespace tactor::cli {
 namespace {
+
+struct calibrate_options {
+    study::calibration_settings settings; ///< as far as the options say it
+    std::string output;
+    std::string log; ///< empty: beside the output
+    std::optional<std::string> tactors;
+    std::optional<std::string> simulate;
+    std::optional<std::uint32_t> seed;
+    std::vector<std::string> keypads; ///< input devices of the participant's
+    page_options page;
+    std::optional<study::page_words> words; ///< of the page; none: English
+    std::string masker;                     ///< PCM of the masking noise; empty: none
+    study::masking_options masking;
+    std::string of_staircase; ///< an option from the command line that an adjustment does not have
+    bool has_start = false;   ///< the command line gives the start level, which no ceiling may lower
+    bool resume = false;
+};
+
+constexpr double most_seed = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t most_steps = 20;
+
+std::uint32_t whole(const char* option, const std::string& text, double low, double high)
+{
+    return static_cast<std::uint32_t>(options::parse_whole(option, text, {low, high}, ""));
+}
+
+std::vector<double> steps(const std::string& text)
+{
+    std::vector<double> all;
+    for (const std::string_view part : detail::split(text, ','))
+        all.push_back(options::parse_number("--steps", std::string(part), {0.01, 60.0}, "dB"));
+    if (all.size() > most_steps)
+        refuse_option("--steps", fmt::format("{} steps", all.size()), fmt::format("at most {}", most_steps));
+    return all;
+}
+
+void add_staircase_options(CLI::App& c, calibrate_options& o)
+{
+    study::staircase_options& s = o.settings.staircase;
+    begin_group(c, "Staircase");
+    add_text(c, "--rule", "1up3down|1up2down",
+             "find the level felt in 79.4 % of trials (default), or in 70.7 %", [&s](const std::string& t) {
+                 s.right_for_down = choose("--rule", t, {"1up3down", "1up2down"}) == 0 ? 3 : 2;
+             });
+    add_text(c, "--steps", "DB,DB,...", "steps; the next begins after every second reversal (default 4,2,1)",
+             [&s](const std::string& t) { s.steps_db = steps(t); });
+    add_text(c, "--reversals", "N", "number of reversals of a staircase (default 12)",
+             [&s](const std::string& t) { s.reversals = whole("--reversals", t, 2, study::most_reversals); });
+    add_text(c, "--discard", "N", "number of first reversals that do not count (default 4)",
+             [&s](const std::string& t) { s.discard = whole("--discard", t, 0, study::most_reversals); });
+    add_text(c, "--feedback", "on|off", "show the participant what was right (default on)",
+             [&o](const std::string& t) {
+                 o.settings.feedback = choose("--feedback", t, {"on", "off"}) == 0;
+             });
+    add_text(c, "--practice", "N", "first trials that do not count (default 0)",
+             [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
+    begin_group(c);
+}
+
+void add_masker_options(CLI::App& c, calibrate_options& o)
+{
+    begin_group(c, "Masker");
+    CLI::Option* masker = add_masker_option(
+        c, o.masker, "play masking noise on this second device, in stereo, in both intervals");
+    add_text(c, "--masker-noise", "white|pink", "colour of the noise (default white)",
+             [&o](const std::string& t) {
+                 o.masking.color = choose("--masker-noise", t, {"white", "pink"}) == 0
+                                       ? study::noise_color::white
+                                       : study::noise_color::pink;
+             })
+        ->needs(masker);
+    add_text(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
+             [&o](const std::string& t) {
+                 o.masking.level_dbfs =
+                     options::parse_number("--masker-dbfs", t, detail::bounds_of::masker_dbfs, "dBFS");
+             })
+        ->needs(masker);
+    begin_group(c);
+}
+
+// Levels stay so far below a limit of the power: one that is met to the last digit may act.
+constexpr double power_margin_db = 1e-3;
+
+unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
+{
+    const auto i = detail::number_in<std::uint64_t>(text);
+    if (!i)
+        refuse_option("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
+    if (*i >= n)
+        refuse_option("--tactors", fmt::format("there is no tactor {}", text),
+                      n == 1 ? std::string("the array has tactor 0 only")
+                             : fmt::format("the array has 0 to {}", n - 1));
+    return static_cast<unsigned>(*i);
+}
+
+std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
+{
+    std::vector<unsigned> all;
+    for (const std::string_view part : detail::split(text, ',')) {
+        const std::size_t dash = part.find('-');
+        const unsigned first = tactor_in(part.substr(0, dash), text, n);
+        const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
+        if (last < first)
+            refuse_option("--tactors", fmt::format("\"{}\" runs backwards", part),
+                          fmt::format("as {}-{}", last, first));
+        for (unsigned i = first; i <= last; ++i) {
+            if (std::find(all.begin(), all.end(), i) != all.end())
+                refuse_option("--tactors", fmt::format("tactor {} is named twice", i),
+                              "each is measured once");
+            all.push_back(i);
+        }
+    }
+    return all;
+}
+
+std::string today()
+{
+    constexpr std::size_t day = 10; // 2026-11-21
+    return study::acq_time_text(study::utc_now_ns()).substr(0, day);
+}
+
+void check_staircase(const study::calibration_settings& c)
+{
+    if (c.staircase.reversals < c.staircase.discard + 2)
+        refuse_option(
+            "--discard",
+            fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
+            "two at least must be left");
+}
+
+// Returns the masker in the files' words.
+std::string masker_text(const calibrate_options& o)
+{
+    if (o.masker.empty())
+        return {};
+    return fmt::format("{} noise, {} dBFS", to_string(o.masking.color), o.masking.level_dbfs);
+}
+
+void check_masker(const calibrate_options& o)
+{
+    const double most = study::greatest_noise_dbfs(o.masking.color);
+    if (o.masking.level_dbfs > most)
+        refuse_option("--masker-dbfs",
+                      fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
+                                  o.masking.level_dbfs, most),
+                      "less here, and more at the amplifier of the headphones");
+}
+
+// The levels that a tactor may have.
+double find_ceiling(const array& a, std::size_t tactor, const drive_limits& l)
+{
+    return std::min({0.0, a.tactors[tactor].max_dbfs, l.power_dbfs - power_margin_db});
+}
+
+// Returns the longest time that a tactor is driven in any window: in one trial of a staircase, before which
+// there may be a pause, or in the steady pulses of an adjustment.
+double longest_drive_s(const study::calibration_settings& c, const drive_limits& l)
+{
+    if (c.method == study::calibration_method::staircase)
+        return std::min(c.interval_s, l.window_s);
+    const double period_s = c.interval_s + study::interval_gap_s;
+    const double whole = std::floor(l.window_s / period_s);
+    return whole * c.interval_s + std::min(c.interval_s, l.window_s - whole * period_s);
+}
+
+void check_drive_time(const study::calibration_settings& c, const drive_limits& l)
+{
+    constexpr double rounding_s = 1e-9;
+    const double longest_s = longest_drive_s(c, l);
+    if (l.max_drive_s < l.window_s && longest_s > l.max_drive_s + rounding_s)
+        refuse_option(
+            "--interval",
+            fmt::format("{} of {} s would drive a tactor {:.4g} s in {:.4g} s, and [limits] allow {:.4g} s "
+                        "(max_drive_s)",
+                        c.method == study::calibration_method::staircase ? "intervals" : "steady pulses",
+                        c.interval_s, longest_s, l.window_s, l.max_drive_s),
+            "shorter ones, or another max_drive_s");
+}
+
+void check_carrier(double carrier_hz, unsigned rate)
+{
+    if (carrier_hz >= 0.5 * rate)
+        refuse_option("--carrier", fmt::format("{} Hz cannot be played at a rate of {} Hz", carrier_hz, rate),
+                      fmt::format("below {} Hz, half the rate", 0.5 * rate));
+}
+
+void add_calibrate_options(CLI::App& c, calibrate_options& o)
+{
+    study::calibration_settings& s = o.settings;
+    add_text(c, "--participant", "CODE", "the participant: letters and digits", [&s](const std::string& t) {
+        study::check_code(t);
+        s.participant = t;
+    })->required();
+    c.add_option("-o,--output", o.output, "array file to write, with the thresholds")
+        ->type_name("FILE.toml")
+        ->required();
+    add_text(c, "--method", "staircase|adjustment",
+             "ask about two intervals (default), or let the participant set a level",
+             [&s](const std::string& t) {
+                 s.method = choose("--method", t, {"staircase", "adjustment"}) == 0
+                                ? study::calibration_method::staircase
+                                : study::calibration_method::adjustment;
+             });
+    add_text(c, "--tactors", "LIST", "tactors to measure, in this order, such as 0,3-5 (default all)",
+             [&o](const std::string& t) { o.tactors = t; });
+    add_text(c, "--interval", "S", "duration of each interval or pulse (default 0.5)",
+             [&s](const std::string& t) {
+                 s.interval_s = options::parse_number("--interval", t, detail::bounds_of::interval_s, "s");
+             });
+    add_text(
+        c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&o, &s](const std::string& t) {
+            s.staircase.start_dbfs = options::parse_number("--start-dbfs", t, {study::floor_dbfs, 0}, "dBFS");
+            o.has_start = true;
+        });
+    add_staircase_options(c, o);
+    add_masker_options(c, o);
+    add_page_options(c, o.page);
+    add_text(c, "--page-words", "FILE",
+             "take the words of the page from [page] of this experiment's definition",
+             [&o](const std::string& t) { o.words = study::load_page_words(t); });
+    add_keypad_option(c, o.keypads);
+    add_text(c, "--log", "FILE.tsv",
+             "table with a line for each trial (default: the output's name with .tsv)",
+             [&o](const std::string& t) { o.log = t; });
+    c.add_flag("--resume", o.resume, "continue the session of the log");
+    add_text(c, "--simulate", "SPEC",
+             "let a model answer, without a device: seed=1,threshold=-45,spread=2,lapse=0.02",
+             [&o](const std::string& t) { o.simulate = t; });
+    add_text(c, "--seed", "N", "seed of the order of intervals (default: from the participant's code)",
+             [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
+}
+
+void settle_names(calibrate_options& o)
+{
+    namespace fs = std::filesystem;
+    if (fs::path(o.output).extension() != ".toml")
+        refuse_option("-o", fmt::format("\"{}\" does not end in .toml", o.output),
+                      "it will be an array file, as me.toml");
+    if (o.log.empty())
+        o.log = fs::path(o.output).replace_extension(".tsv").string();
+    else if (fs::path(o.log).extension() != ".tsv")
+        refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
+}
+
+study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
+                                               const environment& e)
+{
+    study::calibration_settings c = o.settings;
+    const array& a = e.tactors;
+    const drive_limits limits = session::settle_limits({}, e);
+    if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
+        refuse_option(o.of_staircase, "an adjustment does not have that",
+                      "leave it out, or use --method staircase");
+    check_staircase(c);
+    check_masker(o);
+    check_page_options(o.page, o.simulate.has_value());
+    if (o.words && !o.page.shown())
+        refuse_option("--page-words", "there is no page", "--display page, or leave it out");
+    if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
+        refuse_option(asked, "nothing is played", "leave it out, or --simulate");
+    if (o.simulate && !o.keypads.empty())
+        refuse_option("--keypad", "nobody is asked", "leave it out, or --simulate");
+    c.masker = masker_text(o);
+    c.masker_pcm = o.masker;
+    c.carrier_hz = s.plan.carrier_hz;
+    check_carrier(c.carrier_hz, session::settle_render(s, e).rate);
+    check_drive_time(c, limits);
+    if (o.tactors) {
+        c.tactors = tactors_in(*o.tactors, a.tactors.size());
+    } else {
+        c.tactors.resize(a.tactors.size());
+        std::iota(c.tactors.begin(), c.tactors.end(), 0U);
+    }
+    for (const unsigned t : c.tactors) {
+        const double ceiling = find_ceiling(a, t, limits);
+        if (o.has_start && c.start_dbfs() > ceiling)
+            refuse_option(
+                "--start-dbfs",
+                fmt::format("tactor {} may have {:.4g} dBFS at most ({}), and {:.4g} dBFS is the start", t,
+                            ceiling, ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
+                            c.start_dbfs()),
+                "start lower");
+        c.ceilings_dbfs.push_back(ceiling);
+    }
+    c.simulate = o.simulate.value_or("");
+    c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::default_seed(c.participant)));
+    c.date = today();
+    return c;
+}
+
+std::string name_tactors(const std::vector<unsigned>& tactors)
+{
+    return fmt::format("{} {}", tactors.size() == 1 ? "tactor" : "tactors", fmt::join(tactors, ", "));
+}
+
+void print_ceilings(const study::calibration_settings& c)
+{
+    std::map<double, std::vector<unsigned>, std::greater<>> tactors; // by ceiling
+    for (std::size_t i = 0; i < c.tactors.size(); ++i)
+        tactors[c.ceilings_dbfs[i]].push_back(c.tactors[i]);
+    std::string all;
+    for (const auto& [ceiling_dbfs, of_ceiling] : tactors)
+        all += fmt::format("{}{:.4g} dBFS at {}", all.empty() ? "" : "; ", ceiling_dbfs,
+                           name_tactors(of_ceiling));
+    say(stderr, "tactor: highest level: {}\n", all);
+    if (const auto unlimited = tactors.find(0.0); unlimited != tactors.end())
+        say(stderr,
+            "tactor: warning: no max_dbfs below 0 limits {}: the level may go to full scale (set max_dbfs in "
+            "[[tactor]] of the array file)\n",
+            name_tactors(unlimited->second));
+}
 
 constexpr double paper_sl_db = 7.0; // Park et al. 2016
 
