@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
+// The commands that read a study: analyze and report.
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,16 +13,61 @@
 #include <tactor/error.hpp>
 
 #include "cli/analyze/analyze_output.hpp"
-#include "cli/analyze/study_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/settings.hpp"
+#include "core/split.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
+#include "study/data/dataset.hpp"
+#include "study/report/methods.hpp"
 
 namespace tactor::cli {
 namespace {
+
+// Reads "A,B,...".
+std::vector<std::string> parse_codes(const char* option, std::string_view text)
+{
+    std::vector<std::string> codes;
+    for (const std::string_view code : detail::split(text, ',')) {
+        if (code.empty())
+            throw error(error_kind::bad_input, option, "a code is empty",
+                        "codes with commas between, as 01,02");
+        codes.emplace_back(code);
+    }
+    return codes;
+}
+
+// Reads "CODE:REASON,...": the reasons are optional, and have no comma.
+void parse_excluded(std::string_view text, study::selection& who)
+{
+    for (const std::string& one : parse_codes("--exclude", text)) {
+        const std::size_t colon = one.find(':');
+        who.without[one.substr(0, colon)] = colon == one.npos ? "" : one.substr(colon + 1);
+    }
+}
+
+// Adds DIR, --participants and --exclude.
+void add_study_options(CLI::App& command, std::string& folder, study::selection& who)
+{
+    command.add_option("DIR", folder, "folder of the study, as tactor experiment wrote it")->required();
+    add_text(command, "--participants", "CODES", "participants to include (default all)",
+             [&who](const std::string& t) { who.only = parse_codes("--participants", t); });
+    add_text(command, "--exclude", "CODE[:REASON],...",
+             "participants to leave out; the report names them with their reasons",
+             [&who](const std::string& t) { parse_excluded(t, who); });
+}
+
+// Makes the folder for what is made of a study, derivatives/tactor in it, if `file` is to lie there.
+void make_derivatives(const std::filesystem::path& folder, const std::filesystem::path& file)
+{
+    const std::filesystem::path ours = folder / "derivatives" / "tactor";
+    std::error_code ignored;
+    if (std::filesystem::weakly_canonical(std::filesystem::absolute(file, ignored).parent_path(), ignored) ==
+        std::filesystem::weakly_canonical(std::filesystem::absolute(ours, ignored), ignored))
+        std::filesystem::create_directories(ours, ignored);
+}
 
 struct analyze_options {
     std::string folder;
@@ -92,7 +141,7 @@ void draw(const analyze_options& o, const study::analysis& a)
     plot::save(draw_analysis(a, o.picture), o.picture.file, o.picture.dpi, o.picture.force);
 }
 
-int run(const analyze_options& o)
+int analyze(const analyze_options& o)
 {
     const study::dataset d = study::read_dataset(o.folder, o.who);
     const study::analysis a = study::analyse(d);
@@ -106,6 +155,30 @@ int run(const analyze_options& o)
         print_trials(d);
     else
         print_analysis_text(a);
+    return status_ok;
+}
+
+struct report_options {
+    std::string folder;
+    std::string file; // empty: standard output
+    bool force = false;
+    study::selection who;
+};
+
+int report(const report_options& o)
+{
+    const study::dataset d = study::read_dataset(o.folder, o.who);
+    const study::study_facts f = study::read_facts(o.folder, d);
+    const study::analysis a = study::analyse(d);
+    const std::string text = study::methods_text(f, d, make_analysis_json(a));
+    if (o.file.empty())
+        fmt::print("{}", text);
+    else {
+        make_derivatives(o.folder, o.file);
+        session::tell_of_pipe_to_write(o.file);
+        study::write_report(o.file, text, o.force);
+    }
+    print_warnings(a);
     return status_ok;
 }
 
@@ -127,7 +200,24 @@ command add_analyze(CLI::App& app)
     c->footer("tactor analyze study\n"
               "tactor analyze study --format json -o study.pdf\n"
               "tactor analyze study --exclude 07:illness");
-    return [o] { return run(*o); };
+    return [o] { return analyze(*o); };
+}
+
+command add_report(CLI::App& app)
+{
+    CLI::App* c = app.add_subcommand("report", "Write the methods section of a study's paper");
+    auto o = std::make_shared<report_options>();
+    add_study_options(*c, o->folder, o->who);
+    add_text(*c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
+             [o](const std::string& t) {
+                 study::check_report_name(t);
+                 o->file = t;
+             });
+    add_force_option(*c, o->force);
+    c->footer("tactor report study\n"
+              "tactor report study -o methods.md\n"
+              "tactor report study --exclude 07:illness");
+    return [o] { return report(*o); };
 }
 
 } // namespace tactor::cli

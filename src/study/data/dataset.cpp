@@ -41,39 +41,35 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
     }
 }
 
-// Returns the codes that an option names, without sub-.
-std::set<std::string> find_codes(const std::vector<std::string>& known,
-                                 const std::vector<std::string>& wanted, std::string_view option)
+// Returns the code that an option names, without sub-.
+std::string find_code(const std::vector<std::string>& known, const std::string& wanted,
+                      std::string_view option)
 {
-    std::set<std::string> codes;
-    for (const std::string& w : wanted) {
-        const std::string code = w.starts_with(prefix) ? w.substr(prefix.size()) : w;
-        if (std::find(known.begin(), known.end(), code) == known.end())
-            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not in participants.tsv", w),
-                        fmt::format("there are {}", fmt::join(known, ", ")));
-        codes.insert(code);
-    }
-    return codes;
+    const std::string code = wanted.starts_with(prefix) ? wanted.substr(prefix.size()) : wanted;
+    if (std::find(known.begin(), known.end(), code) == known.end())
+        throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not in participants.tsv", wanted),
+                    fmt::format("there are {}", fmt::join(known, ", ")));
+    return code;
 }
 
 // Returns the selected codes; adds the others to `excluded`.
 std::vector<std::string> select(const std::vector<std::string>& known, const selection& who,
                                 std::vector<left_out>& excluded)
 {
-    const std::set<std::string> only = find_codes(known, who.only, "--participants");
-    const std::set<std::string> without = find_codes(known, who.without, "--exclude");
+    std::set<std::string> only;
+    for (const std::string& wanted : who.only)
+        only.insert(find_code(known, wanted, "--participants"));
+    std::map<std::string, std::string> without;
+    for (const auto& [wanted, reason] : who.without)
+        without[find_code(known, wanted, "--exclude")] = reason.empty() ? "no reason was given" : reason;
     std::vector<std::string> selected;
-    for (const std::string& code : known) {
-        const auto reason = who.reasons.find(code);
-        if (reason != who.reasons.end())
-            excluded.push_back({code, reason->second});
-        else if (without.contains(code))
-            excluded.push_back({code, "no reason was given"});
+    for (const std::string& code : known)
+        if (without.contains(code))
+            excluded.push_back({code, without[code]});
         else if (!only.empty() && !only.contains(code))
             excluded.push_back({code, "not among those selected"});
         else
             selected.push_back(code);
-    }
     if (selected.empty())
         throw error(error_kind::bad_input, "--participants", "nobody is left",
                     "somebody must have taken part");

@@ -56,9 +56,8 @@ struct dataset {
 
 /// Participants to analyse; codes with or without sub-.
 struct selection {
-    std::vector<std::string> only = {}; ///< empty: all
-    std::vector<std::string> without = {};
-    std::map<std::string, std::string> reasons = {}; ///< why a code of `without` is there
+    std::vector<std::string> only = {};              ///< empty: all
+    std::map<std::string, std::string> without = {}; ///< the reason for each code; may be empty
 };
 
 /// Reads the codes in participants.tsv, without sub-. \throws error (bad_input) with file and line.

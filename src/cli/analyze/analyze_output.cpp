@@ -1,18 +1,169 @@
 // SPDX-License-Identifier: MIT
+#include "cli/analyze/analyze_output.hpp"
+
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "cli/analyze/analyze_output.hpp"
 #include "cli/say.hpp"
 #include "core/words.hpp"
+#include "files/json/json_value.hpp"
 #include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 namespace {
+
+using files::or_null;
+using json = nlohmann::ordered_json;
+
+json ends(const std::optional<study::interval>& i)
+{
+    return i ? json::array({i->first, i->second}) : json(nullptr);
+}
+
+json test_json(const study::t_test& t)
+{
+    return {{"mean", or_null(t.mean)},
+            {"se", or_null(t.se)},
+            {"ci", ends(t.ci)},
+            {"t", or_null(t.t)},
+            {"df", or_null(t.df)},
+            {"p", or_null(t.p)},
+            {"p_signflip", or_null(t.p_signflip)},
+            {"d", or_null(t.d)},
+            {"d_ci", ends(t.d_ci)}};
+}
+
+json mean_json(const study::t_test& t)
+{
+    return {{"mean", or_null(t.mean)}, {"se", or_null(t.se)}, {"ci", ends(t.ci)}};
+}
+
+// Returns a measure over all motions and for each, with its tests or without.
+json cells_json(const study::by_motion& b, const std::vector<std::string>& motions, bool tested)
+{
+    const auto cell = tested ? test_json : mean_json;
+    json j{{"all", cell(b.all)}, {"motion", json::object()}};
+    for (std::size_t m = 0; m < motions.size(); ++m) {
+        json& one = j["motion"][motions[m]] = cell(b.motion[m]);
+        if (tested)
+            one["p_holm"] = or_null(b.p_holm[m]);
+    }
+    return j;
+}
+
+// Null for a factor with one level, which has no effect.
+json effect_json(const study::effect& e, std::size_t levels)
+{
+    if (levels < 2)
+        return nullptr;
+    const auto df = [&](double v) { return v > 0.0 ? json(v) : json(nullptr); };
+    return {{"F", or_null(e.f)},
+            {"df1", df(e.df1)},
+            {"df2", df(e.df2)},
+            {"p", or_null(e.p)},
+            {"epsilon_gg", or_null(e.epsilon_gg)},
+            {"p_gg", or_null(e.p_gg)},
+            {"mauchly_w", or_null(e.mauchly_w)},
+            {"mauchly_p", or_null(e.mauchly_p)},
+            {"eta2_partial", or_null(e.eta2_partial)},
+            {"eta2_generalised", or_null(e.eta2_generalised)}};
+}
+
+json pairs_json(const std::vector<study::comparison>& pairs, const std::vector<std::string>& motions)
+{
+    json j = json::array();
+    for (const study::comparison& c : pairs)
+        j.push_back({{"a", motions[c.a]},
+                     {"b", motions[c.b]},
+                     {"difference", c.difference},
+                     {"q", or_null(c.q)},
+                     {"p", or_null(c.p)}});
+    return j;
+}
+
+void add_choose(json& j, const study::run_analysis& r)
+{
+    const std::vector<std::string>& motions = r.run.motions;
+    j["method"] = r.run.methods.back();
+    j["preference"] = cells_json(r.cells[0], motions, true);
+    j["first_interval"] = {{"mean", or_null(r.first_interval.mean)},
+                           {"t", or_null(r.first_interval.t)},
+                           {"p", or_null(r.first_interval.p)}};
+    j["anova"] = {{"motion", effect_json(r.effects.second, motions.size())}};
+    j["tukey"] = pairs_json(r.pairs[0], motions);
+}
+
+void add_rate(json& j, const study::run_analysis& r)
+{
+    const std::vector<std::string>& motions = r.run.motions;
+    const std::vector<std::string>& methods = r.run.methods;
+    j["means"] = json::object();
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        j["means"][methods[m]] = cells_json(r.cells[m], motions, false);
+    const study::t_test& t = r.paired;
+    j["paired"] = methods.size() < 2 ? json(nullptr) : json{{"difference", or_null(t.mean)},
+                                                            {"ci", ends(t.ci)},
+                                                            {"t", or_null(t.t)},
+                                                            {"df", or_null(t.df)},
+                                                            {"p", or_null(t.p)},
+                                                            {"p_signflip", or_null(t.p_signflip)},
+                                                            {"d_z", or_null(t.d)},
+                                                            {"d_z_ci", ends(t.d_ci)}};
+    j["anova"] = {
+        {"method", effect_json(r.effects.first, methods.size())},
+        {"motion", effect_json(r.effects.second, motions.size())},
+        {"method:motion", effect_json(r.effects.interaction, std::min(methods.size(), motions.size()))}};
+    j["tukey"] = json::object();
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        j["tukey"][methods[m]] = pairs_json(r.pairs[m], motions);
+}
+
+void add_identify(json& j, const study::run_analysis& r)
+{
+    j["chance"] = study::chance(r.run);
+    j["confusion"] = json::object();
+    j["correct"] = json::object();
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
+        json matrix = json::object();
+        for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
+            json row = json::object();
+            for (std::size_t k = 0; k < r.run.motions.size(); ++k)
+                row[r.run.motions[k]] = r.confusion[m][i][k];
+            matrix[r.run.motions[i]] = std::move(row);
+        }
+        j["confusion"][r.run.methods[m]] = std::move(matrix);
+        j["correct"][r.run.methods[m]] = cells_json(r.cells[m], r.run.motions, true);
+    }
+}
+
+json run_json(const study::run_analysis& r)
+{
+    json j{{"task", to_string(r.run.task)}, {"n", r.n}};
+    switch (r.run.task) {
+    case study::task_kind::choose:
+        add_choose(j, r);
+        break;
+    case study::task_kind::rate:
+        add_rate(j, r);
+        break;
+    case study::task_kind::identify:
+        add_identify(j, r);
+        break;
+    }
+    j["trials"] = r.trials;
+    j["early"] = r.early;
+    j["left_out"] = json::array();
+    for (const study::left_out& l : r.missing)
+        j["left_out"].push_back({{"participant", l.participant}, {"why", l.why}});
+    return j;
+}
 
 using study::task_kind;
 
@@ -255,26 +406,68 @@ std::string write_model(const study::run_outline& r)
                        r.methods.size() > 1 ? "method * " : "", motion, people, data);
 }
 
-// The columns that depend on the task; "method" of choose is the one that may be chosen.
-std::string answer(const study::trial& t, const study::run_outline& r)
-{
-    switch (r.task) {
-    case task_kind::choose: {
-        const bool chosen = study::last_chosen(t, r);
-        const bool first = t.method_1 + 1 == r.methods.size();
-        return fmt::format("{}\t{}\t{}\t{}\tn/a\tn/a", r.methods.back(), first ? "0.5" : "-0.5", t.response,
-                           chosen ? 1 : 0);
-    }
-    case task_kind::rate:
-        return fmt::format("{}\tn/a\t{}\tn/a\t{}\tn/a", r.methods[t.method_1], t.response, t.response);
-    case task_kind::identify:
-        break;
-    }
-    return fmt::format("{}\tn/a\t{}\tn/a\tn/a\t{}", r.methods[t.method_1], r.motions[t.response],
-                       t.response == t.motion ? 1 : 0);
-}
+// A column of the trials.
+struct trial_column {
+    const char* name;
+    std::string (*cell)(const study::trial& t, const study::run_outline& r);
+};
+
+constexpr trial_column trial_columns[] = {
+    {"run", [](const auto&, const auto& r) { return r.name; }},
+    {"task", [](const auto&, const auto& r) { return std::string(to_string(r.task)); }},
+    {"trial", [](const auto& t, const auto&) { return fmt::format("{}", t.place); }},
+    {"attempt", [](const auto& t, const auto&) { return fmt::format("{}", t.attempt); }},
+    {"motion", [](const auto& t, const auto& r) { return r.motions[t.motion]; }},
+    // The method that may be chosen, in runs that choose.
+    {"method",
+     [](const auto& t, const auto& r) {
+         return r.task == task_kind::choose ? r.methods.back() : r.methods[t.method_1];
+     }},
+    {"order",
+     [](const auto& t, const auto& r) -> std::string {
+         return r.task != task_kind::choose ? "n/a" : t.method_1 + 1 == r.methods.size() ? "0.5" : "-0.5";
+     }},
+    {"response",
+     [](const auto& t, const auto& r) {
+         return r.task == task_kind::identify ? r.motions[t.response] : fmt::format("{}", t.response);
+     }},
+    {"chosen",
+     [](const auto& t, const auto& r) -> std::string {
+         return r.task != task_kind::choose ? "n/a" : study::last_chosen(t, r) ? "1" : "0";
+     }},
+    {"rating",
+     [](const auto& t, const auto& r) {
+         return r.task == task_kind::rate ? fmt::format("{}", t.response) : "n/a";
+     }},
+    {"correct",
+     [](const auto& t, const auto& r) -> std::string {
+         return r.task != task_kind::identify ? "n/a" : t.response == t.motion ? "1" : "0";
+     }},
+    {"response_time",
+     [](const auto& t, const auto&) {
+         return t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a";
+     }},
+    {"early",
+     [](const auto& t, const auto&) -> std::string {
+         return !t.early ? "n/a" : *t.early ? "true" : "false";
+     }},
+};
 
 } // namespace
+
+nlohmann::ordered_json make_analysis_json(const study::analysis& a)
+{
+    json j{{"schema", "tactor-analysis/1"}, {"experiment", a.experiment}, {"participants", a.participants},
+           {"simulated", a.simulated},      {"runs", json::object()},     {"void", json::object()}};
+    for (const study::run_analysis& r : a.runs) {
+        j["runs"][r.run.name] = run_json(r);
+        j["void"][r.run.name] = r.voids;
+    }
+    j["warnings"] = a.warnings;
+    for (const std::string& w : a.no_figures)
+        j["warnings"].push_back(w);
+    return j;
+}
 
 void print_analysis_text(const study::analysis& a)
 {
@@ -320,17 +513,18 @@ void print_trials(const study::dataset& d)
                         notes);
     for (const study::run_outline& r : d.experiment.runs)
         text += fmt::format("# {}\n", write_model(r));
-    text += "participant\trun\ttask\ttrial\tattempt\tmotion\tmethod\torder\tresponse\tchosen\trating\tcorrect"
-            "\tresponse_time\tearly\n";
+    text += "participant";
+    for (const trial_column& c : trial_columns)
+        text += fmt::format("\t{}", c.name);
+    text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i)
-        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
-            const study::run_outline& r = d.experiment.runs[k];
-            for (const study::trial& t : d.data[i][k].trials)
-                text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", d.participants[i], r.name,
-                                    to_string(r.task), t.place, t.attempt, r.motions[t.motion], answer(t, r),
-                                    t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a",
-                                    t.early ? (*t.early ? "true" : "false") : "n/a");
-        }
+        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k)
+            for (const study::trial& t : d.data[i][k].trials) {
+                text += d.participants[i];
+                for (const trial_column& c : trial_columns)
+                    text += "\t" + c.cell(t, d.experiment.runs[k]);
+                text += '\n';
+            }
     fmt::print("{}", text);
 }
 
