@@ -16,7 +16,7 @@
 #include "has.hpp"
 #include "study/bids/disk.hpp"
 #include "study/bids/study_folder.hpp"
-#include "study/data/columns.hpp"
+#include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study::test_study_files {

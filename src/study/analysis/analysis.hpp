@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "study/data/dataset.hpp"
-#include "study/data/outline.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {

@@ -13,9 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "study/bids/disk.hpp"
-#include "study/data/columns.hpp"
 #include "study/data/dataset.hpp"
-#include "study/data/outline.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

@@ -18,9 +18,7 @@
 
 #include "core/split.hpp"
 #include "core/words.hpp"
-#include "study/data/columns.hpp"
 #include "study/data/dataset.hpp"
-#include "study/data/outline.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {
@@ -92,15 +90,6 @@ ordered column_json(std::string_view description, std::string_view units = {})
     return j;
 }
 
-std::string response_meaning(const run_definition& r)
-{
-    if (r.outline.task == task_kind::choose)
-        return "Which of the two stimuli was chosen, 1 or 2";
-    if (r.outline.task == task_kind::rate)
-        return fmt::format("The rating, 1 to {}", r.outline.scale);
-    return "The motion that was named";
-}
-
 std::string readme_text(const experiment_definition& d, bool simulated)
 {
     return fmt::format(
@@ -133,16 +122,14 @@ std::string participants_text(bool simulated)
 std::string task_text(const run_definition& r, bool simulated)
 {
     ordered j{{"TaskName", r.outline.name}};
-    j["TaskDescription"] = fmt::format(
-        "{}{}", simulated ? std::string(simulated_note) + " " : "",
-        r.outline.task == task_kind::choose ? "Two stimuli, one after the other, of which one is chosen"
-        : r.outline.task == task_kind::rate ? "One stimulus, which is rated"
-                                            : "One stimulus, whose motion is named");
+    const task_row& task = find_task(r.outline.task);
+    j["TaskDescription"] = (simulated ? std::string(simulated_note) + " " : "") + std::string(task.trial);
     j["Instructions"] = r.question;
     if (!r.labels.empty())
         j["Labels"] = r.labels;
     for (const trial_column& c : trial_columns)
-        j[std::string(c.name)] = column_json(c.meaning.empty() ? response_meaning(r) : c.meaning, c.unit);
+        j[std::string(c.name)] = column_json(c.meaning, c.unit);
+    j["response"] = column_json(fmt::format(fmt::runtime(task.response), r.outline.scale));
     j["early"]["Levels"] = {{"true", fmt::format("sooner than {} s", r.min_response_s)}, {"false", "later"}};
     j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
     return json_text(j);

@@ -1,26 +1,151 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A study's folder (BIDS) as values. The analysis reads these files and nothing else:
+/// A study's folder (BIDS) as values: the outline of its experiment, the columns of its trials, and its data.
+/// The analysis reads these files and nothing else:
 ///
 ///   participants.tsv                          participant_id: who takes part, in this order
-///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; columns trial attempt motion method_1 method_2
-///                                             response rating void response_time, early if it is there,
-///                                             others are left alone
+///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; of their columns those that column_use says
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
 ///                                             left alone: the order of motions and methods, and the runs
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
-#include "study/data/outline.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {
+
+enum class task_kind { choose, rate, identify };
+
+/// A task as definitions and descriptions have it.
+struct task_row {
+    std::string_view name;
+    std::string_view trial;    ///< kind of a trial
+    std::string_view response; ///< meaning of its response; {} is the scale
+};
+
+/// Rows in the order of task_kind.
+inline constexpr std::array<task_row, 3> tasks{{
+    {"choose", "Two stimuli, one after the other, of which one is chosen",
+     "Which of the two stimuli was chosen, 1 or 2"},
+    {"rate", "One stimulus, which is rated", "The rating, 1 to {}"},
+    {"identify", "One stimulus, whose motion is named", "The motion that was named"},
+}};
+constexpr const task_row& find_task(task_kind t) noexcept
+{
+    return tasks[static_cast<std::size_t>(t)];
+}
+constexpr std::string_view to_string(task_kind t) noexcept
+{
+    return find_task(t).name;
+}
+
+struct run_outline {
+    std::string name;
+    std::string file_name; ///< the name's letters and digits, which name its files
+    task_kind task = task_kind::choose;
+    std::vector<std::string> motions = {}; ///< in the order of the definition
+    std::vector<std::string> methods = {}; ///< the same; what is chosen or compared is the last
+    unsigned trials = 0;                   ///< 0: the definition does not say
+    unsigned scale = 5;                    ///< rate: 1 to this
+
+    friend bool operator==(const run_outline&, const run_outline&) = default;
+};
+
+struct experiment_outline {
+    std::string name;
+    std::vector<run_outline> runs = {};
+
+    friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
+};
+
+/// Returns the letters and digits of a run's name (BIDS allows no others in a task's).
+std::string make_file_name(std::string_view run);
+
+// Paths in a study's folder; `code` is the participant's, without sub-.
+
+/// Returns sourcedata/sub-CODE.
+std::filesystem::path source_path(std::string_view code);
+/// Returns the path of a run's trials: sub-CODE/beh/sub-CODE_task-NAME_beh.tsv.
+std::filesystem::path table_path(std::string_view code, const run_outline& run);
+/// Returns the path of what describes a run's tables: task-NAME_beh.json.
+std::filesystem::path description_path(const run_outline& run);
+
+struct session_data {
+    bool simulated = false;
+    std::string text; ///< of the experiment, TOML
+    experiment_outline experiment;
+};
+
+/// Reads a session.json. \throws error (bad_input) with file and, where it has one, line.
+session_data read_session(const std::filesystem::path& file);
+
+/// A trial as a line of its table. Empty texts and missing values are n/a.
+struct trial_row {
+    std::optional<double> onset_s = {}; ///< since the run's first sample at the DAC
+    double duration_s = 0.0;            ///< from the first stimulus frame to the last, the gap included
+    unsigned trial = 0;                 ///< place in the sequence, from 1
+    unsigned attempt = 1;
+    std::string motion = {};
+    std::string method_1 = {};
+    std::string method_2 = {};
+    std::string response = {};
+    std::optional<double> response_time_s = {};
+    std::optional<bool> early = {}; ///< none: without an answer, or of a version that did not record it
+    std::optional<unsigned> rating = {};
+    bool is_void = false;
+    unsigned xruns = 0;
+    unsigned stream = 0; ///< counts openings of the device, from 1
+    std::optional<std::uint64_t> frame_1 = {};
+    std::optional<std::uint64_t> frame_2 = {};
+    std::string plan_1 = {}; ///< SHA-256
+    std::string plan_2 = {};
+};
+
+/// Reader that needs a column.
+enum class column_use {
+    analysis, ///< the analysis, and sessions that go on
+    session,  ///< sessions that go on
+    nobody,   ///< tables of older versions do not have it
+};
+
+struct trial_column {
+    std::string_view name;
+    std::string_view meaning; ///< empty: depends on the task
+    std::string_view unit;    ///< empty: none
+    std::variant<std::string trial_row::*, double trial_row::*, std::optional<double> trial_row::*,
+                 unsigned trial_row::*, std::optional<unsigned> trial_row::*,
+                 std::optional<std::uint64_t> trial_row::*, bool trial_row::*,
+                 std::optional<bool> trial_row::*>
+        member;
+    column_use use = column_use::session;
+    unsigned least = 0; ///< of whole numbers
+};
+
+/// Columns in the order of a new table.
+extern const std::array<trial_column, 18> trial_columns;
+
+/// Returns the cells of a row, in the order of a new table.
+named_cells make_cells(const trial_row& r);
+
+/// Reads all columns of all lines. \throws error (bad_input) with file and line.
+std::vector<trial_row> read_rows(const text_table& t);
+
+/// Tests whether a crash cut the table's last line within its last cell, a plan.
+bool is_cut_in_plan(const text_table& t);
+
+/// Reads a table of trials; a last line that a crash cut off is no row of it. \throws error (bad_input)
+/// with file and line.
+text_table read_trials(const std::filesystem::path& table);
 
 /// A valid trial. `motion` and the methods are indices into the run's lists.
 struct trial {

@@ -353,8 +353,11 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
                    fmt::format("the files of the runs \"{}\" and \"{}\" would have one name",
                                other.outline.name, o.name),
                    "their letters and digits must differ");
-    const std::string task = t.need(t.choice("task", {"choose", "rate", "identify"}), "task");
-    o.task = task == "choose" ? task_kind::choose : task == "rate" ? task_kind::rate : task_kind::identify;
+    std::vector<std::string_view> names;
+    for (const task_row& row : tasks)
+        names.push_back(row.name);
+    const std::string task = t.need(t.choice("task", names), "task");
+    o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
     o.trials = t.whole("trials", 1, most_trials).value_or(0);
     o.scale = t.whole("scale", 2, 9).value_or(o.scale);
     r.motions = places_in(t, "motions", d.motions);

@@ -17,7 +17,7 @@
 #include <tactor/plan.hpp>
 #include <tactor/stroke.hpp>
 
-#include "study/data/outline.hpp"
+#include "study/data/dataset.hpp"
 #include "study/masking/masking.hpp"
 
 namespace tactor::study {
