@@ -28,7 +28,11 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail_on_disk(const fs::path& file, int code)
 {
-    throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
+    throw error(error_kind::runtime, file.string(), std::strerror(code),
+                fmt::format("what was answered before is kept; {}--resume goes on",
+                            code == ENOSPC || code == EDQUOT ? "free some space, and "
+                            : code == EROFS                  ? "make the disk writable again, and "
+                                                             : ""));
 }
 
 detail::owned_fd open_file(const fs::path& file, int flags)
@@ -150,14 +154,14 @@ void remove_leftovers(const fs::path& folder) noexcept
         fs::remove(p, failed);
 }
 
-folder_lock::folder_lock(const fs::path& folder)
-    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+detail::owned_fd lock_folder(const fs::path& folder)
 {
-    if (!fd_)
+    detail::owned_fd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!fd)
         throw error(error_kind::runtime, folder.string(), std::strerror(errno),
                     "name a folder that can be read and written");
-    if (::flock(fd_.get(), LOCK_EX | LOCK_NB) == 0)
-        return;
+    if (::flock(fd.get(), LOCK_EX | LOCK_NB) == 0)
+        return fd;
     const int code = errno;
     if (code == EWOULDBLOCK)
         throw error(error_kind::bad_input, folder.string(), "another session is running in this folder",

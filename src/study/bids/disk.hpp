@@ -3,7 +3,6 @@
 /// Files that survive a crash at any moment: whole ones, and text at the end of one.
 #pragma once
 
-#include <cerrno>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -42,25 +41,8 @@ void try_to_write(const std::filesystem::path& file);
 /// Removes the files that a crash in write_whole() left in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 
-/// Keeps other processes out of a folder as long as it lives.
-class folder_lock {
-public:
-    /// Locks the folder. \throws error: bad_input if another process has it, runtime for what the system
-    /// refuses.
-    explicit folder_lock(const std::filesystem::path& folder);
-
-private:
-    detail::owned_fd fd_;
-};
-
-/// Returns a hint for an errno: what is kept, and what to do.
-constexpr const char* what_is_kept(int code) noexcept
-{
-    if (code == ENOSPC || code == EDQUOT)
-        return "what was answered before is kept; free some space, and --resume goes on";
-    if (code == EROFS)
-        return "what was answered before is kept; make the disk writable again, and --resume goes on";
-    return "what was answered before is kept; --resume goes on";
-}
+/// Keeps other processes out of a folder as long as the result lives. \throws error: bad_input if another
+/// process has it, runtime for what the system refuses.
+detail::owned_fd lock_folder(const std::filesystem::path& folder);
 
 } // namespace tactor::study

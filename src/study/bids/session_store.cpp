@@ -50,32 +50,22 @@ std::string brief(const ordered& j, const std::string& key)
     return text.size() > longest ? std::string("another") : text;
 }
 
-std::string new_table(const named_cells& cells)
-{
-    return text_table("", header_line(cells)).with_line(cells);
-}
-
 std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
 {
     std::error_code ignored;
     return {fs::file_size(file, ignored), fs::last_write_time(file, ignored)};
 }
 
-// Appends a line to a table and returns its header. A table that cannot be read any more takes an answer
-// nevertheless: in the order of a new table.
-std::optional<std::string> append_to_read(const fs::path& file, const named_cells& cells)
+// Reads the columns of a table that is there. Returns what its last line lacks before another one can follow.
+// A table that cannot be read any more takes an answer nevertheless: in the order of a new table.
+std::string read_columns(text_table& t)
 {
-    std::string text = new_table(cells);
-    text.erase(0, text.find('\n'));
-    std::optional<std::string> header;
     try {
-        const text_table t(file, last_line::may_be_cut);
-        text = t.missing_end() + t.line(cells);
-        header = t.header();
-    } catch (const error&) { // the text is in the order of a new table
+        t = text_table(t.file(), last_line::may_be_cut);
+        return t.missing_end();
+    } catch (const error&) {
+        return "\n";
     }
-    append_text(file, text);
-    return header;
 }
 
 } // namespace
@@ -129,15 +119,10 @@ session_store::~session_store()
 
 void session_store::try_to_write() const
 {
-    const std::vector<run_definition>& runs = folder_.definition().runs;
-    std::vector<fs::path> files;
-    for (const run_definition& r : runs)
-        if (const fs::path file = folder_.description(r); !is_on_disk(file))
-            files.push_back(file);
-    files.push_back(folder_.path() / "participants.tsv");
-    files.push_back(folder_.scans(code_));
-    for (const run_definition& r : runs)
-        files.push_back(table(r));
+    std::vector<fs::path> files = folder_.list_files(code_);
+    std::erase_if(files, [](const fs::path& p) { return is_on_disk(p) && p.extension() != ".tsv"; });
+    for (const run_definition* r : runs_)
+        files.push_back(table(*r));
     files.push_back(source_ / "session.json");
     for (const fs::path& file : files)
         study::try_to_write(file);
@@ -190,22 +175,38 @@ std::vector<trial_row> session_store::rows(const run_definition& r) const
 
 std::vector<trial_row> session_store::practice_rows(const run_definition& r) const
 {
+    std::vector<trial_row> own;
     const fs::path practice = source_ / "practice.tsv";
     if (!is_on_disk(practice))
-        return {};
+        return own;
     const text_table t = read_trials(practice);
     std::vector<trial_row> all = read_rows(t);
-    std::vector<trial_row> own;
     for (std::size_t i = 0; i < t.rows(); ++i)
         if (t.need(i, "run") == r.outline.name)
             own.push_back(std::move(all[i]));
     return own;
 }
 
+// Calls `write`, and once more in the reserved room if that fails.
+template <class Write>
+void session_store::keep(const Write& write)
+{
+    try {
+        write();
+    } catch (const error& e) {
+        if (!is_on_disk(source_ / reserved.front()))
+            throw;
+        release();
+        write();
+        throw error(error_kind::runtime, e.subject(), e.why(),
+                    "the last answer is kept; free some space, and --resume goes on");
+    }
+}
+
 void session_store::append(const run_definition& r, const trial_row& row, const std::string& acq_time)
 {
     const fs::path file = table(r);
-    keeping([&] {
+    keep([&] {
         if (!is_on_disk(file)) {
             make_folder(file.parent_path().parent_path());
             make_folder(file.parent_path());
@@ -220,32 +221,29 @@ void session_store::append_practice(const run_definition& r, const trial_row& ro
 {
     named_cells cells = make_cells(row);
     cells.insert(cells.begin(), {"run", r.outline.name});
-    keeping([&] { write_line(source_ / "practice.tsv", cells); });
+    keep([&] { write_line(source_ / "practice.tsv", cells); });
 }
 
-// Appends a line, or makes the table with it. Reads the table only the first time, and after somebody else
-// has changed it.
+// Appends a line, or makes the table with it. Reads a table that this process did not write last, or that
+// somebody else has changed.
 void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
-    const auto known = known_.find(file);
-    std::optional<std::string> header;
-    if (!is_on_disk(file)) {
-        write_whole(file, new_table(cells));
-        header = header_line(cells);
-    } else if (known != known_.end() && known->second.left == find_state(file)) {
-        append_text(file, known->second.header.line(cells));
-        known->second.left = find_state(file);
+    const bool known = last_ && last_->file == file && last_->state == find_state(file);
+    if (!known)
+        last_ = {file, text_table(file, header_line(cells)), {}};
+    if (is_on_disk(file)) {
+        const std::string end = known ? std::string() : read_columns(last_->columns);
+        append_text(file, end + last_->columns.line(cells));
     } else {
-        header = append_to_read(file, cells);
+        write_whole(file, last_->columns.with_line(cells));
     }
-    if (header)
-        known_.insert_or_assign(file, known_table{text_table(file, *std::move(header)), find_state(file)});
+    last_->state = find_state(file);
 }
 
 void session_store::make_last_void(const run_definition& r)
 {
     const text_table t(table(r));
-    keeping([&] { write_whole(table(r), t.with_cells(t.rows() - 1, {{"void", "true"}})); });
+    keep([&] { write_whole(table(r), t.with_cells(t.rows() - 1, {{"void", "true"}})); });
 }
 
 std::optional<std::string> session_store::acq_time(const run_definition& r) const
@@ -272,20 +270,6 @@ void session_store::release() noexcept
     std::error_code ignored;
     for (const char* name : reserved)
         fs::remove(source_ / name, ignored);
-}
-
-void session_store::keeping(const std::function<void()>& write)
-{
-    try {
-        write();
-    } catch (const error& e) {
-        if (!is_on_disk(source_ / reserved.front()))
-            throw;
-        release();
-        write();
-        throw error(error_kind::runtime, e.subject(), e.why(),
-                    "the last answer is kept; free some space, and --resume goes on");
-    }
 }
 
 void session_store::check_tables() const

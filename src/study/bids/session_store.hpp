@@ -6,8 +6,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -86,14 +84,16 @@ private:
     std::string scan_name(const run_definition& r) const;
     void reserve();
     void release() noexcept;
-    void keeping(const std::function<void()>& write);
+    template <class Write>
+    void keep(const Write& write);
     void write_line(const std::filesystem::path& file, const named_cells& cells);
 
-    /// A table as this process left it, with its size and time: the next line needs its header alone, unless
-    /// somebody else has changed it.
-    struct known_table {
-        text_table header;
-        std::pair<std::uintmax_t, std::filesystem::file_time_type> left;
+    /// The table of the last line, with the size and time that this left it with: the next line needs its
+    /// columns alone, unless somebody else has changed it.
+    struct written_table {
+        std::filesystem::path file;
+        text_table columns;
+        std::pair<std::uintmax_t, std::filesystem::file_time_type> state;
     };
 
     study_folder& folder_;
@@ -103,7 +103,7 @@ private:
     std::filesystem::path source_; ///< sourcedata/sub-CODE
     bool resumed_ = false;
     bool begun_ = false; ///< by this process
-    std::map<std::filesystem::path, known_table> known_ = {};
+    std::optional<written_table> last_ = {};
 };
 
 } // namespace tactor::study

@@ -152,7 +152,7 @@ void check_code(const std::string& code)
 study_folder::study_folder(fs::path folder, const experiment_definition& d, bool simulated)
     : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
       is_new_(make_study_folder(folder_)),
-      lock_(folder_),
+      lock_(lock_folder(folder_)),
       definition_(d),
       simulated_(simulated)
 {
@@ -225,7 +225,7 @@ std::vector<fs::path> study_folder::list_files(const std::string& code) const
     for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
         all.push_back(folder_ / name);
     for (const run_definition& r : definition_.runs)
-        all.push_back(description(r));
+        all.push_back(folder_ / description_path(r.outline));
     all.push_back(scans(code));
     return all;
 }
@@ -241,12 +241,7 @@ void study_folder::describe() const
     put(folder_ / "README", readme_text(definition_, simulated_));
     put(folder_ / "participants.json", participants_text(simulated_));
     for (const run_definition& r : definition_.runs)
-        put(description(r), task_text(r, simulated_));
-}
-
-fs::path study_folder::description(const run_definition& r) const
-{
-    return folder_ / description_path(r.outline);
+        put(folder_ / description_path(r.outline), task_text(r, simulated_));
 }
 
 fs::path study_folder::scans(const std::string& code) const

@@ -31,12 +31,10 @@ public:
     study_folder& operator=(const study_folder&) = delete;
 
     const std::filesystem::path& path() const noexcept { return folder_; }
-    const experiment_definition& definition() const noexcept { return definition_; }
 
     /// Sentences about allowed differences from the sessions that are there.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-    std::filesystem::path description(const run_definition& r) const;
     std::filesystem::path scans(const std::string& code) const;
 
     /// Writes the descriptions that are not there yet: dataset_description.json, README, participants.json,
@@ -72,7 +70,7 @@ private:
 
     std::filesystem::path folder_;
     bool is_new_;
-    folder_lock lock_;
+    detail::owned_fd lock_;
     const experiment_definition& definition_;
     bool simulated_;
     std::vector<std::string> warnings_ = {};

@@ -246,11 +246,9 @@ void text_table::take_row(table_line line, bool may_be_cut)
         line.cells.pop_back();
     const bool plain = std::all_of(line.cells.begin(), line.cells.end(),
                                    [](const table_cell& c) { return is_plain_text(c.text); });
-    const bool few = line.cells.size() < columns_.size();
-    if (may_be_cut && !line.ended && (few || !plain)) {
-        cut_ = std::move(line);
-        return;
-    }
+    cut_ = may_be_cut && !line.ended && (!plain || line.cells.size() < columns_.size());
+    if (cut_)
+        return rows_.push_back(std::move(line));
     if (!plain)
         refuse_line(file_, line.number, "it is not UTF-8", utf8_hint);
     if (line.cells.size() == columns_.size() + 1 && rows_.empty() && line.cells.front().text == "1")
@@ -329,20 +327,14 @@ void text_table::refuse(std::size_t row, std::string_view why, std::string_view 
     refuse_line(file_, rows_[row].number, why, hint);
 }
 
-void text_table::leave_out_last()
-{
-    cut_ = std::move(rows_.back());
-    rows_.pop_back();
-}
-
 std::optional<std::size_t> text_table::cut_at() const noexcept
 {
-    return cut_ ? std::optional(cut_->begin()) : std::nullopt;
+    return cut_ ? std::optional(rows_.back().begin()) : std::nullopt;
 }
 
 void text_table::refuse_cut(std::string_view hint) const
 {
-    refuse_line(file_, cut_->number, "the last line is cut off", hint);
+    refuse(rows(), "the last line is cut off", hint);
 }
 
 std::string text_table::line(const named_cells& cells) const
@@ -354,14 +346,6 @@ std::string text_table::line(const named_cells& cells) const
         text += named == cells.end() ? "n/a" : written_cell(named->second);
         text += &column == &columns_.back() ? line_end_ : "\t";
     }
-    return text;
-}
-
-std::string text_table::header() const
-{
-    std::string text;
-    for (const std::string& column : columns_)
-        text += written_cell(column) + (&column == &columns_.back() ? line_end_ : "\t");
     return text;
 }
 

@@ -68,7 +68,7 @@ public:
     /// The same of a text; `file` names it in messages.
     text_table(const std::filesystem::path& file, std::string text, last_line end = last_line::whole);
 
-    std::size_t rows() const noexcept { return rows_.size(); }
+    std::size_t rows() const noexcept { return rows_.size() - (cut_ ? 1 : 0); }
     const std::vector<std::string>& columns() const noexcept { return columns_; }
     bool has(std::string_view column) const { return find(column).has_value(); }
     /// \throws error (bad_input) where there is no such column, with rows or without.
@@ -93,14 +93,12 @@ public:
     /// True where no line end follows the last row.
     bool is_open() const noexcept { return !rows_.empty() && !cut_ && !rows_.back().ended; }
     /// Takes the last row for one that is cut off.
-    void leave_out_last();
+    void leave_out_last() noexcept { cut_ = true; }
     /// The byte at which a line begins that is cut off; it is none of the rows.
     std::optional<std::size_t> cut_at() const noexcept;
     /// Refuses the line that is cut off. There is one.
     [[noreturn]] void refuse_cut(std::string_view hint) const;
 
-    /// Returns the table's first line with its end.
-    std::string header() const;
     /// Returns a line with its end: n/a where nothing is named, and no column that is not there.
     std::string line(const named_cells& cells) const;
     /// Returns what the file's last line lacks before another one can follow: mostly nothing.
@@ -120,7 +118,7 @@ private:
     std::string line_end_ = "\n"; ///< as the header has it
     std::vector<std::string> columns_;
     std::vector<table_line> rows_;
-    std::optional<table_line> cut_;
+    bool cut_ = false; ///< the last of them is cut off
 };
 
 } // namespace tactor::study
