@@ -182,7 +182,7 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
 // Plays the definition's noise, and its stimuli under it, by keys, until q or the end of the lines.
 void try_noise(const study::prepared_experiment& p, study::stage& there)
 {
-    const std::vector<const study::stimulus*> stimuli = p.stimuli.all();
+    const std::vector<study::stimulus>& stimuli = p.stimuli.all();
     study::session_keys keys(there, {});
     std::size_t next = 0;
     bool on = false;
@@ -196,7 +196,7 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
         show(on ? "noise\n" : "silence\n");
     };
     const auto play = [&] {
-        const score s(p.where.tactors, stimuli[next]->plan, p.render);
+        const score s(p.where.tactors, stimuli[next].plan, p.render);
         next = (next + 1) % stimuli.size();
         const study::given_stimulus g = there.give(s, 0.0, [](std::uint64_t) {});
         show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),

@@ -128,28 +128,28 @@ void session_store::try_to_write() const
         study::try_to_write(file);
 }
 
-void session_store::begin(const std::vector<const stimulus*>& stimuli)
+void session_store::begin(const std::vector<stimulus>& stimuli)
 {
     begun_ = true;
     make_folder(folder_.path() / "sourcedata");
     make_folder(source_);
     make_folder(source_ / "plans");
     reserve();
-    for (const stimulus* s : stimuli) {
-        const fs::path file = source_ / "plans" / (s->hash + ".json");
+    for (const stimulus& s : stimuli) {
+        const fs::path file = source_ / "plans" / (s.hash + ".json");
         if (!is_on_disk(file))
-            write_whole(file, s->text);
+            write_whole(file, s.text);
     }
     if (!resumed_)
         write_whole(source_ / "session.json", json_text(facts_));
     folder_.describe();
 }
 
-std::vector<fs::path> session_store::missing(const std::vector<const stimulus*>& stimuli) const
+std::vector<fs::path> session_store::missing(const std::vector<stimulus>& stimuli) const
 {
     std::vector<fs::path> all = folder_.list_files(code_);
-    for (const stimulus* s : stimuli)
-        all.push_back(source_ / "plans" / (s->hash + ".json"));
+    for (const stimulus& s : stimuli)
+        all.push_back(source_ / "plans" / (s.hash + ".json"));
     std::erase_if(all, [](const fs::path& p) { return is_on_disk(p); });
     return all;
 }

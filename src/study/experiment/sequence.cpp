@@ -37,11 +37,18 @@ std::vector<planned_trial> list_cells(const run_definition& r)
     return cells;
 }
 
-// Draws n different cells, with each motion, and each method or order, equally often as far as n allows. In
-// `cells` those of one motion stand together.
-std::vector<planned_trial> draw_cells(const std::vector<planned_trial>& cells, std::size_t motions,
-                                      std::size_t n, random_numbers& r)
+// Draws n trials: each cell equally often, and of the rest, which are different cells, each motion and each
+// method or order equally often as far as n allows. The cells of one motion stand together.
+std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
 {
+    const std::vector<planned_trial> cells = list_cells(run);
+    const std::size_t whole = n - n % cells.size();
+    std::vector<planned_trial> all;
+    for (std::size_t i = 0; i < whole; ++i)
+        all.push_back(cells[i % cells.size()]);
+    if (whole == n)
+        return all;
+    const std::size_t motions = run.motions.size();
     const std::size_t kinds = cells.size() / motions;
     std::vector<std::size_t> first(motions);
     std::vector<std::size_t> second(kinds);
@@ -49,24 +56,8 @@ std::vector<planned_trial> draw_cells(const std::vector<planned_trial>& cells, s
     std::iota(second.begin(), second.end(), 0);
     shuffle(std::span(first), r);
     shuffle(std::span(second), r);
-    std::vector<planned_trial> some;
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t layer = i / motions;
-        some.push_back(cells[first[i % motions] * kinds + second[(i % motions + layer) % kinds]]);
-    }
-    return some;
-}
-
-std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
-{
-    const std::vector<planned_trial> cells = list_cells(run);
-    std::vector<planned_trial> all;
-    while (all.size() + cells.size() <= n)
-        all.insert(all.end(), cells.begin(), cells.end());
-    if (all.size() < n) {
-        const auto rest = draw_cells(cells, run.motions.size(), n - all.size(), r);
-        all.insert(all.end(), rest.begin(), rest.end());
-    }
+    for (std::size_t i = 0; whole + i < n; ++i)
+        all.push_back(cells[first[i % motions] * kinds + second[(i % motions + i / motions) % kinds]]);
     return all;
 }
 

@@ -49,17 +49,17 @@ std::vector<point> target_path(const stroke& s)
 }
 
 stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const render_options& o)
-    : array_(a),
-      options_(o),
-      gap_frames_(static_cast<std::uint64_t>(std::llround(d.gap_s * o.rate))),
-      by_motion_(d.motions.size(), std::vector<std::optional<stimulus>>(d.methods.size()))
+    : array_(a), options_(o), gap_frames_(static_cast<std::uint64_t>(std::llround(d.gap_s * o.rate)))
 {
     const layout faces(a);
     for (const run_definition& r : d.runs)
         for (const std::size_t motion : r.motions)
             for (const std::size_t method : r.methods)
-                if (!by_motion_[motion][method])
-                    by_motion_[motion][method] = make(d.motions[motion], d.methods[method], faces);
+                if (find(motion, method) == nullptr) {
+                    all_.push_back(make(d.motions[motion], d.methods[method], faces));
+                    all_.back().motion = motion;
+                    all_.back().method = method;
+                }
 }
 
 stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method,
@@ -97,19 +97,17 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
     }
 }
 
-const stimulus& stimulus_set::at(std::size_t motion, std::size_t method) const
+const stimulus* stimulus_set::find(std::size_t motion, std::size_t method) const noexcept
 {
-    return by_motion_[motion][method].value();
+    for (const stimulus& s : all_)
+        if (s.motion == motion && s.method == method)
+            return &s;
+    return nullptr;
 }
 
-std::vector<const stimulus*> stimulus_set::all() const
+const stimulus& stimulus_set::at(std::size_t motion, std::size_t method) const
 {
-    std::vector<const stimulus*> list;
-    for (const auto& of_motion : by_motion_)
-        for (const auto& one : of_motion)
-            if (one)
-                list.push_back(&*one);
-    return list;
+    return *find(motion, method);
 }
 
 std::uint64_t stimulus_set::second(const planned_trial& t) const

@@ -20,6 +20,8 @@
 namespace tactor::study {
 
 struct stimulus {
+    std::size_t motion = 0; ///< places in the definition
+    std::size_t method = 0;
     tactor::plan plan = {};
     std::uint64_t frames = 0;          ///< from its first frame to its last sound's end
     std::string text = {};             ///< the plan as tactor-plan/1
@@ -43,8 +45,8 @@ public:
 
     /// Returns a stimulus that a run asks for.
     const stimulus& at(std::size_t motion, std::size_t method) const;
-    /// Lists all stimuli.
-    std::vector<const stimulus*> all() const;
+    /// Lists all stimuli, in the order of the runs.
+    const std::vector<stimulus>& all() const noexcept { return all_; }
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
     /// Return the frames of a trial, the gap included, and the frame at which the second stimulus begins.
@@ -54,12 +56,13 @@ public:
     score make_score(const planned_trial& t, const std::optional<drive_limits>& limits = {}) const;
 
 private:
+    const stimulus* find(std::size_t motion, std::size_t method) const noexcept;
     stimulus make(const motion_definition& motion, const method_definition& method, const layout& faces);
 
     array array_;
     render_options options_;
     std::uint64_t gap_frames_ = 0;
-    std::vector<std::vector<std::optional<stimulus>>> by_motion_; ///< and by method
+    std::vector<stimulus> all_ = {};
     std::vector<std::string> warnings_ = {};
 };
 

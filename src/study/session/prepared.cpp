@@ -129,8 +129,8 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
         doubts.push_back(
             fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
     std::vector<const plan*> plans;
-    for (const stimulus* s : stimuli.all())
-        plans.push_back(&s->plan);
+    for (const stimulus& s : stimuli.all())
+        plans.push_back(&s.plan);
     if (std::string other = session::other_carrier(e, plans); !other.empty())
         doubts.push_back(std::move(other));
     return doubts;
@@ -306,15 +306,10 @@ json masking_facts(const masking_definition& m)
 json stimulus_facts(const prepared_experiment& p)
 {
     json all = json::array();
-    for (const run_definition& r : p.definition.runs)
-        for (const std::size_t motion : r.motions)
-            for (const std::size_t method : r.methods) {
-                const json one{{"sha256", p.stimuli.at(motion, method).hash},
-                               {"motion", p.definition.motions[motion].name},
-                               {"method", p.definition.methods[method].name}};
-                if (std::find(all.begin(), all.end(), one) == all.end())
-                    all.push_back(one);
-            }
+    for (const stimulus& s : p.stimuli.all())
+        all.push_back({{"sha256", s.hash},
+                       {"motion", p.definition.motions[s.motion].name},
+                       {"method", p.definition.methods[s.method].name}});
     return all;
 }
 
