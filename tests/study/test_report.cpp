@@ -9,7 +9,7 @@
 #include "caught.hpp"
 #include "files/json/json_value.hpp"
 #include "has.hpp"
-#include "study/report/methods.hpp"
+#include "study/report/report.hpp"
 
 namespace tactor::study::test_report {
 namespace {

@@ -7,9 +7,9 @@
 #include <doctest/doctest.h>
 
 #include "rounds.hpp"
-#include "study/experiment/page_dialogue.hpp"
-#include "study/experiment/session_flow.hpp"
+#include "study/experiment/sequence.hpp"
 #include "study/random/random.hpp"
+#include "study/session/participant_page.hpp"
 
 namespace tactor::study::test_session_flow {
 namespace {

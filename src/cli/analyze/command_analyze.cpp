@@ -21,7 +21,7 @@
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
 #include "study/data/dataset.hpp"
-#include "study/report/methods.hpp"
+#include "study/report/report.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -16,7 +16,7 @@
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
-#include "study/experiment/session_flow.hpp"
+#include "study/experiment/sequence.hpp"
 #include "study/experiment/stimuli.hpp"
 
 namespace tactor::study {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The order of a participant's runs, and of the trials in each: the same on every machine.
+/// The order of a participant's runs, and of the trials in each: the same on every machine; and the next step
+/// of a session, by what has happened: a value, without a device, a clock or a display.
 #pragma once
 
 #include <algorithm>
@@ -57,5 +58,122 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
 /// Draws all runs, in the participant's order. Throws as above.
 std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
                                         std::uint64_t seed);
+
+/// A trial of a run that is to come.
+struct pending_trial {
+    unsigned trial = 1;
+    unsigned attempt = 1;
+
+    friend bool operator==(const pending_trial&, const pending_trial&) = default;
+};
+
+/// The rest of a run: its trials in order, and behind them those that were void.
+class run_queue {
+public:
+    explicit run_queue(std::size_t trials)
+    {
+        for (std::size_t i = 0; i < trials; ++i)
+            all_.push_back({static_cast<unsigned>(i + 1), 1});
+    }
+
+    bool done() const noexcept { return at_ >= all_.size(); }
+    /// The next trial; there must be one.
+    pending_trial next() const { return all_.at(at_); }
+    /// Takes the next trial, which was played; where it was void it comes again.
+    void take(bool is_void)
+    {
+        const pending_trial t = all_.at(at_++);
+        last_counts_ = !is_void;
+        if (is_void)
+            all_.push_back({t.trial, t.attempt + 1});
+    }
+    /// Takes back the last trial that was taken and counted: it comes again. False where there is none.
+    bool take_back()
+    {
+        if (!last_counts_)
+            return false;
+        const pending_trial t = all_.at(at_ - 1);
+        last_counts_ = false;
+        all_.push_back({t.trial, t.attempt + 1});
+        return true;
+    }
+
+private:
+    std::vector<pending_trial> all_ = {};
+    std::size_t at_ = 0;
+    bool last_counts_ = false;
+};
+
+/// Kind of the next step.
+enum class step_kind {
+    consent,   ///< the text is shown: agree()
+    walk,      ///< a tactor is driven: felt() or walk_back()
+    introduce, ///< the run's question is shown: go_on()
+    trial,     ///< a trial is played and answered: took()
+    rest,      ///< a break between runs: go_on()
+    pause,     ///< the experimenter's: go_on()
+    over,      ///< all runs are through
+};
+
+struct session_step {
+    step_kind what = step_kind::over;
+    unsigned tactor = 0;      ///< of the walk
+    std::size_t run = 0;      ///< place in the order of the session: from introduce to rest
+    bool practice = false;    ///< the trial does not count
+    pending_trial which = {}; ///< of practice the attempt is always 1
+
+    friend bool operator==(const session_step&, const session_step&) = default;
+};
+
+/// A run at the place where the session begins or goes on.
+struct flow_run {
+    unsigned practice = 0;  ///< trials that do not count
+    unsigned practised = 0; ///< how many of them are over
+    run_queue trials;
+    bool rest = false; ///< a break follows, unless it is the last
+};
+
+/// Number of void trials in a row that makes a pause, so that somebody looks.
+inline constexpr unsigned most_void_in_row = 5;
+
+class session_flow {
+public:
+    /// Passes over runs that are done. A walk over `tactors` comes first.
+    session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors);
+
+    session_step next() const;
+
+    void agree() noexcept { ask_consent_ = false; }
+    void felt() noexcept { ++walked_; }
+    void walk_back() noexcept { walked_ -= walked_ > 0 ? 1 : 0; }
+    void go_on();
+    /// Takes a trial that is over and on the disk.
+    void took(bool is_void);
+
+    /// Makes the last trial that counted void: it comes again at the end of its run, which is void_run()
+    /// before this call. Returns false if none can be made void: there was none in this session, it is void
+    /// already, or the next run has begun.
+    bool void_last();
+    std::size_t void_run() const noexcept { return last_run_; }
+    /// Puts a pause before the next trial.
+    void pause() noexcept { paused_ = true; }
+
+private:
+    enum class place { introduce, trials, rest };
+
+    /// Goes to the next run with trials left, if the present one has none.
+    void leave_done_run(bool rest);
+
+    std::vector<flow_run> runs_;
+    bool ask_consent_;
+    unsigned tactors_;
+    unsigned walked_ = 0;
+    std::size_t run_ = 0;
+    place place_ = place::introduce;
+    bool paused_ = false;
+    std::size_t last_run_ = 0;
+    bool has_last_ = false; ///< a trial was taken that void_last() may still reach
+    unsigned void_in_row_ = 0;
+};
 
 } // namespace tactor::study

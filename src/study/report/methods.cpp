@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/report/methods.hpp"
+#include "study/report/report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,124 @@
 // SPDX-License-Identifier: MIT
+#include "study/report/report.hpp"
+
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
 
 #include <tactor/error.hpp>
 
+#include "core/sha256.hpp"
 #include "core/words.hpp"
 #include "files/output_file.hpp"
-#include "study/report/methods.hpp"
+#include "study/data/text_table.hpp"
 
 namespace tactor::study {
 namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
+{
+    throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, written),
+                "it was changed after the session: put back what it was");
+}
+
+std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::path& plans)
+{
+    std::vector<planned_stimulus> all;
+    for (const json_value& one : s.facts()["stimuli"].list()) {
+        planned_stimulus p{
+            one["motion"].need_text(), one["method"].need_text(), one["sha256"].need_text(), {}, {}};
+        const fs::path file = plans / (fs::path(p.hash).filename().string() + ".json");
+        p.file = file.string();
+        const std::string text = read_file(file);
+        if (const std::string is = detail::sha256_text(text); is != p.hash)
+            refuse_changed(p.file, p.hash, is);
+        p.plan = files::read_object(text, p.file);
+        all.push_back(std::move(p));
+    }
+    return all;
+}
+
+// Checks that a trial names the hash of its stimulus.
+void check_plan(const text_table& t, std::size_t row, const session_facts& s, const char* method,
+                const char* plan)
+{
+    if (!t.has(method) || !t.has(plan) || !t.cell(row, method) || !t.cell(row, plan))
+        return;
+    const auto same = [&](const planned_stimulus& p) {
+        return p.motion == *t.cell(row, "motion") && p.method == *t.cell(row, method);
+    };
+    const auto at = std::find_if(s.stimuli.begin(), s.stimuli.end(), same);
+    if (at == s.stimuli.end() || at->hash != *t.cell(row, plan))
+        t.refuse(row, fmt::format("{} is no plan of its motion by its method in session.json", plan),
+                 "it was changed");
+}
+
+// Counts the void trials in a run's table.
+void_count count_voids(const fs::path& folder, const fs::path& table, const session_facts& s)
+{
+    void_count c;
+    if (!is_there(folder, table))
+        return c;
+    const text_table t(folder / table);
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        if (!s.stimuli.empty()) {
+            check_plan(t, i, s, "method_1", "plan_1");
+            check_plan(t, i, s, "method_2", "plan_2");
+        }
+        if (!t.truth(i, "void"))
+            continue;
+        ++c.voids;
+        const auto xruns = t.has("xruns") ? t.whole(i, "xruns", 0, 1000000000) : std::nullopt;
+        if (!xruns)
+            c.with_xruns.reset();
+        else if (*xruns > 0 && c.with_xruns)
+            ++*c.with_xruns;
+    }
+    return c;
+}
+
+session_facts read_session_facts(const fs::path& folder, const std::string& code,
+                                 const experiment_outline& outline)
+{
+    const fs::path source = folder / source_path(code);
+    const fs::path file = source / "session.json";
+    session_facts s;
+    s.code = code;
+    s.file = file.string();
+    s.document = files::read_object(read_file(file), s.file);
+    const std::string text = s.facts()["experiment"]["text"].need_text();
+    s.definition_hash = detail::sha256_text(text);
+    if (const auto written = s.facts()["experiment"]["sha256"].text();
+        written && *written != s.definition_hash)
+        refuse_changed(s.file + ": experiment.text", *written, s.definition_hash);
+    if (s.facts()["schema"].text() == own_schema)
+        s.design = read_design(text, s.file + ": experiment.text");
+    s.stimuli = read_stimuli(s, source / "plans");
+    for (const run_outline& r : outline.runs)
+        s.voids.push_back(count_voids(folder, table_path(code, r), s));
+    return s;
+}
+
+std::vector<participant> read_people(const fs::path& folder, const std::vector<std::string>& codes)
+{
+    const text_table t(folder / "participants.tsv");
+    const auto cell = [&](std::size_t row, const char* column) {
+        const auto v = t.has(column) ? t.cell(row, column) : std::nullopt;
+        return v ? std::optional<std::string>(*v) : std::nullopt;
+    };
+    std::vector<participant> all;
+    for (std::size_t i = 0; i < t.rows(); ++i) {
+        const std::string code(t.need(i, "participant_id").substr(4)); // after "sub-"
+        if (std::find(codes.begin(), codes.end(), code) != codes.end())
+            all.push_back({code, cell(i, "age"), cell(i, "sex"), cell(i, "handedness")});
+    }
+    return all;
+}
 
 namespace mustache = kainjow::mustache;
 
@@ -64,6 +171,16 @@ std::string without_gaps(const std::string& text)
 
 } // namespace
 
+study_facts read_facts(const fs::path& folder, const dataset& d)
+{
+    study_facts f;
+    f.people = read_people(folder, d.participants);
+    for (const std::string& code : d.participants)
+        if (is_there(folder, source_path(code) / "session.json"))
+            f.sessions.push_back(read_session_facts(folder, code, d.experiment));
+    return f;
+}
+
 std::string methods_text(const study_facts& f, const dataset& d, const nlohmann::ordered_json& analysis)
 {
     mustache::mustache text{std::string(methods_template())};
@@ -71,13 +188,13 @@ std::string methods_text(const study_facts& f, const dataset& d, const nlohmann:
     return without_gaps(text.render(make_data(collect_facts(f, d, analysis))));
 }
 
-void check_report_name(const std::filesystem::path& file)
+void check_report_name(const fs::path& file)
 {
     if (file.extension() != ".md")
         throw error(error_kind::bad_input, file.string(), "the report is Markdown", "end the name in .md");
 }
 
-void write_report(const std::filesystem::path& file, const std::string& text, bool force)
+void write_report(const fs::path& file, const std::string& text, bool force)
 {
     check_report_name(file);
     detail::check_replaced(file, force, [](std::string_view begin, std::string_view) {

@@ -1,22 +1,96 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The participant's page: its screens, and the answers from it.
+/// The participant's page: its screens, the messages to it and the answers that count, as a value without a
+/// socket, a clock or a thread; and the server of the page.
 #pragma once
 
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include <tactor/array.hpp>
+#include <tactor/path.hpp>
 
 #include "net/listen.hpp"
 #include "net/web.hpp"
 #include "rt/event_fd.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/experiment/page_dialogue.hpp"
 
 namespace tactor::study {
+
+/// Place in the session.
+struct page_progress {
+    std::size_t run = 0; ///< from 1
+    std::size_t runs = 0;
+    bool practice = false;
+    unsigned trial = 0; ///< from 1; 0: before the first
+    std::size_t trials = 0;
+};
+
+/// Content of the participant's screen. Nothing in it says by which method a motion is rendered.
+struct page_screen {
+    /// Kind of screen: consent, walk, introduce, target, stimulus, question, right, wrong, rest, pause, wait,
+    /// over.
+    std::string name = "wait";
+    std::string text = {};
+    std::string question = {};
+    std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
+    std::string keys = {};                 ///< a key for each choice
+    std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
+    unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
+    unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
+    std::vector<point> path = {};                  ///< the target, at equal parts of its time
+    double lasts_s = 0.0;                          ///< of target and rest
+    std::optional<page_progress> where = {};
+};
+
+class page_dialogue {
+public:
+    using visitor = unsigned;
+
+    struct message {
+        visitor to = 0;
+        std::string text = {};
+        bool last = false; ///< the connection ends behind it
+    };
+
+    /// `facts` are sent to each page once, when it comes.
+    explicit page_dialogue(nlohmann::ordered_json facts) : facts_(std::move(facts)) {}
+
+    /// Shows a new screen and drops the open question; `now_ns` is from the same clock as in hear().
+    std::vector<message> show(page_screen s, std::int64_t now_ns);
+
+    struct heard {
+        bool understood = true; ///< else the visitor is to be sent away
+        std::vector<message> replies = {};
+        std::optional<char> answer = {}; ///< the key of what was asked; each question has one at most
+    };
+    /// Takes a message. A page that says {"hello":true} is the participant's from then on;
+    /// {"ask":N,"answer":CHOICE} answers.
+    heard hear(visitor from, std::string_view text, std::int64_t now_ns);
+
+    /// Takes a key of a keypad for the page: that of a choice, or its number.
+    heard press(char key, std::int64_t now_ns);
+
+    void leave(visitor v);
+    /// Returns true if a page shows the screen.
+    bool is_watched() const noexcept { return theirs_.has_value(); }
+
+private:
+    std::string state(std::int64_t now_ns) const;
+
+    nlohmann::ordered_json facts_;
+    page_screen screen_ = {};
+    std::int64_t since_ns_ = 0;
+    unsigned asked_ = 0;                 ///< the number of the question that was asked last
+    bool open_ = false;                  ///< and it has no answer yet
+    std::optional<visitor> theirs_ = {}; ///< the page that came last
+};
 
 struct page_answer {
     char key = 0;           ///< of the choice

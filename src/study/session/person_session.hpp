@@ -15,8 +15,7 @@
 
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/experiment/page_dialogue.hpp"
-#include "study/experiment/session_flow.hpp"
+#include "study/experiment/sequence.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/prepared.hpp"
