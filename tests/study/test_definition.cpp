@@ -46,7 +46,7 @@ TEST_CASE("the shipped experiment is the paper's")
     CHECK(d.runs[2].outline.task == task_kind::rate);
     CHECK(d.runs[2].outline.scale == 5);
     CHECK(d.methods[0].options.algorithm == algorithm_kind::tactile_brush);
-    CHECK(d.text == shipped_experiment("park2016"));
+    CHECK(d.text == park2016_text());
     CHECK(d.masking.noise->color == noise_color::white);
 }
 

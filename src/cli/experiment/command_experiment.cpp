@@ -82,7 +82,7 @@ void warn_of_null(const std::string& pcm)
 void warn_of_authors(const study::prepared_experiment& p)
 {
     const std::vector<std::string>& said = p.definition.authors;
-    if (!said.empty() && said == study::load_definition("park2016").authors)
+    if (!said.empty() && said == study::load_definition(study::shipped_experiment).authors)
         say(stderr,
             "tactor: warning: the data will say \"{}\" for their authors (authors in a copy of the "
             "definition)\n",

@@ -536,28 +536,14 @@ experiment_outline make_outline(const experiment_definition& d)
     return e;
 }
 
-const std::vector<std::string>& shipped_experiments()
-{
-    static const std::vector<std::string> names{"park2016"};
-    return names;
-}
-
-std::string_view shipped_experiment(std::string_view name)
-{
-    if (name != "park2016")
-        throw error(error_kind::bad_input, "experiment", fmt::format("there is no '{}'", name),
-                    fmt::format("{}, or a file", fmt::join(shipped_experiments(), ", ")));
-    return park2016_text();
-}
-
 experiment_definition load_definition(const std::string& name_or_file)
 {
-    const std::vector<std::string>& shipped = shipped_experiments();
-    const bool known = std::find(shipped.begin(), shipped.end(), name_or_file) != shipped.end();
+    if (name_or_file == shipped_experiment)
+        return read_definition(park2016_text(), name_or_file, {});
     std::error_code ignored;
-    if (known ||
-        (!fs::exists(name_or_file, ignored) && name_or_file.find_first_of("./") == std::string::npos))
-        return read_definition(shipped_experiment(name_or_file), name_or_file, {});
+    if (!fs::exists(name_or_file, ignored) && name_or_file.find_first_of("./") == std::string::npos)
+        throw error(error_kind::bad_input, "experiment", fmt::format("there is no '{}'", name_or_file),
+                    fmt::format("{}, or a file", shipped_experiment));
     const detail::whole_text text = detail::read_text_file(name_or_file, most_bytes_of_text);
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
 }

@@ -130,21 +130,17 @@ experiment_outline read_outline(std::string_view toml, const std::string& name);
 /// Returns what the analysis needs of a definition.
 experiment_outline make_outline(const experiment_definition& d);
 
-/// Lists the definitions that are built in: park2016.
-const std::vector<std::string>& shipped_experiments();
+/// Name of the definition that is built in.
+inline constexpr const char* shipped_experiment = "park2016";
+/// Returns its text, as it stands among the examples.
+std::string_view park2016_text() noexcept;
 
-/// Returns the text of a definition that is built in. \throws error (bad_input) that lists them.
-std::string_view shipped_experiment(std::string_view name);
-
-/// Loads a definition that is built in, or a file. \throws error (bad_input).
+/// Loads the definition that is built in, or a file. \throws error (bad_input).
 experiment_definition load_definition(const std::string& name_or_file);
 
 /// Returns a warning for sentences of the participant's that stay English although [page] has others; empty
 /// if there are none.
 std::string missing_words(const experiment_definition& d);
-
-/// Returns the experiment that is built in, as it stands among the examples.
-std::string_view park2016_text() noexcept;
 
 /// Returns a hint of the library with a definition's keys in place of fields, without options that a
 /// definition cannot set.
