@@ -323,20 +323,6 @@ class Folder(ExperimentTest):
         self.assertIn("finished", result.stdout)
         self.assertEqual(contents(self.dir / "study"), before)
 
-    def test_missing_parts_of_a_finished_session_are_named(self):
-        self.simulate()
-        plan = next((self.dir / "study/sourcedata/sub-01/plans").iterdir())
-        for lost in (plan, self.dir / "study/participants.tsv", self.dir / "study/sub-01/sub-01_scans.tsv", self.dir / "study/README"):
-            text = lost.read_bytes()
-            lost.unlink()
-            before = contents(self.dir / "study")
-            result = self.simulate("01", "--resume")
-            self.assertIn("finished", result.stdout)
-            self.assertIn(f"{lost.relative_to(self.dir)}: it is missing", result.stderr)
-            self.assertEqual(contents(self.dir / "study"), before)
-            lost.write_bytes(text)
-        self.assertNotIn("missing", self.simulate("01", "--resume").stderr)
-
     def test_a_table_that_is_missing_before_a_later_one_is_not_asked_for_again(self):
         self.simulate()
         scans = (self.dir / "study/sub-01/sub-01_scans.tsv").read_text(encoding="utf-8").splitlines()
@@ -346,13 +332,6 @@ class Folder(ExperimentTest):
         before = contents(self.dir / "study")
         self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(f"{table.relative_to(self.dir)}: it is missing", "put it back")))
         self.assertEqual(contents(self.dir / "study"), before)
-
-    def test_codes_that_differ_in_capitals_only_are_one_on_some_disks(self):
-        self.simulate("p1")
-        before = contents(self.dir / "study")
-        self.simulate("P1", run=lambda *a: self.refused(2, *a))
-        self.assertEqual(contents(self.dir / "study"), before)
-        self.simulate("p2")
 
     def test_a_session_that_stopped_anywhere_resumes_as_if_it_had_not(self):
         spec = "seed=4,sigma=1,void=0.3"

@@ -251,8 +251,6 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     store.check_tables();
     if (store.resumed() && study::finished(p, store)) {
         store.refuse_cut_lines();
-        for (const std::filesystem::path& lost : store.missing(p.stimuli.all()))
-            say(stderr, "tactor: warning: {}: it is missing (put it back from a copy)\n", lost.string());
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }

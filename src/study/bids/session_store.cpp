@@ -87,12 +87,6 @@ session_store::session_store(study_folder& folder, std::string code, runs_in_ord
             throw error(error_kind::bad_input, file.string(),
                         fmt::format("it is missing, and sub-{} has data", code_),
                         "put it back, or choose another code");
-        if (const std::string other = folder_.alike(code_); !other.empty())
-            throw error(error_kind::bad_input, "--participant",
-                        fmt::format("{} is here already, and sub-{} is the same name where a disk does not "
-                                    "know capitals",
-                                    other, code_),
-                        "choose another code");
         return;
     }
     if (!resume)
@@ -143,15 +137,6 @@ void session_store::begin(const std::vector<stimulus>& stimuli)
     if (!resumed_)
         write_whole(source_ / "session.json", json_text(facts_));
     folder_.describe();
-}
-
-std::vector<fs::path> session_store::missing(const std::vector<stimulus>& stimuli) const
-{
-    std::vector<fs::path> all = folder_.list_files(code_);
-    for (const stimulus& s : stimuli)
-        all.push_back(source_ / "plans" / (s.hash + ".json"));
-    std::erase_if(all, [](const fs::path& p) { return is_on_disk(p); });
-    return all;
 }
 
 fs::path session_store::table(const run_definition& r) const

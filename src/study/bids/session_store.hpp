@@ -43,8 +43,6 @@ public:
     /// Writes session.json and the files of the study unless they are there, and each plan under its hash.
     void begin(const std::vector<stimulus>& stimuli);
 
-    /// Lists the files that a session which has ended should have and lacks, except its tables.
-    std::vector<std::filesystem::path> missing(const std::vector<stimulus>& stimuli) const;
     /// Reads the tables as the analysis does. \throws error (bad_input) with file and line, and if a run has
     /// no table and a later one has.
     void check_tables() const;

@@ -17,7 +17,6 @@
 #include <tactor/version.hpp>
 
 #include "core/split.hpp"
-#include "core/words.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
 
@@ -207,25 +206,13 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                     "simulated and real sessions need a folder each");
 }
 
-std::string study_folder::alike(const std::string& code) const
-{
-    const std::string own = "sub-" + code;
-    std::error_code failed;
-    for (const fs::path& place : {folder_, folder_ / "sourcedata"})
-        for (const fs::directory_entry& e : fs::directory_iterator(place, failed))
-            if (std::string name = e.path().filename().string();
-                name != own && in_small_letters(name) == in_small_letters(own))
-                return name;
-    return {};
-}
-
 std::vector<fs::path> study_folder::list_files(const std::string& code) const
 {
     std::vector<fs::path> all;
-    for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
-        all.push_back(folder_ / name);
     for (const run_definition& r : definition_.runs)
         all.push_back(folder_ / description_path(r.outline));
+    for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
+        all.push_back(folder_ / name);
     all.push_back(scans(code));
     return all;
 }

@@ -41,11 +41,8 @@ public:
     /// one of each run's tables. Call it after session.json is written. \throws error (runtime).
     void describe() const;
 
-    /// Returns the participant whose code differs from this one in capitals only; empty for nobody.
-    std::string alike(const std::string& code) const;
-
-    /// Lists the files that should be there when a session of this participant has ended: descriptions and
-    /// lists, without plans and trials.
+    /// Lists the files that a session of this participant makes: descriptions and lists, without plans and
+    /// trials.
     std::vector<std::filesystem::path> list_files(const std::string& code) const;
 
     /// Reads participants.tsv and sub-CODE_scans.tsv, if they are there. \throws error (bad_input) with file
