@@ -71,79 +71,53 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     return server;
 }
 
-void warn_of_null(const std::string& pcm)
+// Warns of what may spoil the data: a device that plays to nothing, the authors of the shipped definition,
+// which would stay in the data, and a target that nobody can see.
+void warn_of_session(const study::prepared_experiment& p, const experiment_options& o)
 {
-    if (!session::is_felt(pcm))
+    if (!session::is_felt(p.pcm))
         say(stderr, "tactor: warning: playing to \"{}\", which nobody feels (-D PCM plays on hardware)\n",
-            pcm);
-}
-
-// Warns of the authors of the shipped definition, which would stay in the data.
-void warn_of_authors(const study::prepared_experiment& p)
-{
-    const std::vector<std::string>& said = p.definition.authors;
-    if (!said.empty() && said == study::load_definition(study::shipped_experiment).authors)
+            p.pcm);
+    const std::vector<std::string>& authors = p.definition.authors;
+    if (!authors.empty() && authors == study::load_definition(study::shipped_experiment).authors)
         say(stderr,
             "tactor: warning: the data will say \"{}\" for their authors (authors in a copy of the "
             "definition)\n",
-            said.front());
-}
-
-// Whoever is asked about the target must have seen it.
-void warn_of_animation(const study::prepared_experiment& p)
-{
+            authors.front());
     const auto& runs = p.definition.runs;
-    if (!can_draw() && std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
+    if (!o.page.shown() && !can_draw() &&
+        std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
         say(stderr, "tactor: warning: the target cannot be drawn: standard output is no terminal that can "
                     "move its cursor\n");
 }
 
-// The moving target on standard output, where that is a terminal.
-class target_picture {
-public:
-    target_picture(const array& a, const stroke& target)
-        : motion_(target.motion), faces_(a), picture_(a), now_{std::vector<double>(a.tactors.size(), 0.0), {}}
-    {
-    }
-
-    void draw(double t_s)
-    {
-        const point p = motion_.position(t_s);
-        now_.target = faces_.contains(p) ? p : faces_.nearest(p);
-        picture_.draw(now_, t_s, motion_.duration_s());
-    }
-
-private:
-    const trajectory& motion_;
-    layout faces_;
-    live_picture picture_;
-    instant now_;
-};
-
+// Shows the moving target on standard output, if that is a terminal.
 std::function<void(double)> show_target(const array& a, const stroke& target)
 {
-    const auto picture = std::make_shared<target_picture>(a, target);
-    return [picture](double t_s) { picture->draw(t_s); };
+    const auto picture = std::make_shared<live_picture>(a);
+    return [picture, &motion = target.motion, faces = layout(a),
+            now = instant{std::vector<double>(a.tactors.size(), 0.0), {}}](double t_s) mutable {
+        const point p = motion.position(t_s);
+        now.target = faces.contains(p) ? p : faces.nearest(p);
+        picture->draw(now, t_s, motion.duration_s());
+    };
 }
 
 // Refuses what would spoil the data: no device, a sound server in between without --allow-sound-server,
-// noise without a device for it or the other way round, more answers than keys. Warns of a device that plays
-// to nothing. Returns the sound servers in between. \throws error (bad_input).
-study::sound_servers check_real_session(const study::prepared_experiment& p, const experiment_options& o,
-                                        const settings& s)
+// noise without a device for it or the other way round, more answers than keys. Returns the devices.
+// \throws error (bad_input).
+study::session_devices check_real_session(const study::prepared_experiment& p, const experiment_options& o,
+                                          const settings& s)
 {
     if (!session::names_device(s, p.where))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
     check_keys(p);
     check_noise(p, o);
-    study::sound_servers between{check_server(p.pcm, session::server_cure, o), {}};
+    study::session_devices devices{p.pcm, check_server(p.pcm, session::server_cure, o), o.masker, {}};
     if (!o.masker.empty())
-        between.masker = check_server(o.masker, masker_cure, o);
-    warn_of_null(p.pcm);
-    warn_of_authors(p);
-    if (!o.page.shown())
-        warn_of_animation(p);
-    return between;
+        devices.masker_server = check_server(o.masker, masker_cure, o);
+    warn_of_session(p, o);
+    return devices;
 }
 
 // The array's device, and the noise's where one is named. \throws error.
@@ -165,7 +139,7 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
 // Runs the trials that are left, with a person at the terminal or, where `listening` is a socket, at a page.
 // Returns why the session ended. \throws error.
 study::stage::interruption hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
-                                             const settings& s, const study::sound_servers& between,
+                                             const settings& s, const study::session_devices& devices,
                                              net::owned_fd listening, study::session_store& store)
 {
     const std::unique_ptr<study::stage> there = open_stage(p, o, s);
@@ -175,7 +149,7 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
     return study::until_interrupted(*there, [&] {
         const study::answering with{page ? &*page : nullptr, o.keypads};
         const study::target_display display{can_draw(), show_target};
-        study::person_session(p, store, *there, with, display, {p.pcm, o.masker, between}).hold();
+        study::person_session(p, store, *there, with, display, devices).hold();
     });
 }
 
@@ -236,7 +210,9 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
 
 int hold_session(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
-    const study::sound_servers between = o.simulate ? study::sound_servers{} : check_real_session(p, o, s);
+    study::session_devices devices;
+    if (!o.simulate)
+        devices = check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
     study::study_folder folder(o.folder, p.definition, o.simulate.has_value());
     for (const std::string& w : folder.warnings())
@@ -263,7 +239,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         store.begin(p.stimuli.all());
         why.signal = study::simulate_session(p, *o.simulate, store);
     } else {
-        why = hold_real_session(p, o, s, between, std::move(listening), store);
+        why = hold_real_session(p, o, s, devices, std::move(listening), store);
     }
     if (why.signal != 0) {
         if (!store.begun())

@@ -52,11 +52,6 @@ json trials_json(const study::prepared_experiment& p, const std::vector<study::p
     return all;
 }
 
-json time_json(const study::run_time& t)
-{
-    return {{"duration_s", t.total_s}, {"waits", t.waits}, {"waits_s", t.waits_s}};
-}
-
 json run_json(const study::prepared_experiment& p, const study::run_sequence& s, const study::run_time& t)
 {
     const study::run_definition& r = p.definition.runs[s.run];
@@ -69,7 +64,9 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
     j["min_response_s"] = r.min_response_s;
     j["scale"] = r.outline.task == study::task_kind::rate ? json(r.outline.scale) : json(nullptr);
     j["break_s"] = r.break_s;
-    j.update(time_json(t));
+    j["duration_s"] = t.total_s;
+    j["waits"] = t.waits;
+    j["waits_s"] = t.waits_s;
     j["practice"] = trials_json(p, s.practice);
     j["trials"] = trials_json(p, s.trials);
     return j;

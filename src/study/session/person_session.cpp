@@ -474,8 +474,8 @@ void person_session::begin_store()
     for (const json& one : walked_)
         walks.push_back(one);
     store_.note("walk", walks);
-    store_.note("sound_server", files::or_null(devices_.between.array));
-    store_.note("masker_sound_server", files::or_null(devices_.between.masker));
+    store_.note("sound_server", files::or_null(devices_.pcm_server));
+    store_.note("masker_sound_server", files::or_null(devices_.masker_server));
     note_stream();
 }
 

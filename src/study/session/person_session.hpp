@@ -32,11 +32,12 @@ struct target_display {
     std::function<std::function<void(double t_s)>(const array& a, const stroke& target)> show;
 };
 
-/// Devices of a session, for its data.
+/// Devices of a session, for its data; empty: none.
 struct session_devices {
-    std::string pcm;
-    std::string masker = {}; ///< empty: none
-    sound_servers between = {};
+    std::string pcm = {};
+    std::string pcm_server = {}; ///< sound server between the program and the card
+    std::string masker = {};
+    std::string masker_server = {};
 };
 
 /// Name, in messages, of the person who ends a session with q.

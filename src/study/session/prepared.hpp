@@ -43,12 +43,6 @@ struct session_request {
     std::optional<hand_kind> hand = {}; ///< none: not said
 };
 
-/// Sound servers between the program and its cards; empty: none.
-struct sound_servers {
-    std::string array = {};
-    std::string masker = {};
-};
-
 struct prepared_experiment {
     experiment_definition definition;
     std::string participant;
