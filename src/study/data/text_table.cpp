@@ -17,30 +17,6 @@ namespace {
 
 constexpr std::string_view utf8_hint = "save it as UTF-8, or convert it: iconv -f LATIN1 -t UTF-8 OLD > NEW";
 
-[[noreturn]] void refuse_line(const std::string& file, std::size_t line, std::string_view why,
-                              std::string_view hint)
-{
-    throw error(error_kind::bad_input, source_place{file, static_cast<unsigned>(line)}, why, hint);
-}
-
-constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-
-// Other programs put these between the cells by default.
-void refuse_other_separators(const std::string& file, const table_line& header)
-{
-    struct separator {
-        char sign;
-        std::string_view name;
-    };
-    constexpr separator others[] = {{',', "commas"}, {';', "semicolons"}, {' ', "spaces"}};
-    std::string_view line = header.cells.front().text;
-    for (const auto& [sign, name] : others)
-        if (header.cells.size() == 1 && line.find(sign) != line.npos)
-            refuse_line(file, header.number, fmt::format("{} are between the columns, not tabs", name),
-                        "save it with tabs: in a spreadsheet as text with {Tab} between fields, in R and "
-                        "pandas with sep = \"\\t\"");
-}
-
 constexpr std::string_view ends = "\t\r\n";
 
 // Returns the cell that begins with a quote at `at`; nothing where no quote ends it.
@@ -77,36 +53,22 @@ std::size_t line_end_length(std::string_view text, std::size_t at)
     return text.substr(at, 2) == "\r\n" ? 2 : 1;
 }
 
-// Counts the line ends in a cell in quotes, which are lines of the file.
-std::size_t count_line_ends(std::string_view text)
-{
-    std::size_t n = 0;
-    for (std::size_t at = text.find_first_of("\r\n"); at != text.npos; at = text.find_first_of("\r\n", at)) {
-        at += line_end_length(text, at);
-        ++n;
-    }
-    return n;
-}
-
 // Splits a text, from a byte on.
 std::vector<table_line> split_table(std::string_view text, std::size_t from)
 {
     std::vector<table_line> lines;
-    std::size_t number = 1;
-    for (std::size_t at = from; at < text.size(); ++number) {
-        table_line line{.number = number};
+    for (std::size_t at = from; at < text.size();) {
+        table_line line;
         for (bool more = true; more;) {
             line.cells.push_back(cell_at(text, at));
             at = line.end();
-            number += count_line_ends(text.substr(line.cells.back().begin, at - line.cells.back().begin));
             more = at < text.size() && text[at] == '\t';
             at += more ? 1 : 0;
         }
         line.ended = at < text.size();
         if (line.ended)
             at += line_end_length(text, at);
-        if (std::any_of(line.cells.begin(), line.cells.end(),
-                        [](const table_cell& c) { return !c.text.empty(); }))
+        if (std::ranges::any_of(line.cells, [](const table_cell& c) { return !c.text.empty(); }))
             lines.push_back(std::move(line));
     }
     return lines;
@@ -211,8 +173,7 @@ text_table::text_table(const std::filesystem::path& file, std::string text, last
     : file_(file.string()), text_(std::move(text))
 {
     detail::refuse_no_text(text_, file_, "save it as text with tabs between the columns");
-    const std::size_t begin = text_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
-    std::vector<table_line> lines = split_table(text_, begin);
+    std::vector<table_line> lines = split_table(text_, text_.size() - detail::without_mark(text_).size());
     if (lines.empty())
         throw error(error_kind::bad_input, file_, "it is empty", "the first line names the columns");
     take_header(std::move(lines.front()));
@@ -222,20 +183,28 @@ text_table::text_table(const std::filesystem::path& file, std::string text, last
 
 void text_table::take_header(table_line line)
 {
-    refuse_other_separators(file_, line);
+    // Other programs put these between the cells by default.
+    constexpr std::pair<char, std::string_view> others[] = {
+        {',', "commas"}, {';', "semicolons"}, {' ', "spaces"}};
+    for (const auto& [sign, name] : others)
+        if (line.cells.size() == 1 && line.cells.front().text.find(sign) != std::string::npos)
+            refuse_at(
+                line.begin(), fmt::format("{} are between the columns, not tabs", name),
+                "save it with tabs: in a spreadsheet as text with {Tab} between fields, in R and pandas with "
+                "sep = \"\\t\"");
     while (line.cells.back().text.empty())
         line.cells.pop_back();
     if (line.ended && text_[line.end()] == '\r')
         line_end_ = text_.substr(line.end(), 2) == "\r\n" ? "\r\n" : "\r";
     for (table_cell& c : line.cells) {
         if (!is_plain_text(c.text))
-            refuse_line(file_, line.number, "a column's name is not UTF-8", utf8_hint);
+            refuse_at(line.begin(), "a column's name is not UTF-8", utf8_hint);
         if (c.text.empty())
-            refuse_line(file_, line.number, "a column has no name",
-                        "leave out the numbers of rows: index = False in pandas, row.names = FALSE in R");
+            refuse_at(line.begin(), "a column has no name",
+                      "leave out the numbers of rows: index = False in pandas, row.names = FALSE in R");
         if (has(c.text))
-            refuse_line(file_, line.number, fmt::format("the column {} is there twice", c.text),
-                        "each has a name of its own");
+            refuse_at(line.begin(), fmt::format("the column {} is there twice", c.text),
+                      "each has a name of its own");
         columns_.push_back(std::move(c.text));
     }
 }
@@ -244,26 +213,25 @@ void text_table::take_row(table_line line, bool may_be_cut)
 {
     while (line.cells.size() > columns_.size() && line.cells.back().text.empty())
         line.cells.pop_back();
-    const bool plain = std::all_of(line.cells.begin(), line.cells.end(),
-                                   [](const table_cell& c) { return is_plain_text(c.text); });
+    const bool plain = std::ranges::all_of(line.cells, is_plain_text, &table_cell::text);
     cut_ = may_be_cut && !line.ended && (!plain || line.cells.size() < columns_.size());
     if (cut_)
         return rows_.push_back(std::move(line));
     if (!plain)
-        refuse_line(file_, line.number, "it is not UTF-8", utf8_hint);
+        refuse_at(line.begin(), "it is not UTF-8", utf8_hint);
     if (line.cells.size() == columns_.size() + 1 && rows_.empty() && line.cells.front().text == "1")
-        refuse_line(file_, line.number, "it begins with the row's number, which has no column",
-                    "leave it out: row.names = FALSE in R");
+        refuse_at(line.begin(), "it begins with the row's number, which has no column",
+                  "leave it out: row.names = FALSE in R");
     if (line.cells.size() != columns_.size())
-        refuse_line(file_, line.number,
-                    fmt::format("it has {}, not {}", counted(line.cells.size(), "column"), columns_.size()),
-                    "there is a tab between two of them, and n/a where there is no value");
+        refuse_at(line.begin(),
+                  fmt::format("it has {}, not {}", counted(line.cells.size(), "column"), columns_.size()),
+                  "there is a tab between two of them, and n/a where there is no value");
     rows_.push_back(std::move(line));
 }
 
 std::optional<std::size_t> text_table::find(std::string_view column) const
 {
-    const auto at = std::find(columns_.begin(), columns_.end(), column);
+    const auto at = std::ranges::find(columns_, column);
     return at == columns_.end() ? std::nullopt
                                 : std::optional(static_cast<std::size_t>(at - columns_.begin()));
 }
@@ -271,7 +239,7 @@ std::optional<std::size_t> text_table::find(std::string_view column) const
 void text_table::need_column(std::string_view column) const
 {
     if (!has(column))
-        refuse_line(file_, 1, fmt::format("there is no column {}", column), "tactor-analyze(1) lists them");
+        refuse_at(0, fmt::format("there is no column {}", column), "tactor-analyze(1) lists them");
 }
 
 std::optional<std::string_view> text_table::cell(std::size_t row, std::string_view column) const
@@ -324,7 +292,16 @@ bool text_table::truth(std::size_t row, std::string_view column) const
 
 void text_table::refuse(std::size_t row, std::string_view why, std::string_view hint) const
 {
-    refuse_line(file_, rows_[row].number, why, hint);
+    refuse_at(rows_[row].begin(), why, hint);
+}
+
+// Counts the lines as an editor does: also those in quotes.
+void text_table::refuse_at(std::size_t byte, std::string_view why, std::string_view hint) const
+{
+    unsigned line = 1;
+    for (std::size_t at = 0; at < byte; at += line_end_length(text_, at))
+        line += text_[at] == '\n' || text_[at] == '\r' ? 1 : 0;
+    throw error(error_kind::bad_input, source_place{file_, line}, why, hint);
 }
 
 std::optional<std::size_t> text_table::cut_at() const noexcept
@@ -341,8 +318,7 @@ std::string text_table::line(const named_cells& cells) const
 {
     std::string text;
     for (const std::string& column : columns_) {
-        const auto named =
-            std::find_if(cells.begin(), cells.end(), [&](const auto& c) { return c.first == column; });
+        const auto named = std::ranges::find(cells, column, &named_cells::value_type::first);
         text += named == cells.end() ? "n/a" : written_cell(named->second);
         text += &column == &columns_.back() ? line_end_ : "\t";
     }

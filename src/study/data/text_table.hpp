@@ -27,7 +27,6 @@ struct table_cell {
 };
 
 struct table_line {
-    std::size_t number = 1; ///< in the file, from 1
     std::vector<table_cell> cells = {};
     bool ended = false; ///< by a line end
 
@@ -112,6 +111,7 @@ private:
     std::optional<std::size_t> find(std::string_view column) const;
     void take_header(table_line line);
     void take_row(table_line line, bool may_be_cut);
+    [[noreturn]] void refuse_at(std::size_t byte, std::string_view why, std::string_view hint) const;
 
     std::string file_;
     std::string text_;
