@@ -482,8 +482,7 @@ void print_analysis_text(const study::analysis& a)
         say(stdout, "excluded: sub-{} ({})\n", one.participant, one.why);
     for (const study::run_analysis& r : a.runs)
         print_run(a, r);
-    if (std::any_of(a.runs.begin(), a.runs.end(),
-                    [](const study::run_analysis& r) { return r.n != 0 && r.run.task != task_kind::rate; }))
+    if (std::ranges::any_of(a.runs, [](const auto& r) { return r.n != 0 && r.run.task != task_kind::rate; }))
         fmt::print("\n{}", wrapped("Columns: ", column_legend));
 }
 

@@ -93,15 +93,13 @@ void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
 // Returns the per cent of trials, one or more, in which the first interval was chosen.
 double first_chosen(const std::vector<trial>& trials)
 {
-    const auto first =
-        std::count_if(trials.begin(), trials.end(), [](const trial& t) { return t.response == 1; });
+    const auto first = std::ranges::count(trials, 1U, &trial::response);
     return 100.0 * static_cast<double>(first) / static_cast<double>(trials.size());
 }
 
 std::size_t count_early(const run_data& d)
 {
-    return static_cast<std::size_t>(std::count_if(d.trials.begin(), d.trials.end(),
-                                                  [](const trial& t) { return t.early.value_or(false); }));
+    return static_cast<std::size_t>(std::ranges::count(d.trials, true, &trial::early));
 }
 
 run_analysis analyse_run(const dataset& d, std::size_t which)

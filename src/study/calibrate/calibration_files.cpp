@@ -115,8 +115,8 @@ bool is_same(const std::string& expected, std::optional<std::string_view> cell)
 
 bool is_same(const named_cells& expected, const text_table& log, std::size_t row)
 {
-    return std::all_of(expected.begin(), expected.end(),
-                       [&](const auto& c) { return is_same(c.second, log.cell(row, c.first)); });
+    return std::ranges::all_of(expected,
+                               [&](const auto& c) { return is_same(c.second, log.cell(row, c.first)); });
 }
 
 template <typename T>
@@ -408,9 +408,7 @@ array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
         if (!measured.threshold_dbfs)
             continue;
         const threshold_point here{s.carrier_hz, *measured.threshold_dbfs};
-        const auto above = std::find_if(t.thresholds.begin(), t.thresholds.end(),
-                                        [&](const threshold_point& p) { return p.hz > here.hz; });
-        t.thresholds.insert(above, here);
+        t.thresholds.insert(std::ranges::upper_bound(t.thresholds, here.hz, {}, &threshold_point::hz), here);
     }
     return a;
 }
@@ -428,8 +426,7 @@ std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_
     for (unsigned i = 0; i < all.size(); ++i) {
         if (!all[i])
             continue;
-        const auto own = std::find_if(measured.begin(), measured.end(),
-                                      [i](const tactor_threshold& t) { return t.tactor == i; });
+        const auto own = std::ranges::find(measured, i, &tactor_threshold::tactor);
         if (const double above = *all[i] - median; above > most_above_median_db)
             doubtful.push_back(
                 {i, fmt::format("it is {:.1f} dB above the median of the array's ({:.1f} dBFS)", above,

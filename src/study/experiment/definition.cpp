@@ -557,8 +557,7 @@ std::string page_words::operator[](std::string_view key) const
 {
     if (const auto own = own_.find(key); own != own_.end())
         return own->second;
-    const auto has_key = [&](const page_word& w) { return w.key == key; };
-    return std::string(std::find_if(english.begin(), english.end(), has_key)->english);
+    return std::string(std::ranges::find(english, key, &page_word::key)->english);
 }
 
 std::vector<std::string_view> page_words::missing() const

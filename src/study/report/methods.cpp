@@ -573,8 +573,8 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["runs"] = json::array();
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
         all["runs"].push_back(describe_run(f, d.experiment.runs[i], i));
-    const bool own = std::any_of(f.sessions.begin(), f.sessions.end(),
-                                 [](const session_facts& s) { return s.design.has_value(); });
+    const bool own =
+        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
     all["masking"] = fact("masking");
     all["sessions"] = json::array();

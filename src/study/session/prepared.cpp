@@ -56,9 +56,7 @@ bool assume_thresholds(array& a, bool nobody_feels)
 void mirror_motions(experiment_definition& d, const array& a)
 {
     const auto [least, most] =
-        std::minmax_element(a.tactors.begin(), a.tactors.end(), [](const auto& one, const auto& other) {
-            return one.position.x_mm < other.position.x_mm;
-        });
+        std::ranges::minmax_element(a.tactors, {}, [](const tactor_spec& t) { return t.position.x_mm; });
     const double middle_mm = 0.5 * (least->position.x_mm + most->position.x_mm);
     const detail::affine exchanged{-1.0, 0.0, 0.0, 1.0, middle_mm, 0.0};
     for (motion_definition& m : d.motions)
@@ -70,8 +68,7 @@ void mirror_motions(experiment_definition& d, const array& a)
 // Mirrors the motions for a left hand. A session with a person needs the hand if a motion depends on it.
 void mirror_for_hand(experiment_definition& d, const array& a, const session_request& r)
 {
-    const auto mirrored =
-        std::find_if(d.motions.begin(), d.motions.end(), [](const motion_definition& m) { return m.mirror; });
+    const auto mirrored = std::ranges::find(d.motions, true, &motion_definition::mirror);
     if (mirrored == d.motions.end())
         return;
     if (r.who == audience::person && !r.hand)
