@@ -12,6 +12,7 @@
 #include <tactor/error.hpp>
 
 #include "caught.hpp"
+#include "files/setup_text.hpp"
 #include "folder.hpp"
 #include "has.hpp"
 #include "study/calibrate/calibration_files.hpp"
@@ -376,7 +377,7 @@ snap = true
                                 .check_below_right = 6};
     const tactor_threshold not_felt{.tactor = 1, .end = staircase_end::not_felt, .trials = 20};
     const array now = with_thresholds(*from.array, from.calibration, {}, {felt, not_felt});
-    const std::string text = array_text(now, from) + calibration_text(settings(), {felt, not_felt});
+    const std::string text = detail::array_text(now, from) + calibration_text(settings(), {felt, not_felt});
     const setup read = parse_setup(text, "me.toml");
     REQUIRE(read.array);
     CHECK(read.array->name == "a \"desk\"");
@@ -400,7 +401,7 @@ snap = true
     CHECK(*read.array->tactors[0].threshold_dbfs == -44.125);
     CHECK(!read.array->tactors[1].threshold_dbfs);
     // The file is complete: written again, it is the same.
-    CHECK(array_text(*read.array, read) == array_text(now, from));
+    CHECK(detail::array_text(*read.array, read) == detail::array_text(now, from));
     CHECK(*read.output.channels == 8);
     CHECK(read.sync->in->name == "GPIO6");
     CHECK(read.sync->debounce_s == doctest::Approx(0.003));

@@ -210,7 +210,8 @@ command add_report(CLI::App& app)
     add_study_options(*c, o->folder, o->who);
     add_text(*c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
              [o](const std::string& t) {
-                 study::check_report_name(t);
+                 if (!t.ends_with(".md"))
+                     throw error(error_kind::bad_input, t, "the report is Markdown", "end the name in .md");
                  o->file = t;
              });
     add_force_option(*c, o->force);

@@ -25,6 +25,7 @@
 #include "core/sha256.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
+#include "files/setup_text.hpp"
 #include "options/option.hpp"
 #include "session/device.hpp"
 #include "session/pipes.hpp"
@@ -460,7 +461,7 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
                  const study::calibration& c)
 {
     const array a = study::with_thresholds(e.tactors, e.config.calibration, c.settings(), c.thresholds());
-    study::write_new_output(o.output, make_head(c.settings()) + study::array_text(a, besides) +
+    study::write_new_output(o.output, make_head(c.settings()) + detail::array_text(a, besides) +
                                           study::calibration_text(c.settings(), c.thresholds()));
     say(stdout, "{}{}\n", c.settings().participant,
         c.settings().simulate.empty() ? "" : ": SIMULATED, nobody was asked");
@@ -490,7 +491,7 @@ int calibrate(settings& s, calibrate_options& o)
     else if (!there && !session::names_device(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
     const setup besides = read_other_tables(e);
-    begun.array = detail::sha256_text(study::array_text(e.tactors, besides));
+    begun.array = detail::sha256_text(detail::array_text(e.tactors, besides));
     if (there) {
         study::check_beginning(o.log, begun);
         study::check_finished(o.output, begun);

@@ -214,14 +214,14 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     if (!o.simulate)
         devices = check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
-    study::study_folder folder(o.folder, p.definition, o.simulate.has_value());
+    study::study_folder folder(o.folder, p.definition, p.participant, o.simulate.has_value());
     for (const std::string& w : folder.warnings())
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
     study::runs_in_order runs;
     for (const study::run_sequence& r : p.runs)
         runs.push_back(&p.definition.runs[r.run]);
-    study::session_store store(folder, p.participant, std::move(runs),
-                               study::describe_session(p, o.simulate, o.masker), o.resume);
+    study::session_store store(folder, std::move(runs), study::describe_session(p, o.simulate, o.masker),
+                               o.resume);
     const std::string who =
         fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
     store.check_tables();

@@ -70,28 +70,26 @@ std::string read_columns(text_table& t)
 
 } // namespace
 
-session_store::session_store(study_folder& folder, std::string code, runs_in_order runs, const ordered& facts,
-                             bool resume)
+session_store::session_store(study_folder& folder, runs_in_order runs, const ordered& facts, bool resume)
     : folder_(folder),
-      code_(std::move(code)),
       runs_(std::move(runs)),
       facts_(facts),
-      source_(folder.path() / source_path(code_))
+      source_(folder.path() / source_path(folder.code()))
 {
     const fs::path file = source_ / "session.json";
-    const fs::path data = folder_.path() / ("sub-" + code_) / "beh";
+    const fs::path data = folder_.path() / ("sub-" + folder_.code()) / "beh";
     for (const fs::path& p : {source_.parent_path(), source_, source_ / "plans", data.parent_path(), data})
         remove_leftovers(p);
     if (!is_on_disk(file)) {
         if (is_on_disk(data))
             throw error(error_kind::bad_input, file.string(),
-                        fmt::format("it is missing, and sub-{} has data", code_),
+                        fmt::format("it is missing, and sub-{} has data", folder_.code()),
                         "put it back, or choose another code");
         return;
     }
     if (!resume)
         throw error(error_kind::bad_input, "--participant",
-                    fmt::format("there is a session of {} already", code_),
+                    fmt::format("there is a session of {} already", folder_.code()),
                     "--resume goes on with it; somebody else needs another code");
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
@@ -113,7 +111,7 @@ session_store::~session_store()
 
 void session_store::try_to_write() const
 {
-    std::vector<fs::path> files = folder_.list_files(code_);
+    std::vector<fs::path> files = folder_.list_files();
     std::erase_if(files, [](const fs::path& p) { return is_on_disk(p) && p.extension() != ".tsv"; });
     for (const run_definition* r : runs_)
         files.push_back(table(*r));
@@ -141,7 +139,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli)
 
 fs::path session_store::table(const run_definition& r) const
 {
-    return folder_.path() / table_path(code_, r.outline);
+    return folder_.path() / table_path(folder_.code(), r.outline);
 }
 
 std::string session_store::scan_name(const run_definition& r) const
@@ -195,8 +193,8 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
         if (!is_on_disk(file)) {
             make_folder(file.parent_path().parent_path());
             make_folder(file.parent_path());
-            folder_.add_participant(code_);
-            folder_.add_scan(code_, scan_name(r), acq_time);
+            folder_.add_participant();
+            folder_.add_scan(scan_name(r), acq_time);
         }
         write_line(file, make_cells(row));
     });
@@ -233,7 +231,7 @@ void session_store::make_last_void(const run_definition& r)
 
 std::optional<std::string> session_store::acq_time(const run_definition& r) const
 {
-    return folder_.scan_time(code_, scan_name(r));
+    return folder_.scan_time(scan_name(r));
 }
 
 void session_store::note(const std::string& key, const ordered& value)
@@ -259,7 +257,7 @@ void session_store::release() noexcept
 
 void session_store::check_tables() const
 {
-    folder_.check_lists(code_);
+    folder_.check_lists();
     const run_definition* lost = nullptr;
     for (const run_definition* r : runs_) {
         if (!is_on_disk(table(*r)))
@@ -292,7 +290,7 @@ std::vector<std::string> session_store::mend()
         return at.has_value();
     };
     const bool lost_people = !is_on_disk(folder_.path() / "participants.tsv");
-    const bool lost_scans = !is_on_disk(folder_.scans(code_));
+    const bool lost_scans = !is_on_disk(folder_.scans());
     bool added = false;
     bool entered = false;
     for (const run_definition* r : runs_) {
@@ -300,9 +298,9 @@ std::vector<std::string> session_store::mend()
             continue;
         if (cut(table(*r)))
             folder_.ignore_cut_lines();
-        added = folder_.add_participant(code_) || added;
+        added = folder_.add_participant() || added;
         if (!acq_time(*r)) {
-            folder_.add_scan(code_, scan_name(*r), "n/a");
+            folder_.add_scan(scan_name(*r), "n/a");
             entered = true;
         }
     }
@@ -312,9 +310,9 @@ std::vector<std::string> session_store::mend()
                              : fmt::format(": {} was missing, and is there again", what)));
     };
     if (added)
-        note_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + code_);
+        note_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + folder_.code());
     if (entered)
-        note_lost(lost_scans, folder_.scans(code_), "a run");
+        note_lost(lost_scans, folder_.scans(), "a run");
     if (const fs::path practice = source_ / "practice.tsv"; is_on_disk(practice))
         cut(practice);
     return done;

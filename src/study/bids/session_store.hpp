@@ -30,8 +30,7 @@ public:
     /// session that is there must be the same, except the ones that `may_differ` lists.
     /// \throws error: bad_input if there is a session of this participant (and not `resume`), or it began
     ///         with other facts; runtime for what the system refuses.
-    session_store(study_folder& folder, std::string code, runs_in_order runs,
-                  const nlohmann::ordered_json& facts, bool resume);
+    session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts, bool resume);
     ~session_store();
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
@@ -95,7 +94,6 @@ private:
     };
 
     study_folder& folder_;
-    std::string code_;
     runs_in_order runs_;
     nlohmann::ordered_json facts_;
     std::filesystem::path source_; ///< sourcedata/sub-CODE

@@ -148,18 +148,19 @@ void check_code(const std::string& code)
                     "letters and digits only, as P07");
 }
 
-study_folder::study_folder(fs::path folder, const experiment_definition& d, bool simulated)
+study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)
     : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
       is_new_(make_study_folder(folder_)),
       lock_(lock_folder(folder_)),
       definition_(d),
+      code_(std::move(code)),
       simulated_(simulated)
 {
     remove_leftovers(folder_);
     if (!is_on_disk(folder_ / "dataset_description.json") && has_other_things(folder_))
         throw error(error_kind::bad_input, folder_.string(), "there are other things in it",
                     "a study needs a folder of its own");
-    refuse_others(d, simulated);
+    refuse_others();
 }
 
 study_folder::~study_folder()
@@ -169,8 +170,10 @@ study_folder::~study_folder()
         fs::remove(folder_, not_empty);
 }
 
-void study_folder::refuse_others(const experiment_definition& d, bool simulated)
+void study_folder::refuse_others()
 {
+    const auto kind = [](bool simulated) { return simulated ? "simulated" : "real"; };
+    constexpr const char* one_kind = "simulated and real sessions need a folder each";
     std::vector<std::string> otherwise;
     std::error_code failed;
     for (const fs::directory_entry& e : fs::directory_iterator(folder_ / "sourcedata", failed)) {
@@ -179,17 +182,17 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
             continue;
         const session_data s = read_session(file);
         const std::string who = e.path().filename().string();
-        if (s.simulated != simulated)
-            throw error(error_kind::bad_input, folder_.string(),
-                        fmt::format("{} is {}, and this session is {}", who,
-                                    s.simulated ? "simulated" : "real", simulated ? "simulated" : "real"),
-                        "simulated and real sessions need a folder each");
-        if (s.experiment != make_outline(d))
+        if (s.simulated != simulated_)
+            throw error(
+                error_kind::bad_input, folder_.string(),
+                fmt::format("{} is {}, and this session is {}", who, kind(s.simulated), kind(simulated_)),
+                one_kind);
+        if (s.experiment != make_outline(definition_))
             throw error(error_kind::bad_input, folder_.string(),
                         fmt::format("{} had another experiment: \"{}\" with other runs, motions or methods",
                                     who, s.experiment.name),
                         "each experiment needs a folder of its own");
-        if (s.text != d.text)
+        if (s.text != definition_.text)
             otherwise.push_back(who);
     }
     if (!otherwise.empty()) {
@@ -199,21 +202,21 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                                         fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
-    if (is_on_disk(description) && says_simulated(read_file(description)).value_or(simulated) != simulated)
-        throw error(error_kind::bad_input, description.string(),
-                    fmt::format("it is of {} sessions, and this one is {}", simulated ? "real" : "simulated",
-                                simulated ? "simulated" : "real"),
-                    "simulated and real sessions need a folder each");
+    if (is_on_disk(description) && says_simulated(read_file(description)) == !simulated_)
+        throw error(
+            error_kind::bad_input, description.string(),
+            fmt::format("it is of {} sessions, and this one is {}", kind(!simulated_), kind(simulated_)),
+            one_kind);
 }
 
-std::vector<fs::path> study_folder::list_files(const std::string& code) const
+std::vector<fs::path> study_folder::list_files() const
 {
     std::vector<fs::path> all;
     for (const run_definition& r : definition_.runs)
         all.push_back(folder_ / description_path(r.outline));
     for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
         all.push_back(folder_ / name);
-    all.push_back(scans(code));
+    all.push_back(scans());
     return all;
 }
 
@@ -231,44 +234,42 @@ void study_folder::describe() const
         put(folder_ / description_path(r.outline), task_text(r, simulated_));
 }
 
-fs::path study_folder::scans(const std::string& code) const
+fs::path study_folder::scans() const
 {
-    return folder_ / ("sub-" + code) / fmt::format("sub-{}_scans.tsv", code);
+    return folder_ / ("sub-" + code_) / fmt::format("sub-{}_scans.tsv", code_);
 }
 
-void study_folder::check_lists(const std::string& code) const
+void study_folder::check_lists() const
 {
     read_participants(read_or_begin(folder_ / "participants.tsv", new_participants));
-    const text_table t = read_or_begin(scans(code), new_scans);
+    const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
 }
 
-bool study_folder::add_participant(const std::string& code)
+bool study_folder::add_participant()
 {
     const fs::path file = folder_ / "participants.tsv";
     const text_table t = read_or_begin(file, new_participants);
-    const std::string id = "sub-" + code;
+    const std::string id = "sub-" + code_;
     if (find_row(t, "participant_id", id))
         return false;
     write_whole(file, t.with_line({{"participant_id", id}}));
     return true;
 }
 
-std::optional<std::string> study_folder::scan_time(const std::string& code,
-                                                   const std::string& file_name) const
+std::optional<std::string> study_folder::scan_time(const std::string& file_name) const
 {
-    const text_table t = read_or_begin(scans(code), new_scans);
+    const text_table t = read_or_begin(scans(), new_scans);
     const auto row = find_row(t, "filename", file_name);
     if (!row)
         return {};
     return std::string(t.cell(*row, "acq_time").value_or("n/a"));
 }
 
-void study_folder::add_scan(const std::string& code, const std::string& file_name,
-                            const std::string& acq_time)
+void study_folder::add_scan(const std::string& file_name, const std::string& acq_time)
 {
-    const fs::path file = scans(code);
+    const fs::path file = scans();
     const text_table t = read_or_begin(file, new_scans);
     const named_cells cells{{"filename", file_name}, {"acq_time", acq_time}};
     const auto row = find_row(t, "filename", file_name);

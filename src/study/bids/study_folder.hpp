@@ -17,7 +17,7 @@ namespace tactor::study {
 /// Checks that a participant's code is letters and digits. \throws error (bad_input).
 void check_code(const std::string& code);
 
-/// A study's folder, locked as long as this lives. One thread.
+/// A study's folder with a participant's session, locked as long as this lives. One thread.
 class study_folder {
 public:
     /// Makes the folder, or takes one that is a study's. `d` must live as long. The destructor removes a
@@ -25,50 +25,54 @@ public:
     /// \throws error: bad_input if the folder has other things in it, another session is running in it,
     ///         somebody in it had another experiment, or real and simulated sessions would meet; runtime for
     ///         what the system refuses.
-    study_folder(std::filesystem::path folder, const experiment_definition& d, bool simulated);
+    study_folder(std::filesystem::path folder, const experiment_definition& d, std::string code,
+                 bool simulated);
     ~study_folder();
     study_folder(const study_folder&) = delete;
     study_folder& operator=(const study_folder&) = delete;
 
     const std::filesystem::path& path() const noexcept { return folder_; }
+    /// Code of the participant whose session this is.
+    const std::string& code() const noexcept { return code_; }
 
     /// Sentences about allowed differences from the sessions that are there.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-    std::filesystem::path scans(const std::string& code) const;
+    std::filesystem::path scans() const;
 
     /// Writes the descriptions that are not there yet: dataset_description.json, README, participants.json,
     /// one of each run's tables. Call it after session.json is written. \throws error (runtime).
     void describe() const;
 
-    /// Lists the files that a session of this participant makes: descriptions and lists, without plans and
+    /// Lists the files that the session makes: descriptions and lists, without plans and
     /// trials.
-    std::vector<std::filesystem::path> list_files(const std::string& code) const;
+    std::vector<std::filesystem::path> list_files() const;
 
     /// Reads participants.tsv and sub-CODE_scans.tsv, if they are there. \throws error (bad_input) with file
     /// and line: see read_participants().
-    void check_lists(const std::string& code) const;
+    void check_lists() const;
 
     /// Adds a line to participants.tsv, with n/a in its other columns. Returns false if there is one.
-    bool add_participant(const std::string& code);
+    bool add_participant();
 
     /// Enters a run's table, named relative to sub-CODE, into sub-CODE_scans.tsv; replaces the time of one
     /// that is there.
-    void add_scan(const std::string& code, const std::string& file_name, const std::string& acq_time);
+    void add_scan(const std::string& file_name, const std::string& acq_time);
 
     /// Returns the time that add_scan() entered for a table, if any.
-    std::optional<std::string> scan_time(const std::string& code, const std::string& file_name) const;
+    std::optional<std::string> scan_time(const std::string& file_name) const;
 
     /// Writes into .bidsignore that programs which read BIDS ignore the files of cut_file().
     void ignore_cut_lines() const;
 
 private:
-    void refuse_others(const experiment_definition& d, bool simulated);
+    void refuse_others();
 
     std::filesystem::path folder_;
     bool is_new_;
     detail::owned_fd lock_;
     const experiment_definition& definition_;
+    std::string code_;
     bool simulated_;
     std::vector<std::string> warnings_ = {};
 };

@@ -14,7 +14,6 @@
 #include <tactor/setup.hpp>
 
 #include "core/owned.hpp"
-#include "files/setup_text.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/data/text_table.hpp"
 
@@ -69,8 +68,6 @@ private:
 /// Gives the lines' answers to a session that begins. A simulated observer answers each of them too, so that
 /// it goes on where it was. \throws error (bad_input) with file and line if they are not of this session.
 void replay(calibration& c, const calibration_log& log, observer* simulated);
-
-using detail::array_text;
 
 /// Returns the tables [calibration] and [[calibration.tactor]].
 std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);

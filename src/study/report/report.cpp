@@ -188,15 +188,8 @@ std::string methods_text(const study_facts& f, const dataset& d, const nlohmann:
     return without_gaps(text.render(make_data(collect_facts(f, d, analysis))));
 }
 
-void check_report_name(const fs::path& file)
-{
-    if (file.extension() != ".md")
-        throw error(error_kind::bad_input, file.string(), "the report is Markdown", "end the name in .md");
-}
-
 void write_report(const fs::path& file, const std::string& text, bool force)
 {
-    check_report_name(file);
     detail::check_replaced(file, force, [](std::string_view begin, std::string_view) {
         return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
     });

@@ -84,10 +84,7 @@ study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
 /// about it.
 std::string methods_text(const study_facts& f, const dataset& d, const nlohmann::ordered_json& analysis);
 
-/// Checks that a name is one for a text in Markdown: it ends in .md. \throws error (bad_input).
-void check_report_name(const std::filesystem::path& file);
-
-/// Writes it whole, or nothing. \throws error: bad_input for the name, a folder that does not exist, a file
+/// Writes it whole, or nothing. \throws error: bad_input for a folder that does not exist, a file
 /// that was read as input or, without `force`, a file that is no report of tactor; runtime for what the
 /// system refuses.
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
