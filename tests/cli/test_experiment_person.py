@@ -2,7 +2,6 @@
 """tactor experiment with a person at a terminal, and with lines in place of keys: display, questions, files and refusals.
 tests/study has the order of questions, and what a key answers."""
 import datetime
-import fcntl
 import json
 import os
 import re
@@ -397,13 +396,6 @@ class Refused(PersonTest):
                             (("--masker", "hw:CARD=Nowhere"), {"definition": noisy})):
             self.refused(3, *self.args(*more, **which), stdin=AGREED)
         self.assertFalse((self.dir / "study/sub-01").exists() or (self.dir / "x.log").exists())
-
-    def test_two_experimenters_in_one_folder_are_refused(self):
-        (self.dir / "study").mkdir()
-        holder = os.open(self.dir / "study", os.O_RDONLY)
-        fcntl.flock(holder, fcntl.LOCK_EX)
-        self.refused(2, *self.args())
-        os.close(holder)
 
     def test_a_sound_server_in_between_is_reported(self):
         # Recognised by its type alone: a plugin with that name and nothing behind it.
