@@ -154,45 +154,6 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
     return all;
 }
 
-std::string today()
-{
-    constexpr std::size_t day = 10; // 2026-11-21
-    return study::acq_time_text(study::utc_now_ns()).substr(0, day);
-}
-
-void check_staircase(const study::calibration_settings& c)
-{
-    if (c.staircase.reversals < c.staircase.discard + 2)
-        refuse_option(
-            "--discard",
-            fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
-            "two at least must be left");
-}
-
-// Returns the masker in the files' words.
-std::string masker_text(const calibrate_options& o)
-{
-    if (o.masker.empty())
-        return {};
-    return fmt::format("{} noise, {} dBFS", to_string(o.masking.color), o.masking.level_dbfs);
-}
-
-void check_masker(const calibrate_options& o)
-{
-    const double most = study::greatest_noise_dbfs(o.masking.color);
-    if (o.masking.level_dbfs > most)
-        refuse_option("--masker-dbfs",
-                      fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
-                                  o.masking.level_dbfs, most),
-                      "less here, and more at the amplifier of the headphones");
-}
-
-// The levels that a tactor may have.
-double find_ceiling(const array& a, std::size_t tactor, const drive_limits& l)
-{
-    return std::min({0.0, a.tactors[tactor].max_dbfs, l.power_dbfs - power_margin_db});
-}
-
 // Returns the longest time that a tactor is driven in any window: in one trial of a staircase, before which
 // there may be a pause, or in the steady pulses of an adjustment.
 double longest_drive_s(const study::calibration_settings& c, const drive_limits& l)
@@ -216,13 +177,6 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
                         c.method == study::calibration_method::staircase ? "intervals" : "steady pulses",
                         c.interval_s, longest_s, l.window_s, l.max_drive_s),
             "shorter ones, or another max_drive_s");
-}
-
-void check_carrier(double carrier_hz, unsigned rate)
-{
-    if (carrier_hz >= 0.5 * rate)
-        refuse_option("--carrier", fmt::format("{} Hz cannot be played at a rate of {} Hz", carrier_hz, rate),
-                      fmt::format("below {} Hz, half the rate", 0.5 * rate));
 }
 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
@@ -271,6 +225,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
              [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
 }
 
+// Checks that output and log have names that go with each other, and names the log that is not named.
 void settle_names(calibrate_options& o)
 {
     namespace fs = std::filesystem;
@@ -283,17 +238,22 @@ void settle_names(calibrate_options& o)
         refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
 }
 
-study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
-                                               const environment& e)
+void check_calibrate_options(const calibrate_options& o, const settings& s)
 {
-    study::calibration_settings c = o.settings;
-    const array& a = e.tactors;
-    const drive_limits limits = session::settle_limits({}, e);
+    const study::calibration_settings& c = o.settings;
     if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
         refuse_option(o.of_staircase, "an adjustment does not have that",
                       "leave it out, or use --method staircase");
-    check_staircase(c);
-    check_masker(o);
+    if (c.staircase.reversals < c.staircase.discard + 2)
+        refuse_option(
+            "--discard",
+            fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
+            "two at least must be left");
+    if (const double most = study::greatest_noise_dbfs(o.masking.color); o.masking.level_dbfs > most)
+        refuse_option("--masker-dbfs",
+                      fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
+                                  o.masking.level_dbfs, most),
+                      "less here, and more at the amplifier of the headphones");
     check_page_options(o.page, o.simulate.has_value());
     if (o.words && !o.page.shown())
         refuse_option("--page-words", "there is no page", "--display page, or leave it out");
@@ -301,10 +261,25 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
         refuse_option(asked, "nothing is played", "leave it out, or --simulate");
     if (o.simulate && !o.keypads.empty())
         refuse_option("--keypad", "nobody is asked", "leave it out, or --simulate");
-    c.masker = masker_text(o);
+}
+
+// Returns the settings for this array, within its limits.
+study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
+                                               const environment& e)
+{
+    check_calibrate_options(o, s);
+    study::calibration_settings c = o.settings;
+    const array& a = e.tactors;
+    const drive_limits limits = session::settle_limits({}, e);
+    if (!o.masker.empty())
+        c.masker = fmt::format("{} noise, {} dBFS", to_string(o.masking.color), o.masking.level_dbfs);
     c.masker_pcm = o.masker;
     c.carrier_hz = s.plan.carrier_hz;
-    check_carrier(c.carrier_hz, session::settle_render(s, e).rate);
+    const unsigned rate = session::settle_render(s, e).rate;
+    if (c.carrier_hz >= 0.5 * rate)
+        refuse_option("--carrier",
+                      fmt::format("{} Hz cannot be played at a rate of {} Hz", c.carrier_hz, rate),
+                      fmt::format("below {} Hz, half the rate", 0.5 * rate));
     check_drive_time(c, limits);
     if (o.tactors) {
         c.tactors = tactors_in(*o.tactors, a.tactors.size());
@@ -313,7 +288,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
         std::iota(c.tactors.begin(), c.tactors.end(), 0U);
     }
     for (const unsigned t : c.tactors) {
-        const double ceiling = find_ceiling(a, t, limits);
+        const double ceiling = std::min({0.0, a.tactors[t].max_dbfs, limits.power_dbfs - power_margin_db});
         if (o.has_start && c.start_dbfs() > ceiling)
             refuse_option(
                 "--start-dbfs",
@@ -325,7 +300,8 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     }
     c.simulate = o.simulate.value_or("");
     c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::default_seed(c.participant)));
-    c.date = today();
+    constexpr std::size_t day = 10; // 2026-11-21
+    c.date = study::acq_time_text(study::utc_now_ns()).substr(0, day);
     return c;
 }
 
@@ -363,13 +339,6 @@ setup read_other_tables(const environment& e)
     else if (!e.array_file.empty())
         s.output.channels = e.config.output.channels;
     return s;
-}
-
-std::string make_head(const study::calibration_settings& s)
-{
-    std::string t = fmt::format("# Thresholds of {} at {} Hz in intervals of {} s (tactor calibrate).\n",
-                                s.participant, s.carrier_hz, s.interval_s);
-    return s.simulate.empty() ? t : t + "# SIMULATED: nobody was asked.\n";
 }
 
 const char* why_none(study::staircase_end end)
@@ -461,13 +430,17 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
                  const study::calibration& c)
 {
     const array a = study::with_thresholds(e.tactors, e.config.calibration, c.settings(), c.thresholds());
-    study::write_new_output(o.output, make_head(c.settings()) + detail::array_text(a, besides) +
-                                          study::calibration_text(c.settings(), c.thresholds()));
-    say(stdout, "{}{}\n", c.settings().participant,
-        c.settings().simulate.empty() ? "" : ": SIMULATED, nobody was asked");
+    const study::calibration_settings& s = c.settings();
+    const bool simulated = !s.simulate.empty();
+    study::write_new_output(
+        o.output, fmt::format("# Thresholds of {} at {} Hz in intervals of {} s (tactor calibrate).\n{}{}{}",
+                              s.participant, s.carrier_hz, s.interval_s,
+                              simulated ? "# SIMULATED: nobody was asked.\n" : "",
+                              detail::array_text(a, besides), study::calibration_text(s, c.thresholds())));
+    say(stdout, "{}{}\n", s.participant, simulated ? ": SIMULATED, nobody was asked" : "");
     for (std::size_t i = 0; i < c.thresholds().size(); ++i)
-        print(c.thresholds()[i], c.settings().ceilings_dbfs[i]);
-    for (const study::doubtful_threshold& d : study::find_doubtful(a, c.settings(), c.thresholds()))
+        print(c.thresholds()[i], s.ceilings_dbfs[i]);
+    for (const study::doubtful_threshold& d : study::find_doubtful(a, s, c.thresholds()))
         say(stderr,
             "tactor: warning: tactor {}: the threshold is likely to be too high: {} (measure it again: "
             "--tactors {} --array {} -o ANOTHER.toml)\n",

@@ -90,18 +90,6 @@ void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
             ++r.confusion[t.method_1][t.motion][t.response];
 }
 
-// Returns the per cent of trials, one or more, in which the first interval was chosen.
-double first_chosen(const std::vector<trial>& trials)
-{
-    const auto first = std::ranges::count(trials, 1U, &trial::response);
-    return 100.0 * static_cast<double>(first) / static_cast<double>(trials.size());
-}
-
-std::size_t count_early(const run_data& d)
-{
-    return static_cast<std::size_t>(std::ranges::count(d.trials, true, &trial::early));
-}
-
 run_analysis analyse_run(const dataset& d, std::size_t which)
 {
     run_analysis r;
@@ -112,7 +100,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
-        r.early += count_early(own);
+        r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
         std::optional<cell_values> v = compute_cells(r.run, own.trials);
         if (!v) {
             r.missing.push_back({d.participants[i], own.trials.empty()
@@ -124,8 +112,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
         r.trials += own.trials.size();
         all.push_back(*std::move(v));
         data.push_back(&own);
-        if (r.run.task == task_kind::choose)
-            first.push_back(first_chosen(own.trials));
+        const auto first_chosen = std::ranges::count(own.trials, 1U, &trial::response);
+        first.push_back(100.0 * static_cast<double>(first_chosen) / static_cast<double>(own.trials.size()));
     }
     r.n = all.size();
     analyse_values(r, all);

@@ -259,14 +259,6 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     return passed ? "" : gone;
 }
 
-bool person_session::rest_before(const session_step& s, const planned_trial& t)
-{
-    if (t.rest_s == 0.0)
-        return true;
-    on_page(stimulus_screen(p_, s));
-    return stage_.pass(t.rest_s, [&](double) { return heed(); });
-}
-
 std::function<bool(double)> person_session::waiting()
 {
     return [this, announced = false](double) mutable {
@@ -296,8 +288,11 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
 {
     const score stimuli = p_.stimuli.make_score(t);
     const run_definition& r = p_.run_at(s.run);
+    if (t.rest_s > 0.0)
+        on_page(stimulus_screen(p_, s));
     // Waits before the target, because the stimulus follows it at once.
-    if (!rest_before(s, t) || !stage_.make_room(stimuli, find_lead_s(p_, r, t), waiting()))
+    if (!stage_.pass(t.rest_s, [&](double) { return heed(); }) ||
+        !stage_.make_room(stimuli, find_lead_s(p_, r, t), waiting()))
         return {.flaw = "the device is gone"};
     if (r.animation)
         if (std::string flaw = animate(s, t); !flaw.empty())

@@ -70,8 +70,6 @@ private:
         unsigned choice = 0; ///< 0: the experimenter repeats the trial
         double time_s = 0.0;
     };
-    /// Lets the rest before a trial pass. Returns false if the device is gone.
-    bool rest_before(const session_step& s, const planned_trial& t);
     /// Returns a watcher that asks for a moment's patience when it is first called.
     std::function<bool(double)> waiting();
     /// Shows the target. Returns the reason if that made the trial void.
