@@ -476,10 +476,10 @@ json describe_session(const session_facts& s, const dataset& d)
     row["counts"] = json::array();
     const auto person =
         std::find(d.participants.begin(), d.participants.end(), s.code) - d.participants.begin();
-    for (std::size_t run = 0; run < s.voids.size(); ++run) {
-        const void_count& c = s.voids[run];
-        row["counts"].push_back(fmt::format("{} / {} / {}", d.data.at(person)[run].trials.size(), c.voids,
-                                            c.with_xruns ? fmt::format("{}", *c.with_xruns) : not_recorded));
+    for (std::size_t run = 0; run < s.xruns.size(); ++run) {
+        const run_data& r = d.data.at(person)[run];
+        row["counts"].push_back(fmt::format("{} / {} / {}", r.trials.size(), r.voids,
+                                            s.xruns[run] ? fmt::format("{}", *s.xruns[run]) : not_recorded));
     }
     return row;
 }

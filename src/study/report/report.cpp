@@ -58,12 +58,13 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  "it was changed");
 }
 
-// Counts the void trials in a run's table.
-void_count count_voids(const fs::path& folder, const fs::path& table, const session_facts& s)
+// Checks the plans in a run's table. Returns the number of void trials with gaps in the sound, if it is
+// recorded.
+std::optional<std::size_t> check_trials(const fs::path& folder, const fs::path& table, const session_facts& s)
 {
-    void_count c;
+    std::optional<std::size_t> count = 0;
     if (!is_there(folder, table))
-        return c;
+        return count;
     const text_table t(folder / table);
     for (std::size_t i = 0; i < t.rows(); ++i) {
         if (!s.stimuli.empty()) {
@@ -72,14 +73,13 @@ void_count count_voids(const fs::path& folder, const fs::path& table, const sess
         }
         if (!t.truth(i, "void"))
             continue;
-        ++c.voids;
         const auto xruns = t.has("xruns") ? t.whole(i, "xruns", 0, 1000000000) : std::nullopt;
         if (!xruns)
-            c.with_xruns.reset();
-        else if (*xruns > 0 && c.with_xruns)
-            ++*c.with_xruns;
+            count.reset();
+        else if (*xruns > 0 && count)
+            ++*count;
     }
-    return c;
+    return count;
 }
 
 session_facts read_session_facts(const fs::path& folder, const std::string& code,
@@ -100,7 +100,7 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
         s.design = read_design(text, s.file + ": experiment.text");
     s.stimuli = read_stimuli(s, source / "plans");
     for (const run_outline& r : outline.runs)
-        s.voids.push_back(count_voids(folder, table_path(code, r), s));
+        s.xruns.push_back(check_trials(folder, table_path(code, r), s));
     return s;
 }
 

@@ -38,12 +38,6 @@ struct planned_stimulus {
     json_value facts() const { return {plan, file, changed_file}; }
 };
 
-/// Counts of a run's void trials.
-struct void_count {
-    std::size_t voids = 0;
-    std::optional<std::size_t> with_xruns = 0; ///< those with gaps in the sound; none: not recorded
-};
-
 /// Schema of the sessions that tactor experiment held.
 inline constexpr std::string_view own_schema = "tactor-session/1";
 
@@ -56,7 +50,8 @@ struct session_facts {
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<void_count> voids = {}; ///< by run of the outline
+    std::vector<std::optional<std::size_t>> xruns =
+        {}; ///< void trials with gaps in the sound, by run; none: not recorded
 
     json_value facts() const { return {document, file, changed_file}; }
 };
