@@ -108,7 +108,6 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
                                                         : "no trial that counts in some of the cells"});
             continue;
         }
-        r.participants.push_back(d.participants[i]);
         r.trials += own.trials.size();
         all.push_back(*std::move(v));
         data.push_back(&own);

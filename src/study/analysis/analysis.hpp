@@ -24,8 +24,7 @@ struct by_motion {
 
 struct run_analysis {
     run_outline run;
-    std::size_t n = 0; ///< participants with a trial that counts in each cell
-    std::vector<std::string> participants = {};
+    std::size_t n = 0;                  ///< participants with a trial that counts in each cell
     std::vector<left_out> missing = {}; ///< have trials that are not in the figures
     std::size_t trials = 0;             ///< that count, of the n
     std::size_t voids = 0;              ///< of everybody who was selected

@@ -31,14 +31,24 @@ struct task_row {
     std::string_view name;
     std::string_view trial;    ///< kind of a trial
     std::string_view response; ///< meaning of its response; {} is the scale
+    /// Usual questions about similarity, uniformity, another attribute; empty: none.
+    std::array<std::string_view, 3> questions;
 };
 
 /// Rows in the order of task_kind.
 inline constexpr std::array<task_row, 3> tasks{{
-    {"choose", "Two stimuli, one after the other, of which one is chosen",
-     "Which of the two stimuli was chosen, 1 or 2"},
-    {"rate", "One stimulus, which is rated", "The rating, 1 to {}"},
-    {"identify", "One stimulus, whose motion is named", "The motion that was named"},
+    {"choose",
+     "Two stimuli, one after the other, of which one is chosen",
+     "Which of the two stimuli was chosen, 1 or 2",
+     {"Which of the two was more like the target?", "Which of the two was more even?"}},
+    {"rate",
+     "One stimulus, which is rated",
+     "The rating, 1 to {}",
+     {"How much was it like the target?", "How even was it?"}},
+    {"identify",
+     "One stimulus, whose motion is named",
+     "The motion that was named",
+     {"Which movement was it?", "Which movement was it?", "Which movement was it?"}},
 }};
 constexpr const task_row& find_task(task_kind t) noexcept
 {

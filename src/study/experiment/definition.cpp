@@ -94,19 +94,6 @@ std::string write_choice(const options::option& o, std::string_view value)
 
 constexpr unsigned most_trials = 10000;
 
-// Returns the default question in English, if there is one for the attribute.
-std::string usual_question(const run_definition& r)
-{
-    const bool similar = r.attribute == "similarity";
-    if (!similar && r.attribute != "uniformity" && r.outline.task != task_kind::identify)
-        return {};
-    if (r.outline.task == task_kind::choose)
-        return similar ? "Which of the two was more like the target?" : "Which of the two was more even?";
-    if (r.outline.task == task_kind::rate)
-        return similar ? "How much was it like the target?" : "How even was it?";
-    return "Which movement was it?";
-}
-
 // Returns the places in `all` that a run names, in the order of `all`; every place if it names none.
 template <class T>
 std::vector<std::size_t> places_in(const toml_table& run, std::string_view key, const std::vector<T>& all)
@@ -390,9 +377,10 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
     if (t.has("attribute") || r.outline.task != task_kind::identify)
         r.attribute = name_in(t, "attribute");
-    const bool known = r.attribute == "similarity" || r.attribute == "uniformity";
-    r.simulate_as = t.choice("simulate_as", {"similarity", "uniformity"}).value_or(known ? r.attribute : "");
-    r.question = t.text("question").value_or(usual_question(r));
+    const std::size_t kind = r.attribute == "similarity" ? 0 : r.attribute == "uniformity" ? 1 : 2;
+    r.simulate_as =
+        t.choice("simulate_as", {"similarity", "uniformity"}).value_or(kind < 2 ? r.attribute : "");
+    r.question = t.text("question").value_or(std::string(find_task(r.outline.task).questions[kind]));
     if (r.question.empty())
         t.need(std::optional<std::string>{}, "question");
     r.min_response_s = t.number("min_response_s", {0.0, 10.0}).value_or(r.min_response_s);

@@ -42,13 +42,6 @@ std::vector<std::string> label_choices(const prepared_experiment& p, const run_d
     return all;
 }
 
-page_progress find_progress(const prepared_experiment& p, const session_step& s)
-{
-    const run_sequence& run = p.runs[s.run];
-    return {s.run + 1, p.runs.size(), s.practice, s.what == step_kind::trial ? s.which.trial : 0,
-            s.practice ? run.practice.size() : run.trials.size()};
-}
-
 // Returns the steps of the scale with their labels, or its ends.
 std::string scale_text(const page_words& w, const run_definition& r)
 {
@@ -90,19 +83,16 @@ std::string choices_text(const experiment_definition& d, const run_definition& r
     return text;
 }
 
+page_progress find_progress(const prepared_experiment& p, const session_step& s)
+{
+    const run_sequence& run = p.runs[s.run];
+    return {s.run + 1, p.runs.size(), s.practice, s.what == step_kind::trial ? s.which.trial : 0,
+            s.practice ? run.practice.size() : run.trials.size()};
+}
+
 page_screen idle_screen(const prepared_experiment& p, std::string_view key)
 {
     return {.name = std::string(key), .text = p.definition.page[key]};
-}
-
-page_screen consent_screen(const prepared_experiment& p)
-{
-    const page_words& w = p.definition.page;
-    return {.name = "consent",
-            .text = p.definition.consent,
-            .question = w["agree"],
-            .choices = {w["yes"], w["no"]},
-            .keys = "yn"};
 }
 
 page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool asked)
@@ -120,24 +110,6 @@ page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool aske
         s.keys += 'b';
     }
     return s;
-}
-
-page_screen introduce_screen(const prepared_experiment& p, const session_step& s)
-{
-    page_screen shown{.name = "introduce",
-                      .question = p.run_at(s.run).question,
-                      .choices = {p.definition.page["begin"]},
-                      .keys = " "};
-    shown.where = find_progress(p, s);
-    return shown;
-}
-
-page_screen rest_screen(const prepared_experiment& p, const session_step& s)
-{
-    page_screen shown = idle_screen(p, "rest");
-    shown.where = find_progress(p, s);
-    shown.lasts_s = p.run_at(s.run).break_s;
-    return shown;
 }
 
 page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target)

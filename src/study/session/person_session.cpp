@@ -128,7 +128,11 @@ void person_session::introduce(const session_step& s)
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(), r.question,
                                     choices_text(p_.definition, r)));
-    on_page(introduce_screen(p_, s));
+    on_page({.name = "introduce",
+             .question = r.question,
+             .choices = {w["begin"]},
+             .keys = " ",
+             .where = find_progress(p_, s)});
     if (keys_.come_early()) {
         session::show(page_ != nullptr ? "The participant begins, or g.\n" : w["any_key_begins"] + "\n");
         wait_for_any_key();
@@ -191,7 +195,10 @@ void person_session::rest(const session_step& s)
 {
     const double break_s = p_.run_at(s.run).break_s;
     session::show(fmt::format("\n{}: {:.0f} s\n", p_.definition.page["rest"], break_s));
-    on_page(rest_screen(p_, s));
+    on_page({.name = "rest",
+             .text = p_.definition.page["rest"],
+             .lasts_s = break_s,
+             .where = find_progress(p_, s)});
     bool ended = false;
     const bool there = stage_.pass(break_s, [&](double) {
         for (auto k = keys_.come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll())
@@ -397,7 +404,11 @@ void person_session::void_last()
 void person_session::ask_consent()
 {
     const page_words& w = p_.definition.page;
-    on_page(consent_screen(p_));
+    on_page({.name = "consent",
+             .text = p_.definition.consent,
+             .question = w["agree"],
+             .choices = {w["yes"], w["no"]},
+             .keys = "yn"});
     session::show_lines(p_.definition.consent + "\n");
     session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
     for (;;) {

@@ -115,11 +115,9 @@ unsigned choices_in(const run_definition& r);
 
 /// Makes a screen without a question; `key` is that of its text in page_words.
 page_screen idle_screen(const prepared_experiment& p, std::string_view key);
-page_screen consent_screen(const prepared_experiment& p);
 /// Makes the screen while a tactor is driven or, with `asked`, the question about it.
 page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool asked);
-page_screen introduce_screen(const prepared_experiment& p, const session_step& s);
-page_screen rest_screen(const prepared_experiment& p, const session_step& s);
+page_progress find_progress(const prepared_experiment& p, const session_step& s);
 /// Make the screens of a trial: its target, its stimuli, its question.
 page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target);
 page_screen stimulus_screen(const prepared_experiment& p, const session_step& s, unsigned playing = 0);

@@ -167,6 +167,13 @@ double nothing(const cell_table& t)
     return static_cast<double>(count) * std::pow(few_digits * largest, 2.0);
 }
 
+// Returns the upper tail of F.
+double p_of_f(double f, double df1, double df2)
+{
+    return boost::math::cdf(boost::math::complement(
+        boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
+}
+
 effect judge(const parts& s, const cell_table& t, double all_error)
 {
     effect e;
@@ -423,12 +430,6 @@ interval binomial_interval(std::size_t hits, std::size_t n)
     const auto successes = static_cast<double>(hits);
     return {binomial_distribution<double, in_double>::find_lower_bound_on_p(trials, successes, tail),
             binomial_distribution<double, in_double>::find_upper_bound_on_p(trials, successes, tail)};
-}
-
-double p_of_f(double f, double df1, double df2)
-{
-    return boost::math::cdf(boost::math::complement(
-        boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
 }
 
 anova repeated_measures(const cell_table& t)

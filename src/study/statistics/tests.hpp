@@ -102,9 +102,6 @@ struct anova {
 /// Computes both main effects and their interaction; of a factor with one level nothing.
 anova repeated_measures(const cell_table& t);
 
-/// Returns the upper tail of F.
-double p_of_f(double f, double df1, double df2);
-
 /// Returns epsilon of Greenhouse and Geisser (1959), 1 / rows ... 1, from the cross products of orthonormal
 /// contrasts (at least two; not all 0).
 double greenhouse_geisser(const std::vector<std::vector<double>>& cross);
