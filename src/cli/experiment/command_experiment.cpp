@@ -24,11 +24,10 @@
 #include "session/interrupt.hpp"
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/person_session.hpp"
-#include "study/session/prepared.hpp"
 #include "study/session/stage.hpp"
-#include "study/session/trials.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -27,8 +27,7 @@
 #include "study/analysis/analysis.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/simulated.hpp"
-#include "study/session/prepared.hpp"
-#include "study/session/trials.hpp"
+#include "study/session/experiment_session.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
 #include "study/experiment/simulated.hpp"
-#include "study/session/prepared.hpp"
+#include "study/session/experiment_session.hpp"
 
 namespace CLI {
 class App;

@@ -14,8 +14,7 @@
 #include "session/say.hpp"
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
-#include "study/session/prepared.hpp"
-#include "study/session/trials.hpp"
+#include "study/session/experiment_session.hpp"
 
 namespace tactor::study {
 namespace {

@@ -16,11 +16,10 @@
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/sequence.hpp"
+#include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
-#include "study/session/prepared.hpp"
 #include "study/session/stage.hpp"
-#include "study/session/trials.hpp"
 
 namespace tactor::study {
 
