@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <functional>
 #include <utility>
@@ -23,7 +24,124 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
 
+// Points of a path on the page: nobody sees the straight lines between them.
+constexpr double points_per_s = 200.0;
+constexpr double most_points = 4000.0;
+constexpr double picture_points = 60.0;
+
+std::vector<point> sample_way(const stroke& target, const array& a, double parts)
+{
+    const trajectory& m = target.motion;
+    const layout faces(a);
+    std::vector<point> way;
+    for (double i = 0.0; i <= parts; ++i) {
+        const point p = m.position(m.duration_s() * i / parts);
+        way.push_back(faces.contains(p) ? p : faces.nearest(p));
+    }
+    return way;
+}
+
+// Lists the texts of the answers, empty if a number is enough.
+std::vector<std::string> label_choices(const run_definition& r)
+{
+    std::vector<std::string> all(choices_in(r));
+    if (r.outline.task == task_kind::identify)
+        all = r.outline.motions;
+    else if (r.labels.size() == all.size())
+        all = r.labels;
+    else if (r.labels.size() == 2) {
+        all.front() = r.labels.front();
+        all.back() = r.labels.back();
+    }
+    return all;
+}
+
+// Returns the possible answers in a run: "1 or 2", "1 (not at all) to 5 (exactly)", "1 east, 2 west".
+std::string choices_text(const experiment_definition& d, const run_definition& r)
+{
+    const std::string between = d.page[r.outline.task == task_kind::choose ? "or" : "to"];
+    const bool named = r.outline.task == task_kind::identify;
+    const std::vector<std::string> labels = label_choices(r);
+    const bool each = named || r.labels.size() == labels.size();
+    std::string text;
+    for (std::size_t i = 0; i < labels.size(); i += each ? 1 : labels.size() - 1) {
+        text += i == 0 ? "" : each ? ", " : fmt::format(" {} ", between);
+        text += fmt::format("{}", i + 1);
+        if (!labels[i].empty())
+            text += fmt::format(fmt::runtime(named ? " {}" : " ({})"), labels[i]);
+    }
+    return text;
+}
+
+page_progress find_progress(const prepared_experiment& p, const session_step& s)
+{
+    const run_sequence& run = p.runs[s.run];
+    return {s.run + 1, p.runs.size(), s.practice, s.what == step_kind::trial ? s.which.trial : 0,
+            s.practice ? run.practice.size() : run.trials.size()};
+}
+
+page_screen idle_screen(const prepared_experiment& p, std::string_view key)
+{
+    return {.name = std::string(key), .text = p.definition.page[key]};
+}
+
+page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool asked)
+{
+    const page_words& w = p.definition.page;
+    page_screen s{.name = "walk", .text = w["walk"]};
+    s.where = {1, 1, false, tactor + 1, p.where.tactors.tactors.size()};
+    if (!asked)
+        return s;
+    s.question = w["felt"];
+    s.choices = {w["yes"], w["no"], w["again"]};
+    s.keys = "ynr";
+    if (tactor > 0) {
+        s.choices.push_back(w["back"]);
+        s.keys += 'b';
+    }
+    return s;
+}
+
+page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target)
+{
+    page_screen shown = idle_screen(p, "target");
+    shown.lasts_s = target.motion.duration_s();
+    shown.path = sample_way(target, p.where.tactors,
+                            std::clamp(std::ceil(shown.lasts_s * points_per_s), 50.0, most_points));
+    shown.where = find_progress(p, s);
+    return shown;
+}
+
+page_screen stimulus_screen(const prepared_experiment& p, const session_step& s, unsigned playing = 0)
+{
+    page_screen shown = idle_screen(p, "stimulus");
+    shown.stimuli = p.run_at(s.run).outline.task == task_kind::choose ? 2 : 0;
+    shown.playing = playing;
+    shown.where = find_progress(p, s);
+    return shown;
+}
+
+page_screen question_screen(const prepared_experiment& p, const session_step& s)
+{
+    const run_definition& r = p.run_at(s.run);
+    page_screen shown{.name = "question", .question = r.question, .choices = label_choices(r)};
+    shown.keys = std::string("123456789").substr(0, shown.choices.size());
+    if (r.outline.task == task_kind::identify)
+        for (const std::size_t m : r.motions)
+            shown.pictures.push_back(
+                sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
+    shown.where = find_progress(p, s);
+    return shown;
+}
+
 } // namespace
+
+unsigned choices_in(const run_definition& r)
+{
+    return r.outline.task == task_kind::choose ? 2
+           : r.outline.task == task_kind::rate ? r.outline.scale
+                                               : static_cast<unsigned>(r.motions.size());
+}
 
 person_session::person_session(const prepared_experiment& p, session_store& store, stage& s,
                                const answering& with, target_display display, session_devices devices)
@@ -175,18 +293,13 @@ bool person_session::heed()
 
 void person_session::obey(operator_key k)
 {
-    switch (k) {
-    case operator_key::void_last:
+    if (k == operator_key::quit)
+        throw stage::interruption{SIGINT, experimenter};
+    if (k == operator_key::void_last)
         return void_last();
-    case operator_key::pause:
+    if (k == operator_key::pause) {
         flow_.pause();
         session::say(stderr, "tactor: a pause comes before the next trial\n");
-        return;
-    case operator_key::quit:
-        throw stage::interruption{SIGINT, experimenter};
-    case operator_key::repeat:
-    case operator_key::go_on:
-        return;
     }
 }
 

@@ -106,20 +106,7 @@ private:
     bool quit_ = false;
 };
 
-/// Returns the possible answers in a run: "1 (not at all) to 5 (exactly)".
-std::string choices_text(const experiment_definition& d, const run_definition& r);
-
-/// Returns how many answers there are.
+/// Returns how many answers there are in a run.
 unsigned choices_in(const run_definition& r);
-
-/// Makes a screen without a question; `key` is that of its text in page_words.
-page_screen idle_screen(const prepared_experiment& p, std::string_view key);
-/// Makes the screen while a tactor is driven or, with `asked`, the question about it.
-page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool asked);
-page_progress find_progress(const prepared_experiment& p, const session_step& s);
-/// Make the screens of a trial: its target, its stimuli, its question.
-page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target);
-page_screen stimulus_screen(const prepared_experiment& p, const session_step& s, unsigned playing = 0);
-page_screen question_screen(const prepared_experiment& p, const session_step& s);
 
 } // namespace tactor::study
