@@ -17,8 +17,8 @@
 #include "core/sha256.hpp"
 #include "felt_array.hpp"
 #include "has.hpp"
-#include "study/experiment/sequence.hpp"
 #include "study/experiment/simulated.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 
 namespace tactor::study::test_sequence {

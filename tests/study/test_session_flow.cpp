@@ -11,7 +11,7 @@
 #include <tactor/error.hpp>
 
 #include "rounds.hpp"
-#include "study/experiment/sequence.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"

@@ -15,7 +15,7 @@
 #include "scores.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/experiment/stimuli.hpp"
+#include "study/experiment/trials.hpp"
 
 namespace stage_test {
 

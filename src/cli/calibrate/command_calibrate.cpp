@@ -34,7 +34,7 @@
 #include "study/calibrate/calibration_files.hpp"
 #include "study/calibrate/person.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/experiment/sequence.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/masking/masking.hpp"
 
 namespace tactor::cli {

@@ -16,8 +16,7 @@
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
-#include "study/experiment/sequence.hpp"
-#include "study/experiment/stimuli.hpp"
+#include "study/experiment/trials.hpp"
 
 namespace tactor::study {
 

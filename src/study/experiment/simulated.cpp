@@ -12,7 +12,7 @@
 
 #include "core/split.hpp"
 #include "study/analysis/analysis.hpp"
-#include "study/experiment/sequence.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "study/experiment/definition.hpp"
-#include "study/experiment/stimuli.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {

@@ -19,7 +19,7 @@
 #include "core/words.hpp"
 #include "options/option.hpp"
 #include "study/analysis/analysis.hpp"
-#include "study/experiment/sequence.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {

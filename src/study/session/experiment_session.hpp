@@ -19,9 +19,8 @@
 #include "session/environment.hpp"
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/experiment/sequence.hpp"
 #include "study/experiment/simulated.hpp"
-#include "study/experiment/stimuli.hpp"
+#include "study/experiment/trials.hpp"
 
 namespace tactor::study {
 

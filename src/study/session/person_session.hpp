@@ -15,7 +15,7 @@
 
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/experiment/sequence.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
