@@ -126,12 +126,11 @@ void try_to_write(const fs::path& file)
     const std::size_t length = std::max(file.filename().string().size(), tail.size() + 2);
     const fs::path probe = folder / ("." + std::string(length - tail.size() - 1, 'x') + tail);
     const detail::owned_fd fd(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
-    if (fd && (!is_on_disk(file) || ::access(file.c_str(), W_OK) == 0)) {
-        ::unlink(probe.c_str());
-        return;
-    }
+    const bool possible = fd && (!is_on_disk(file) || ::access(file.c_str(), W_OK) == 0);
     const int code = errno;
     ::unlink(probe.c_str());
+    if (possible)
+        return;
     const bool named_so = code == ENAMETOOLONG;
     throw error(named_so || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file.string(),
                 fmt::format("it could not be written: {}", std::strerror(code)),

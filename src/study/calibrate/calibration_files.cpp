@@ -143,15 +143,6 @@ std::string threshold_text(const tactor_threshold& t, bool stairs)
 
 constexpr double most_above_median_db = 12.0;
 
-std::optional<double> find_median(std::vector<double> v)
-{
-    if (v.empty())
-        return {};
-    std::sort(v.begin(), v.end());
-    const std::size_t half = v.size() / 2;
-    return v.size() % 2 != 0 ? v[half] : (v[half - 1] + v[half]) / 2.0;
-}
-
 } // namespace
 
 fs::path settings_file(const fs::path& log)
@@ -421,7 +412,8 @@ std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_
     for (const tactor_spec& t : a.tactors)
         if (all.push_back(threshold_at(t, s.carrier_hz)); all.back())
             felt.push_back(*all.back());
-    const double median = find_median(felt).value_or(0.0);
+    std::ranges::sort(felt);
+    const double median = felt.empty() ? 0.0 : (felt[(felt.size() - 1) / 2] + felt[felt.size() / 2]) / 2.0;
     std::vector<doubtful_threshold> doubtful;
     for (unsigned i = 0; i < all.size(); ++i) {
         if (!all[i])

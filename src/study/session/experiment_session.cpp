@@ -39,36 +39,23 @@ using files::or_null;
 // set any. A real session needs measured ones.
 bool assume_thresholds(array& a, bool nobody_feels)
 {
-    std::vector<std::size_t> missing;
-    for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (!a.tactors[i].threshold_dbfs && a.tactors[i].thresholds.empty())
-            missing.push_back(i);
-    if (missing.empty())
-        return false;
-    if (!nobody_feels)
-        throw error(
-            error_kind::bad_input, "--array",
-            fmt::format("tactor {} has no threshold, and the level is above the threshold", missing.front()),
-            "--array FILE that tactor calibrate made");
-    for (const std::size_t i : missing)
-        a.tactors[i].threshold_dbfs = assumed_threshold_dbfs;
-    return true;
+    bool assumed = false;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i) {
+        tactor_spec& t = a.tactors[i];
+        if (t.threshold_dbfs || !t.thresholds.empty())
+            continue;
+        if (!nobody_feels)
+            throw error(error_kind::bad_input, "--array",
+                        fmt::format("tactor {} has no threshold, and the level is above the threshold", i),
+                        "--array FILE that tactor calibrate made");
+        t.threshold_dbfs = assumed_threshold_dbfs;
+        assumed = true;
+    }
+    return assumed;
 }
 
-// Exchanges left and right, about the middle of the array, of the motions that say so.
-void mirror_motions(experiment_definition& d, const array& a)
-{
-    const auto [least, most] =
-        std::ranges::minmax_element(a.tactors, {}, [](const tactor_spec& t) { return t.position.x_mm; });
-    const double middle_mm = 0.5 * (least->position.x_mm + most->position.x_mm);
-    const detail::affine exchanged{-1.0, 0.0, 0.0, 1.0, middle_mm, 0.0};
-    for (motion_definition& m : d.motions)
-        if (m.mirror)
-            m.drawn.motion = detail::moved(m.drawn.motion, {middle_mm, 0.0}, exchanged, {},
-                                           fmt::format("motion \"{}\"", m.name));
-}
-
-// Mirrors the motions for a left hand. A session with a person needs the hand if a motion depends on it.
+// Mirrors the motions that say so for a left hand: exchanges left and right about the middle of the array. A
+// session with a person needs the hand if a motion depends on it.
 void mirror_for_hand(experiment_definition& d, const array& a, const session_request& r)
 {
     const auto mirrored = std::ranges::find(d.motions, true, &motion_definition::mirror);
@@ -79,8 +66,16 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
             error_kind::bad_input, "--hand",
             fmt::format("motion \"{}\" is mirrored for left hands, and the hand is not said", mirrored->name),
             "--hand left, or --hand right");
-    if (r.hand == hand_kind::left)
-        mirror_motions(d, a);
+    if (r.hand != hand_kind::left)
+        return;
+    const auto [least, most] =
+        std::ranges::minmax_element(a.tactors, {}, [](const tactor_spec& t) { return t.position.x_mm; });
+    const double middle_mm = 0.5 * (least->position.x_mm + most->position.x_mm);
+    const detail::affine exchanged{-1.0, 0.0, 0.0, 1.0, middle_mm, 0.0};
+    for (motion_definition& m : d.motions)
+        if (m.mirror)
+            m.drawn.motion = detail::moved(m.drawn.motion, {middle_mm, 0.0}, exchanged, {},
+                                           fmt::format("motion \"{}\"", m.name));
 }
 
 void check(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,

@@ -10,14 +10,6 @@
 #include "rt/clock.hpp"
 
 namespace tactor::study {
-namespace {
-
-// A buffer of 40 ms: only the beginning of the noise has to wait for it.
-constexpr unsigned masker_period_frames = 480;
-constexpr unsigned masker_periods = 4;
-constexpr unsigned masker_channels = 2;
-
-} // namespace
 
 stage::stage(const alsa_options& device, const session::stream_options& o, const session::environment& e,
              const session::stream_source& source)
@@ -55,15 +47,9 @@ void stage::mask(sink_opener open, const masking_options& o)
 
 void stage::mask(const std::string& pcm, const masking_options& o)
 {
-    mask(
-        [pcm] {
-            return open_alsa({.pcm = pcm,
-                              .channels = masker_channels,
-                              .wider = true,
-                              .period_frames = masker_period_frames,
-                              .periods = masker_periods});
-        },
-        o);
+    // A buffer of 40 ms: only the beginning of the noise has to wait for it.
+    const alsa_options stereo{.pcm = pcm, .channels = 2, .wider = true, .period_frames = 480, .periods = 4};
+    mask([stereo] { return open_alsa(stereo); }, o);
 }
 
 void stage::check_signal() const
