@@ -27,7 +27,7 @@ def literals(file):
 def main():
     src = pathlib.Path(sys.argv[1]).resolve() / "src"
     names = set(re.findall(r'\.(?:name|field) = "(\w+)"', (src / "options/table.cpp").read_text(encoding="utf-8")))
-    commands = {name for f in src.glob("cli/**/*.cpp") for name in re.findall(r'add_subcommand\(\s*"(\w+)"', f.read_text(encoding="utf-8"))}
+    commands = set(re.findall(r'\bcommand\{"(\w+)"', (src / "cli/main.cpp").read_text(encoding="utf-8")))
     known = names | ARGUMENTS | {f"command:{c}" for c in commands}
     tool = re.compile(rf"--|-D |\btactor (?:{'|'.join(commands)})\b")
     bad, texts = [], 0

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Switches the amplifier off where no player and no holder is left to do it.
 #include <chrono>
-#include <memory>
 #include <string>
 #include <thread>
 
@@ -40,7 +39,7 @@ std::string searched(const environment& e)
     return own_file ? fmt::format("{} or {}", e.array_file, e.config_name) : e.config_name;
 }
 
-int switch_off(settings& s)
+void switch_off(settings& s)
 {
     const environment e = session::read_environment(s);
     if (!e.config.amplifier)
@@ -54,19 +53,18 @@ int switch_off(settings& s)
                     fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),
                     "cut the amplifier's supply; then see what dmesg says");
     fmt::print("amplifier: line {} of {} ({}) is off\n", p.line.offset, p.label, p.path);
-    return status_ok;
 }
 
 } // namespace
 
-command add_off(CLI::App& app)
+int run_off(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("off", "Switch the amplifier off");
-    auto s = std::make_shared<settings>();
-    add_options(*c, *s, options::on_off);
-    c->footer("tactor off --config tactor.toml\n"
-              "tactor off --array palm.toml");
-    return [s] { return run_with(*s, [&] { return switch_off(*s); }); };
+    settings& s = add_options(line, options::on_off);
+    line.app.footer("tactor off --config tactor.toml\n"
+                    "tactor off --array palm.toml");
+    line.parse();
+    switch_off(s);
+    return status_ok;
 }
 
 } // namespace tactor::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -73,18 +72,17 @@ int draw(settings& s, const plot_settings& p)
 
 } // namespace
 
-command add_plot(CLI::App& app)
+int run_plot(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("plot", "Draw the array, the path and the bursts over time");
-    auto s = std::make_shared<settings>();
-    auto p = std::make_shared<plot_settings>();
-    add_strokes(*c, *s);
-    add_options(*c, *s, options::on_plot);
-    add_plot_options(*c, *p);
-    c->footer("tactor plot park2016-3 -o park2016-3.pdf\n"
-              "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
-              "tactor plot park2016-1 --view wave --width 170 -o wave.png");
-    return [s, p] { return run_with(*s, [&] { return draw(*s, *p); }); };
+    plot_settings p;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_plot);
+    add_plot_options(line.app, p);
+    line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
+                    "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
+                    "tactor plot park2016-1 --view wave --width 170 -o wave.png");
+    line.parse();
+    return draw(s, p);
 }
 
 } // namespace tactor::cli

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -92,20 +91,19 @@ int render(settings& s, const std::string& name)
 
 } // namespace
 
-command add_render(CLI::App& app)
+int run_render(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("render", "Write the samples to a WAV file, one channel per tactor");
-    auto s = std::make_shared<settings>();
-    auto file = std::make_shared<std::string>();
-    add_strokes(*c, *s);
-    add_options(*c, *s, options::on_render);
-    c->add_option("-o,--output", *file, "the file to write; - is standard output")
+    std::string file;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_render);
+    line.app.add_option("-o,--output", file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
         ->required();
-    c->footer("tactor render park2016-3 -o stroke.wav\n"
-              "tactor render --path \"M 0 10 L 40 30\" --speed 80 -o line.wav\n"
-              "tactor render --shape circle --duration 2 --sample-format s16 -o circle.wav");
-    return [s, file] { return run_with(*s, [&] { return render(*s, *file); }); };
+    line.app.footer("tactor render park2016-3 -o stroke.wav\n"
+                    "tactor render --path \"M 0 10 L 40 30\" --speed 80 -o line.wav\n"
+                    "tactor render --shape circle --duration 2 --sample-format s16 -o circle.wav");
+    line.parse();
+    return render(s, file);
 }
 
 } // namespace tactor::cli

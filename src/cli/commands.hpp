@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The commands: each adds itself to the command line and leaves what runs it.
+/// The commands: each adds its options to the command line, parses it, and runs.
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <tactor/error.hpp>
+
+#include "session/environment.hpp"
 
 namespace CLI {
 class App;
@@ -24,23 +28,33 @@ constexpr int exit_status_for(error_kind kind) noexcept
                                                : status_failed;
 }
 
-/// Runs after the command line was parsed; returns the exit status, throws tactor::error.
-using command = std::function<int()>;
+/// The command line of a command.
+struct command_line {
+    CLI::App& app; ///< of the command: takes its options
+    std::vector<std::string> words;
+    std::function<void(const CLI::App&)> show = {}; ///< shows the options in place of running the command
+    session::settings values = {};                  ///< values of the options of the table
 
-command add_plan(CLI::App& app);
-command add_analyze(CLI::App& app);
-command add_compare(CLI::App& app);
-command add_experiment(CLI::App& app);
-command add_report(CLI::App& app);
-command add_render(CLI::App& app);
-command add_play(CLI::App& app);
-command add_plot(CLI::App& app);
-command add_devices(CLI::App& app);
-command add_calibrate(CLI::App& app);
-command add_check(CLI::App& app);
-command add_off(CLI::App& app);
-command add_serve(CLI::App& app);
-command add_status(CLI::App& app);
-command add_stop(CLI::App& app);
+    /// Parses the words, and prints the help if they ask for it. \throws error (bad_input); CLI::Success if
+    /// the command has nothing to do.
+    void parse() const;
+};
+
+/// Each returns the exit status. \throws error; CLI::Success.
+int run_plan(command_line& line);
+int run_analyze(command_line& line);
+int run_compare(command_line& line);
+int run_experiment(command_line& line);
+int run_report(command_line& line);
+int run_render(command_line& line);
+int run_play(command_line& line);
+int run_plot(command_line& line);
+int run_devices(command_line& line);
+int run_calibrate(command_line& line);
+int run_check(command_line& line);
+int run_off(command_line& line);
+int run_serve(command_line& line);
+int run_status(command_line& line);
+int run_stop(command_line& line);
 
 } // namespace tactor::cli

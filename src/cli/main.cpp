@@ -7,11 +7,9 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -26,30 +24,33 @@
 #include "cli/option_words.hpp"
 #include "cli/say.hpp"
 #include "cli/usage.hpp"
+#include "options/settle.hpp"
 #include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
 
-struct named_command {
+struct command {
     std::string_view name;
-    command (*add)(CLI::App&);
+    const char* summary;
+    int (*run)(command_line&);
 };
-constexpr std::array<named_command, 15> commands{{{"plan", add_plan},
-                                                  {"render", add_render},
-                                                  {"play", add_play},
-                                                  {"plot", add_plot},
-                                                  {"compare", add_compare},
-                                                  {"calibrate", add_calibrate},
-                                                  {"experiment", add_experiment},
-                                                  {"analyze", add_analyze},
-                                                  {"report", add_report},
-                                                  {"devices", add_devices},
-                                                  {"check", add_check},
-                                                  {"off", add_off},
-                                                  {"serve", add_serve},
-                                                  {"status", add_status},
-                                                  {"stop", add_stop}}};
+constexpr std::array commands{
+    command{"plan", "Print which tactor plays when, and how strongly", run_plan},
+    command{"render", "Write the samples to a WAV file, one channel per tactor", run_render},
+    command{"play", "Play strokes on the array", run_play},
+    command{"plot", "Draw the array, the path and the bursts over time", run_plot},
+    command{"compare", "Compare predictions of what algorithms feel like", run_compare},
+    command{"calibrate", "Measure a participant's threshold at each tactor", run_calibrate},
+    command{"experiment", "Run an experiment with a participant or a simulated one", run_experiment},
+    command{"analyze", "Print the statistics of a study", run_analyze},
+    command{"report", "Write the methods section of a study's paper", run_report},
+    command{"devices", "List sound devices with their abilities, and GPIO lines", run_devices},
+    command{"check", "Check array, device, rights, limits, lines and wiring", run_check},
+    command{"off", "Switch the amplifier off", run_off},
+    command{"serve", "Own the array and let other programs draw through it", run_serve},
+    command{"status", "Print what the server does", run_status},
+    command{"stop", "Fade out all strokes of the server", run_stop}};
 
 std::string version_text()
 {
@@ -57,11 +58,20 @@ std::string version_text()
 }
 
 // Returns the command of that name; null if there is none.
-const named_command* find_command(std::string_view name)
+const command* find_command(std::string_view name)
 {
-    const auto c = std::find_if(commands.begin(), commands.end(),
-                                [&](const named_command& x) { return x.name == name; });
+    const auto c =
+        std::find_if(commands.begin(), commands.end(), [&](const command& x) { return x.name == name; });
     return c == commands.end() ? nullptr : &*c;
+}
+
+// Returns the command that runs: the first that the words name; null if there is none.
+const command* find_command(const std::vector<std::string>& words)
+{
+    for (const std::string& w : words)
+        if (const command* c = find_command(w))
+            return c;
+    return nullptr;
 }
 
 // `tactor help plan` is `tactor plan --help`, for whoever has no manual pages.
@@ -85,59 +95,87 @@ error explain(const error& e, const std::vector<std::string>& words)
     if (e.kind() != error_kind::bad_input)
         return e;
     std::vector<std::string> names;
-    for (const named_command& c : commands)
+    for (const command& c : commands)
         names.emplace_back(c.name);
     return find_slip(words, names).value_or(e);
 }
 
-int run(const std::vector<std::string>& given)
+// Shows the options of a command.
+template <class F>
+void show_options(const CLI::App& app, const command& c, F show)
 {
-    const std::string_view first = given.empty() ? "" : std::string_view(given.front());
-    if (first == "--version" && given.size() == 1) {
-        fmt::print("{}\n", version_text());
-        return status_ok;
+    command_line line{*app.get_subcommand(std::string(c.name)), {}, show};
+    try {
+        c.run(line);
+    } catch (const CLI::Success&) { // NOLINT(bugprone-empty-catch): it has shown them
     }
-    const bool asks = first == "help" && given.size() == 2; // about options
-    if (given.empty()) {
+}
+
+void print_completions(const CLI::App& app, const std::vector<std::string>& words)
+{
+    const auto print = [&](const CLI::App&) {
+        for (const std::string& line : complete(app, words))
+            fmt::print("{}\n", line);
+    };
+    if (const command* named = words.size() > 1 ? find_command(words.front()) : nullptr)
+        show_options(app, *named, print);
+    else
+        print(app);
+}
+
+void print_all_help(const CLI::App& app)
+{
+    say_text(stdout, help_page(app, true));
+    for (const command& c : commands)
+        show_options(app, c, [](const CLI::App& a) { say_text(stdout, "\n" + help_page(a, true)); });
+}
+
+void print_option_help(const CLI::App& app, const std::string& name)
+{
+    option_help help(name);
+    for (const command& c : commands)
+        show_options(app, c, [&help](const CLI::App& shown) { help.add(shown); });
+    say_text(stdout, help.text(app));
+}
+
+int run_command(const CLI::App& app, const command& c, const std::vector<std::string>& words)
+{
+    command_line line{*app.get_subcommand(std::string(c.name)), words};
+    try {
+        return c.run(line);
+    } catch (const error& e) {
+        throw options::at_default(line.values, e);
+    }
+}
+
+int run(const std::vector<std::string>& words)
+{
+    if (words.empty()) {
         say_error("tactor: {}\n\n{}", no_command().what(), first_steps());
         return status_usage;
     }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
-    use_help_pages(app);
+    app.set_help_flag("-h,--help", "print the most important options and exit");
+    app.set_help_all_flag("--help-all", "print all options and exit");
     app.set_version_flag("--version", version_text, "print version, build and libraries and exit");
     app.require_subcommand(1);
     app.footer("tactor plan park2016-1\ntactor help play\ntactor help soa");
-    // To describe all options of all commands takes as long as to plan a stroke: of a command that is
-    // named, its own.
-    const named_command* const named = find_command(first);
-    std::vector<std::pair<std::string_view, command>> added;
-    for (const named_command& c : commands)
-        if (named == nullptr || named == &c)
-            added.emplace_back(c.name, c.add(app));
-    if (first == complete_command) {
-        for (const std::string& line : complete(app, {given.begin() + 1, given.end()}))
-            fmt::print("{}\n", line);
-        return status_ok;
-    }
-    if (asks) {
-        say_text(stdout, describe_options(app, given[1]));
-        return status_ok;
-    }
-    try {
-        std::vector<std::string> words(given.rbegin(), given.rend()); // the last first, as it wants them
-        app.parse(words);
-    } catch (const CLI::Success& e) {
-        std::ostringstream text; // of --help or --version
-        const int status = app.exit(e, text);
-        say_text(stdout, text.str());
-        return status;
-    } catch (const CLI::ParseError& e) {
-        throw usage_error(app, e);
-    }
-    for (const auto& [name, act] : added)
-        if (app.got_subcommand(std::string(name)))
-            return act();
-    return status_usage;
+    const std::string& first = words.front();
+    const command* const named = find_command(words);
+    for (const command& c : commands)
+        if (named == nullptr || named == &c || first != named->name)
+            app.add_subcommand(std::string(c.name), c.summary);
+    if (first == complete_command)
+        print_completions(app, {words.begin() + 1, words.end()});
+    else if (first == "--help-all" && words.size() == 1)
+        print_all_help(app);
+    else if (first == "help" && words.size() == 2)
+        print_option_help(app, words[1]);
+    else if (named != nullptr)
+        return run_command(app, *named, words);
+    else
+        parse_words(app, words);
+    return status_ok;
 }
 
 // The status that SIGPIPE would give. A reader of the first lines (| head) needs no message.
@@ -192,6 +230,8 @@ int main(int argc, char** argv)
     hold_standard_files();
     try {
         return flushed(run(arguments(argc, argv)));
+    } catch (const CLI::Success&) {
+        return flushed(status_ok);
     } catch (const tactor::error& e) {
         if (is_unread(e))
             return status_unread;

@@ -74,12 +74,13 @@ void refuse_option(std::string_view option, const std::string& why, std::string_
     throw error(error_kind::bad_input, option, why, hint);
 }
 
-void add_options(CLI::App& command, settings& into, std::uint64_t place)
+settings& add_options(command_line& line, std::uint64_t place)
 {
-    into.place = place;
+    line.values.place = place;
     for (const options::option& o : options::all())
         if ((o.where & place) != 0)
-            add_one(command, into, o);
+            add_one(line.app, line.values, o);
+    return line.values;
 }
 
 std::string asked_of_stream(const settings& s)
@@ -91,12 +92,12 @@ std::string asked_of_stream(const settings& s)
     return {};
 }
 
-void add_strokes(CLI::App& command, settings& into, int most)
+void add_strokes(command_line& line, int most)
 {
-    auto* strokes =
-        command.add_option("STROKE", into.strokes,
-                           "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
-                           "file (.toml, .csv, .svg; .json: a plan), or - for such a file on standard input");
+    auto* strokes = line.app.add_option(
+        "STROKE", line.values.strokes,
+        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
+        "file (.toml, .csv, .svg; .json: a plan), or - for such a file on standard input");
     strokes->type_name("");
     strokes->expected(1, most)->allow_extra_args(most > 1);
 }

@@ -12,41 +12,28 @@
 
 #include <tactor/tactor.hpp>
 
+#include "cli/commands.hpp"
 #include "options/option.hpp"
-#include "options/settle.hpp"
 #include "session/environment.hpp"
 
 namespace CLI {
-class App;
 class Option;
-} // namespace CLI
+}
 
 namespace tactor::cli {
 
 using session::environment;
 using session::settings;
 
-/// Adds the options of the table that a command takes: `place` is its bit. `into` must live as long as the
-/// command.
-void add_options(CLI::App& command, settings& into, std::uint64_t place);
+/// Adds the options of the table that a command takes: `place` is its bit. Returns their values.
+settings& add_options(command_line& line, std::uint64_t place);
 
 /// Returns the first given option that is about a stream which sounds: for sessions in which nothing is
 /// played. Empty: none was given.
 std::string asked_of_stream(const settings& s);
 
 /// Adds the argument STROKE, which may be given `most` times.
-void add_strokes(CLI::App& command, settings& into, int most = 1);
-
-/// Runs a command: an error about a value of [defaults] names its place there.
-template <class F>
-int run_with(const settings& s, F act)
-{
-    try {
-        return act();
-    } catch (const error& e) {
-        throw options::at_default(s, e);
-    }
-}
+void add_strokes(command_line& line, int most = 1);
 
 /// Lists the command's own options that are added next under this heading, of which --help has the names.
 void begin_group(CLI::App& command, const std::string& heading = "Options");

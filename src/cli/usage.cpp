@@ -7,9 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,7 +20,9 @@
 
 #include <tactor/path.hpp>
 
+#include "cli/commands.hpp"
 #include "cli/option_words.hpp"
+#include "cli/say.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 
@@ -95,110 +95,49 @@ std::string describe_row(const options::option& o)
     return text;
 }
 
-// Returns all options of all commands by name, each once, with its line of --help.
-std::map<std::string, std::string> list_options(const CLI::App& app)
+// Returns usage, arguments and examples.
+std::string describe_command(const CLI::App& app)
 {
-    std::map<std::string, std::string> all;
-    for (const CLI::App* command : app.get_subcommands({}))
-        for (const CLI::Option* o : command->get_options())
-            for (const std::string& name : o->get_lnames())
-                all.emplace(name, describe_line(*o));
-    return all;
+    std::string usage = fmt::format("Usage: tactor {} [OPTIONS]", app.get_name());
+    std::string arguments;
+    for (const CLI::Option* o : app.get_options([](const CLI::Option* x) { return x->get_positional(); })) {
+        const std::string name = o->get_name(true) + (o->get_expected_max() > 1 ? "..." : "");
+        usage += o->get_required() ? " " + name : fmt::format(" [{}]", name);
+        arguments += fmt::format("\n  {:<12}{}\n", o->get_name(true), o->get_description());
+    }
+    if (app.get_parent() == nullptr)
+        usage = "Usage: tactor COMMAND [OPTIONS]";
+    return fmt::format("{}\n\n{}\n{}\nExamples:\n  {}\n\n", app.get_description(), usage, arguments,
+                       fmt::join(detail::split(app.get_footer(), '\n'), "\n  "));
 }
 
-/// Writes --help so that it fits a screen: the options that a command alone has and those that most people
-/// need, with their meaning; of the others the names. --help-all explains them all.
-class help_page : public CLI::Formatter {
-public:
-    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override
-    {
-        if (mode == CLI::AppFormatMode::Sub)
-            return CLI::Formatter::make_help(app, name, mode);
-        const std::string head =
-            make_description(app) + make_usage(app, name) + make_positionals(app) + make_footer(app) + '\n';
-        if (app->get_parent() == nullptr)
-            return head + make_groups(app, mode) + make_subcommands(app, mode);
-        if (mode == CLI::AppFormatMode::All)
-            return head + describe_groups(*app);
-        return head +
-               describe(*app, fmt::format("Options of {}", app->get_name()),
-                        [&](const CLI::Option& o) {
-                            return o.get_group() == own_group && &o != app->get_help_ptr() &&
-                                   &o != app->get_help_all_ptr();
-                        }) +
-               describe(*app, "Often used", is_first) + name_groups(*app);
-    }
+template <class F>
+std::string list_options(const CLI::App& app, const std::string& title, F shows)
+{
+    std::string lines;
+    for (const CLI::Option* o : app.get_options())
+        if (o->nonpositional() && shows(*o))
+            lines += describe_line(*o);
+    return lines.empty() ? "" : fmt::format("{}:\n{}\n", title, lines);
+}
 
-    std::string make_usage(const CLI::App* app, std::string /*name*/) const override
-    {
-        if (app->get_parent() == nullptr)
-            return "\nUsage: tactor COMMAND [OPTIONS]\n";
-        std::string text = fmt::format("\nUsage: tactor {} [OPTIONS]", app->get_name());
-        for (const CLI::Option* o : positionals(*app))
-            text += o->get_required() ? " " + shown_name(*o) : fmt::format(" [{}]", shown_name(*o));
-        return text + '\n';
-    }
-
-    std::string make_positionals(const CLI::App* app) const override
-    {
-        std::string text;
-        for (const CLI::Option* o : positionals(*app))
-            text += fmt::format("\n  {:<12}{}\n", o->get_name(true), o->get_description());
-        return text;
-    }
-
-    std::string make_footer(const CLI::App* app) const override
-    {
-        return fmt::format("\nExamples:\n  {}\n", fmt::join(detail::split(app->get_footer(), '\n'), "\n  "));
-    }
-
-private:
-    static std::vector<const CLI::Option*> positionals(const CLI::App& app)
-    {
-        return app.get_options([](const CLI::Option* o) { return o->get_positional(); });
-    }
-
-    static std::string shown_name(const CLI::Option& positional)
-    {
-        return positional.get_name(true) + (positional.get_expected_max() > 1 ? "..." : "");
-    }
-
-    static std::string describe(const CLI::App& app, const std::string& title,
-                                const std::function<bool(const CLI::Option&)>& shows)
-    {
-        std::string lines;
+std::string name_groups(const CLI::App& app)
+{
+    std::string lists;
+    for (const std::string& group : app.get_groups()) {
+        std::vector<std::string> names;
         for (const CLI::Option* o : app.get_options())
-            if (o->nonpositional() && shows(*o))
-                lines += describe_line(*o);
-        return lines.empty() ? "" : fmt::format("{}:\n{}\n", title, lines);
+            if (o->nonpositional() && o->get_group() == group && group != own_group && !is_first(*o))
+                names.push_back("--" + o->get_lnames().front());
+        if (!names.empty())
+            lists += fmt::format("  {:<12}{}\n", group, fmt::join(names, " "));
     }
-
-    static std::string describe_groups(const CLI::App& app)
-    {
-        std::string all;
-        for (const std::string& group : app.get_groups())
-            all += describe(app, group, [&](const CLI::Option& o) { return o.get_group() == group; });
-        return all;
-    }
-
-    static std::string name_groups(const CLI::App& app)
-    {
-        std::string lists;
-        for (const std::string& group : app.get_groups()) {
-            std::vector<std::string> names;
-            for (const CLI::Option* o : app.get_options())
-                if (o->nonpositional() && o->get_group() == group && group != own_group && !is_first(*o))
-                    names.push_back("--" + o->get_lnames().front());
-            if (!names.empty())
-                lists += fmt::format("  {:<12}{}\n", group, fmt::join(names, " "));
-        }
-        if (lists.empty())
-            return {};
-        return fmt::format("More, by group:\n{}\ntactor help OPTION explains one option, "
-                           "tactor {} --help-all explains all.\n",
-                           lists, app.get_name());
-    }
-};
+    if (lists.empty())
+        return {};
+    return fmt::format("More, by group:\n{}\ntactor help OPTION explains one option, "
+                       "tactor {} --help-all explains all.\n",
+                       lists, app.get_name());
+}
 
 std::string nearest(const std::string& given, const std::vector<std::string>& names)
 {
@@ -336,6 +275,26 @@ error unknown(const CLI::App& app, const CLI::App& command)
             takes.empty() ? help
                           : fmt::format("{} takes one {}; quote a name that has blanks", command.get_name(),
                                         takes.front()->get_name(true))};
+}
+
+// Turns the complaint of the parser into an error that names the option and, where it is not known, the
+// nearest one that is.
+error usage_error(const CLI::App& app, const CLI::ParseError& e)
+{
+    const auto used = app.get_subcommands();
+    const CLI::App& command = used.empty() ? app : *used.front();
+    if (!app.remaining().empty()) // words before the command
+        return unknown(app, app);
+    if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
+        return unknown(app, command);
+    if (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr)
+        return missing(app, command);
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
+        return miscounted(app, command, e.what());
+    if (dynamic_cast<const CLI::RequiresError*>(&e) != nullptr ||
+        dynamic_cast<const CLI::ExcludesError*>(&e) != nullptr)
+        return unpaired(app, command, e.what());
+    return {error_kind::bad_input, "command line", e.what(), help_command(app, command)};
 }
 
 using words_type = std::vector<std::string>;
@@ -477,36 +436,88 @@ std::optional<error> find_open_name(const words_type& words)
 
 } // namespace
 
-void use_help_pages(CLI::App& app)
+std::string help_page(const CLI::App& app, bool whole)
 {
-    app.formatter(std::make_shared<help_page>());
-    app.set_help_flag("-h,--help", "print the most important options and exit");
-    app.set_help_all_flag("--help-all", "print all options and exit");
+    std::string text = describe_command(app);
+    if (app.get_parent() == nullptr) {
+        CLI::Formatter lists;
+        return text + lists.make_groups(&app, CLI::AppFormatMode::Normal) +
+               lists.make_subcommands(&app, CLI::AppFormatMode::Normal);
+    }
+    if (whole) {
+        for (const std::string& group : app.get_groups())
+            text += list_options(app, group, [&](const CLI::Option& o) { return o.get_group() == group; });
+        return text;
+    }
+    const auto is_own = [&app](const CLI::Option& o) {
+        return o.get_group() == own_group && &o != app.get_help_ptr() && &o != app.get_help_all_ptr();
+    };
+    return text + list_options(app, fmt::format("Options of {}", app.get_name()), is_own) +
+           list_options(app, "Often used", is_first) + name_groups(app);
 }
 
-std::string describe_options(const CLI::App& app, std::string_view given)
+void parse_words(CLI::App& app, const words_type& words)
 {
-    const std::string_view name = bare_name(given);
-    const options::option* row = options::find(name);
-    if (row != nullptr && (row->where & options::on_any_command) == 0)
-        row = nullptr;
-    std::string text = row != nullptr ? describe_row(*row) : "";
-    for (const CLI::App* command : app.get_subcommands({})) {
-        const CLI::Option* o = command->get_option_no_throw(fmt::format("--{}", name));
-        if (o != nullptr && (row == nullptr || o->get_group() != row->in))
-            text += fmt::format("tactor {}: {}\n  {}\n", command->get_name(),
-                                with_type(fmt::format("--{}", name), o->get_type_name()),
-                                spelled(o->get_description()));
+    const auto print_help = [&app](bool whole) {
+        const auto used = app.get_subcommands();
+        say_text(stdout, help_page(used.empty() ? app : *used.front(), whole));
+        throw CLI::Success();
+    };
+    try {
+        app.parse(words_type(words.rbegin(), words.rend())); // the last first, as CLI11 takes them
+    } catch (const CLI::CallForHelp&) {
+        print_help(false);
+    } catch (const CLI::CallForAllHelp&) {
+        print_help(true);
+    } catch (const CLI::CallForVersion& version) {
+        fmt::print("{}\n", version.what());
+        throw;
+    } catch (const CLI::ParseError& e) {
+        throw usage_error(app, e);
     }
-    if (!text.empty())
-        return text;
-    for (const auto& [known, line] : list_options(app))
-        if (known.find(name) != std::string::npos)
-            text += line;
-    if (text.empty() || name.empty())
-        throw no_such_command(app, std::string(given));
-    return fmt::format("Options with \"{}\" in their names; tactor help OPTION explains one:\n{}", name,
-                       text);
+}
+
+void command_line::parse() const
+{
+    if (!show)
+        return parse_words(*app.get_parent(), words);
+    show(app);
+    throw CLI::Success();
+}
+
+option_help::option_help(const std::string& given)
+    : given_(given), name_(bare_name(given)), row_(options::find(name_))
+{
+    if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
+        row_ = nullptr;
+    if (row_ != nullptr)
+        text_ = describe_row(*row_);
+}
+
+void option_help::add(const CLI::App& command)
+{
+    for (const CLI::Option* o : command.get_options())
+        for (const std::string& name : o->get_lnames()) {
+            if (name == name_ && (row_ == nullptr || o->get_group() != row_->in))
+                text_ +=
+                    fmt::format("tactor {}: {}\n  {}\n", command.get_name(),
+                                with_type("--" + name, o->get_type_name()), spelled(o->get_description()));
+            if (name.find(name_) != std::string::npos)
+                similar_.emplace(name, describe_line(*o));
+        }
+}
+
+std::string option_help::text(const CLI::App& app) const
+{
+    if (!text_.empty())
+        return text_;
+    if (similar_.empty() || name_.empty())
+        throw no_such_command(app, given_);
+    std::string text =
+        fmt::format("Options with \"{}\" in their names; tactor help OPTION explains one:\n", name_);
+    for (const auto& [name, line] : similar_)
+        text += line;
+    return text;
 }
 
 std::string first_steps()
@@ -520,24 +531,6 @@ std::string first_steps()
 error no_command()
 {
     return {error_kind::bad_input, "command line", "no command", "tactor --help lists them"};
-}
-
-error usage_error(const CLI::App& app, const CLI::ParseError& e)
-{
-    const auto used = app.get_subcommands();
-    const CLI::App& command = used.empty() ? app : *used.front();
-    if (!app.remaining().empty()) // words before the command
-        return unknown(app, app);
-    if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
-        return unknown(app, command);
-    if (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr)
-        return missing(app, command);
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
-        return miscounted(app, command, e.what());
-    if (dynamic_cast<const CLI::RequiresError*>(&e) != nullptr ||
-        dynamic_cast<const CLI::ExcludesError*>(&e) != nullptr)
-        return unpaired(app, command, e.what());
-    return {error_kind::bad_input, "command line", e.what(), help_command(app, command)};
 }
 
 std::optional<error> find_slip(const words_type& words, const words_type& commands)

@@ -3,6 +3,7 @@
 /// Pages of help, errors of the command line, and a shell's completion, all from the options as declared.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,21 +15,41 @@
 
 namespace CLI {
 class App;
-class ParseError;
-} // namespace CLI
+}
 
 namespace tactor::cli {
 
-/// Makes --help fit a screen and adds --help-all, for all commands that are added later.
-void use_help_pages(CLI::App& app);
+/// Parses the words. Prints the help or the version if they ask for it. \throws error (bad_input) that names
+/// the option and, where it is not known, the nearest one that is; CLI::Success after a print.
+void parse_words(CLI::App& app, const std::vector<std::string>& words);
+
+/// Returns a page of help that fits a screen: the options that a command alone has and those that most people
+/// need, with their meaning; of the others the names. `whole`: with the meaning of all.
+std::string help_page(const CLI::App& app, bool whole);
 
 /// Returns the lines with the commands to try first.
 std::string first_steps();
 
-/// Describes an option: its values, the places where it may be given and its names there; of options that
-/// only some commands have, the line of their help. `given` may begin with dashes. If no option has this
-/// name, lists those with it in their names. \throws error (bad_input) if there is none.
-std::string describe_options(const CLI::App& app, std::string_view given);
+/// Description of an option: its values, the places where it may be given and its names there; of options
+/// that only some commands have, the line of their help. If no option has this name, a list of those with it
+/// in their names.
+class option_help {
+public:
+    /// `given` may begin with dashes.
+    explicit option_help(const std::string& given);
+
+    /// Adds the options of a command.
+    void add(const CLI::App& command);
+    /// \throws error (bad_input) if there is no such option.
+    std::string text(const CLI::App& app) const;
+
+private:
+    std::string given_;
+    std::string name_;
+    const options::option* row_;
+    std::string text_;
+    std::map<std::string, std::string> similar_; ///< lines of --help by name
+};
 
 /// Returns the error for a command line without a command.
 error no_command();
@@ -38,10 +59,6 @@ error no_command();
 /// and without quotes. Nothing if there is no such slip. `commands`: names of all commands.
 std::optional<error> find_slip(const std::vector<std::string>& words,
                                const std::vector<std::string>& commands);
-
-/// Turns the parser's complaint into an error that names the option and, where it is not known, the
-/// nearest one that is.
-error usage_error(const CLI::App& app, const CLI::ParseError& e);
 
 /// First argument of the hidden command that the shells' completions call: `tactor __complete WORD...`.
 inline constexpr const char* complete_command = "__complete";

@@ -44,9 +44,9 @@ session::device_list studio()
     return d;
 }
 
-run_report troubled_run()
+play_report troubled_run()
 {
-    run_report r;
+    play_report r;
     r.device = {.name = "hw:CARD=Tactor", .channels = 9, .rate = 48000, .period_frames = 96};
     r.device.buffer_frames = 288;
     const stroke_report cut{.id = 1,

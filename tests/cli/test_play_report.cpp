@@ -25,9 +25,9 @@ stroke_outcome ended(const char* name, state_kind how)
     return {name, 48000, r};
 }
 
-run_report run(std::vector<stroke_outcome> strokes)
+play_report run(std::vector<stroke_outcome> strokes)
 {
-    run_report r;
+    play_report r;
     r.device.rate = 48000;
     r.strokes = std::move(strokes);
     return r;

@@ -2,7 +2,6 @@
 // The commands that read a study: analyze and report.
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -184,41 +183,43 @@ int report(const report_options& o)
 
 } // namespace
 
-command add_analyze(CLI::App& app)
+int run_analyze(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("analyze", "Print the statistics of a study");
-    auto o = std::make_shared<analyze_options>();
-    add_study_options(*c, o->folder, o->who);
-    add_format_option(*c, o->format, {"text", "json", "tsv"},
+    analyze_options o;
+    CLI::App& c = line.app;
+    add_study_options(c, o.folder, o.who);
+    add_format_option(c, o.format, {"text", "json", "tsv"},
                       "format of the output; tsv has a line for each trial, for R (default text)");
-    add_text(*c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw means with standard errors, and each participant", [o](const std::string& t) {
+    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
+             "also draw means with standard errors, and each participant", [&o](const std::string& t) {
                  plot::find_format(t);
-                 o->picture.file = t;
+                 o.picture.file = t;
              });
-    add_picture_options(*c, o->picture, "170, the width of a page");
-    c->footer("tactor analyze study\n"
-              "tactor analyze study --format json -o study.pdf\n"
-              "tactor analyze study --exclude 07:illness");
-    return [o] { return analyze(*o); };
+    add_picture_options(c, o.picture, "170, the width of a page");
+    c.footer("tactor analyze study\n"
+             "tactor analyze study --format json -o study.pdf\n"
+             "tactor analyze study --exclude 07:illness");
+    line.parse();
+    return analyze(o);
 }
 
-command add_report(CLI::App& app)
+int run_report(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("report", "Write the methods section of a study's paper");
-    auto o = std::make_shared<report_options>();
-    add_study_options(*c, o->folder, o->who);
-    add_text(*c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
-             [o](const std::string& t) {
+    report_options o;
+    CLI::App& c = line.app;
+    add_study_options(c, o.folder, o.who);
+    add_text(c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
+             [&o](const std::string& t) {
                  if (!t.ends_with(".md"))
                      throw error(error_kind::bad_input, t, "the report is Markdown", "end the name in .md");
-                 o->file = t;
+                 o.file = t;
              });
-    add_force_option(*c, o->force);
-    c->footer("tactor report study\n"
-              "tactor report study -o methods.md\n"
-              "tactor report study --exclude 07:illness");
-    return [o] { return report(*o); };
+    add_force_option(c, o.force);
+    c.footer("tactor report study\n"
+             "tactor report study -o methods.md\n"
+             "tactor report study --exclude 07:illness");
+    line.parse();
+    return report(o);
 }
 
 } // namespace tactor::cli

@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -504,22 +503,19 @@ int calibrate(settings& s, calibrate_options& o)
 
 } // namespace
 
-command add_calibrate(CLI::App& app)
+int run_calibrate(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("calibrate", "Measure a participant's threshold at each tactor");
-    auto s = std::make_shared<settings>();
-    auto o = std::make_shared<calibrate_options>();
-    add_calibrate_options(*c, *o);
-    add_options(*c, *s, options::on_calibrate);
-    c->footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
-              "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
-              "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
-    return [s, o, c] {
-        for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice"})
-            if (o->of_staircase.empty() && c->count(name) > 0)
-                o->of_staircase = name;
-        return run_with(*s, [&] { return calibrate(*s, *o); });
-    };
+    calibrate_options o;
+    add_calibrate_options(line.app, o);
+    settings& s = add_options(line, options::on_calibrate);
+    line.app.footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
+                    "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
+                    "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
+    line.parse();
+    for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice"})
+        if (o.of_staircase.empty() && line.app.count(name) > 0)
+            o.of_staircase = name;
+    return calibrate(s, o);
 }
 
 } // namespace tactor::cli

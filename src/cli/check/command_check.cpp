@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -276,22 +275,22 @@ std::vector<finding> check_lines(const setup& config, bool felt, line_finder fin
     return all;
 }
 
-command add_check(CLI::App& app)
+int run_check(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("check", "Check array, device, rights, limits, lines and wiring");
-    auto s = std::make_shared<settings>();
-    auto o = std::make_shared<check_options>();
-    add_options(*c, *s, options::on_check);
-    c->add_flag("--walk", o->walk, "then drive each tactor in turn and ask where it is felt");
-    c->add_flag("--auto", o->no_questions, "with --walk: ask no questions");
-    c->add_option("-o,--output", o->output,
-                  "with --walk: array file to write, with the channels as they were felt")
+    check_options o;
+    CLI::App& c = line.app;
+    settings& s = add_options(line, options::on_check);
+    c.add_flag("--walk", o.walk, "then drive each tactor in turn and ask where it is felt");
+    c.add_flag("--auto", o.no_questions, "with --walk: ask no questions");
+    c.add_option("-o,--output", o.output,
+                 "with --walk: array file to write, with the channels as they were felt")
         ->type_name("FILE.toml");
-    add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
-    c->footer("tactor check -D hw:CARD=Tactor\n"
-              "tactor check --array palm-2x4 --walk -o palm-felt.toml --level-dbfs -40 -D hw:CARD=Tactor\n"
-              "tactor check --format json");
-    return [s, o] { return run_with(*s, [&] { return check(*s, *o); }); };
+    add_format_option(c, o.format, {"text", "json"}, "how to print it (default text)");
+    c.footer("tactor check -D hw:CARD=Tactor\n"
+             "tactor check --array palm-2x4 --walk -o palm-felt.toml --level-dbfs -40 -D hw:CARD=Tactor\n"
+             "tactor check --format json");
+    line.parse();
+    return check(s, o);
 }
 
 } // namespace tactor::cli

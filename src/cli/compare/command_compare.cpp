@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <memory>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -66,28 +65,28 @@ struct compare_options {
     picture_options picture;
 };
 
-void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
+void add_lists(CLI::App& c, compare_options& o)
 {
     auto* algorithms = add_text(
         c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
-        [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
+        [&o](const std::string& t) { o.choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
     auto* phantoms = add_text(
         c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
-        [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
+        [&o](const std::string& t) { o.choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
     c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
-    add_format_option(c, o->format, {"text", "json"}, "format of the output (default text)");
+    add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
 }
 
-void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
+void add_output_options(CLI::App& c, compare_options& o)
 {
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw target and prediction on the array, and speed over time", [o](const std::string& t) {
+             "also draw target and prediction on the array, and speed over time", [&o](const std::string& t) {
                  plot::find_format(t);
-                 o->picture.file = t;
-                 o->choice.keep_samples = true;
+                 o.picture.file = t;
+                 o.choice.keep_samples = true;
              });
-    add_picture_options(c, o->picture, "85, one print column");
+    add_picture_options(c, o.picture, "85, one print column");
 }
 
 // Returns the last reason why no algorithm can play the strokes, and prints the others, each once.
@@ -293,25 +292,22 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
 
 } // namespace
 
-command add_compare(CLI::App& app)
+int run_compare(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("compare", "Compare predictions of what algorithms feel like");
-    auto s = std::make_shared<settings>();
-    auto asked = std::make_shared<compare_options>();
-    add_strokes(*c, *s);
-    add_options(*c, *s, options::on_compare);
-    c->get_option("STROKE")->description(
+    compare_options o;
+    CLI::App& c = line.app;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_compare);
+    c.get_option("STROKE")->description(
         "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
         "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");
-    add_lists(*c, asked);
-    add_output_options(*c, asked);
-    c->footer("tactor compare park2016-3\n"
-              "tactor compare park2016-3 --phantoms inverse-distance,barycentric\n"
-              "tactor compare --shape line --observer low-speed -o line.svg");
-    const CLI::Option* algorithm = c->get_option("--algorithm");
-    return [s, asked, algorithm] {
-        return run_with(*s, [&] { return run(*s, *asked, algorithm->count() != 0); });
-    };
+    add_lists(c, o);
+    add_output_options(c, o);
+    c.footer("tactor compare park2016-3\n"
+             "tactor compare park2016-3 --phantoms inverse-distance,barycentric\n"
+             "tactor compare --shape line --observer low-speed -o line.svg");
+    line.parse();
+    return run(s, o, c.count("--algorithm") != 0);
 }
 
 } // namespace tactor::cli

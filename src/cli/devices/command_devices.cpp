@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -16,16 +15,6 @@
 namespace tactor::cli {
 
 namespace {
-
-int list_devices(settings& s, bool as_json)
-{
-    const session::device_list d = session::look_for_devices(s, session::read_environment(s));
-    if (as_json)
-        fmt::print("{}", session::devices_json(d));
-    else
-        say_text(stdout, devices_text(d));
-    return status_ok;
-}
 
 std::string row(const char* name, const std::string& text)
 {
@@ -180,17 +169,21 @@ std::string devices_text(const session::device_list& d)
            pcms_text(d) + chips_text(d.chips);
 }
 
-command add_devices(CLI::App& app)
+int run_devices(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("devices", "List sound devices with their abilities, and GPIO lines");
-    auto s = std::make_shared<settings>();
-    auto format = std::make_shared<std::string>();
-    add_options(*c, *s, options::on_devices);
-    add_format_option(*c, *format, {"text", "json"}, "how to print it (default text)");
-    c->footer("tactor devices\n"
-              "tactor devices --array palm-2x4\n"
-              "tactor devices --format json");
-    return [s, format] { return run_with(*s, [&] { return list_devices(*s, *format == "json"); }); };
+    std::string format;
+    settings& s = add_options(line, options::on_devices);
+    add_format_option(line.app, format, {"text", "json"}, "how to print it (default text)");
+    line.app.footer("tactor devices\n"
+                    "tactor devices --array palm-2x4\n"
+                    "tactor devices --format json");
+    line.parse();
+    const session::device_list d = session::look_for_devices(s, session::read_environment(s));
+    if (format == "json")
+        fmt::print("{}", session::devices_json(d));
+    else
+        say_text(stdout, devices_text(d));
+    return status_ok;
 }
 
 } // namespace tactor::cli

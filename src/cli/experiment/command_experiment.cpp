@@ -282,17 +282,17 @@ int run(const experiment_options& o, settings& s)
 
 } // namespace
 
-command add_experiment(CLI::App& app)
+int run_experiment(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("experiment", "Run an experiment with a participant or a simulated one");
-    auto s = std::make_shared<settings>();
-    auto o = std::make_shared<experiment_options>();
-    add_experiment_options(*c, *o);
-    add_options(*c, *s, options::on_experiment);
-    c->footer("tactor experiment park2016 --dry-run\n"
-              "tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1\n"
-              "tactor experiment park2016 --participant P07 -o pilot --array P07.toml -D hw:CARD=Tactor");
-    return [s, o] { return run_with(*s, [&] { return run(*o, *s); }); };
+    experiment_options o;
+    add_experiment_options(line.app, o);
+    settings& s = add_options(line, options::on_experiment);
+    line.app.footer(
+        "tactor experiment park2016 --dry-run\n"
+        "tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1\n"
+        "tactor experiment park2016 --participant P07 -o pilot --array P07.toml -D hw:CARD=Tactor");
+    line.parse();
+    return run(o, s);
 }
 
 } // namespace tactor::cli

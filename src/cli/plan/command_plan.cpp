@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cerrno>
 #include <cstdio>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -108,7 +107,7 @@ void print_csv(std::FILE* out, const piece& p, const environment& e)
     }
 }
 
-int print_plan(settings& s, const std::string& format)
+void print_plan(settings& s, const std::string& format)
 {
     const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
@@ -126,23 +125,22 @@ int print_plan(settings& s, const std::string& format)
         print_csv(stdout, p, e);
     } else
         print_text(stdout, p, e, sound);
-    return status_ok;
 }
 
 } // namespace
 
-command add_plan(CLI::App& app)
+int run_plan(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("plan", "Print which tactor plays when, and how strongly");
-    auto s = std::make_shared<settings>();
-    auto format = std::make_shared<std::string>("text");
-    add_strokes(*c, *s);
-    add_options(*c, *s, options::on_plan);
-    add_format_option(*c, *format, {"text", "json", "csv"}, "format of the output (default text)");
-    c->footer("tactor plan park2016-1\n"
-              "tactor plan --shape circle --duration 2\n"
-              "tactor plan park2016-1 --format json");
-    return [s, format] { return run_with(*s, [&] { return print_plan(*s, *format); }); };
+    std::string format;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_plan);
+    add_format_option(line.app, format, {"text", "json", "csv"}, "format of the output (default text)");
+    line.app.footer("tactor plan park2016-1\n"
+                    "tactor plan --shape circle --duration 2\n"
+                    "tactor plan park2016-1 --format json");
+    line.parse();
+    print_plan(s, format);
+    return status_ok;
 }
 
 } // namespace tactor::cli

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -188,19 +187,18 @@ int play(settings& s, const play_options& o)
 
 } // namespace
 
-command add_play(CLI::App& app)
+int run_play(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("play", "Play strokes on the array");
-    auto s = std::make_shared<settings>();
-    auto o = std::make_shared<play_options>();
-    add_strokes(*c, *s, max_strokes);
-    add_options(*c, *s, options::on_play);
-    c->add_option("--socket", o->socket, "play through the server at this socket")->type_name("PATH");
-    add_format_option(*c, o->format, {"text", "json"}, "format of the report (default text)");
-    c->footer("tactor play park2016-3 -D hw:CARD=Tactor --level-dbfs -40\n"
-              "tactor play --shape circle --duration 2 --level-dbfs -20 -D null\n"
-              "tactor play park2016-1 park2016-3 --log play.log -D null");
-    return [s, o] { return run_with(*s, [&] { return play(*s, *o); }); };
+    play_options o;
+    add_strokes(line, max_strokes);
+    settings& s = add_options(line, options::on_play);
+    line.app.add_option("--socket", o.socket, "play through the server at this socket")->type_name("PATH");
+    add_format_option(line.app, o.format, {"text", "json"}, "format of the report (default text)");
+    line.app.footer("tactor play park2016-3 -D hw:CARD=Tactor --level-dbfs -40\n"
+                    "tactor play --shape circle --duration 2 --level-dbfs -20 -D null\n"
+                    "tactor play park2016-1 park2016-3 --log play.log -D null");
+    line.parse();
+    return play(s, o);
 }
 
 } // namespace tactor::cli

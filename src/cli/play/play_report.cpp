@@ -78,7 +78,7 @@ void device_members(Io& io, const stream_setup& d)
 }
 
 template <class Io>
-void counter_members(Io& io, const run_report& r)
+void counter_members(Io& io, const play_report& r)
 {
     constexpr about written{"written to the device"};
     constexpr about faults{"page faults of the audio thread; the latter waited for a disk"};
@@ -114,7 +114,7 @@ void counter_members(Io& io, const run_report& r)
 }
 
 template <class Io>
-void report_members(Io& io, const run_report& r)
+void report_members(Io& io, const play_report& r)
 {
     io.constant("schema", "tactor-play/1");
     io.object("device", {"the device as it was opened"},
@@ -136,7 +136,7 @@ std::string xruns_text(const player_stats& s)
 }
 
 // Returns true if nothing disturbed or limited the strokes.
-bool is_clean(const run_report& r)
+bool is_clean(const play_report& r)
 {
     const player_stats& s = r.stats;
     return s.xruns + s.limited_frames + s.power_limited_frames + s.drives_cut + s.stalls + s.off_failures +
@@ -146,7 +146,7 @@ bool is_clean(const run_report& r)
 }
 
 // Prints a short table of the counters.
-void print_table(std::FILE* to, const run_report& r)
+void print_table(std::FILE* to, const play_report& r)
 {
     const player_stats& s = r.stats;
     fmt::print(to, "xruns           {}\n", xruns_text(s));
@@ -207,7 +207,7 @@ std::string describe(const stream_setup& d)
                        d.rate, to_string(d.format), d.period_frames, d.buffer_frames, session::latency_ms(d));
 }
 
-std::optional<error> unfinished(const run_report& r)
+std::optional<error> unfinished(const play_report& r)
 {
     const stroke_outcome* last = nullptr;
     std::size_t n = 0;
@@ -225,7 +225,7 @@ std::optional<error> unfinished(const run_report& r)
     return error(error_kind::runtime, last->name, why);
 }
 
-void print_json(std::FILE* to, const run_report& r)
+void print_json(std::FILE* to, const play_report& r)
 {
     const auto all = files::make_object([&r](auto& io) { report_members(io, r); });
     fmt::print(to, "{}\n", all.dump(2));
@@ -233,7 +233,7 @@ void print_json(std::FILE* to, const run_report& r)
 
 nlohmann::ordered_json play_schema()
 {
-    return files::json_schema::describe_object([](auto& io) { report_members(io, run_report{}); });
+    return files::json_schema::describe_object([](auto& io) { report_members(io, play_report{}); });
 }
 
 void tell(const stroke_outcome& s, unsigned rate, bool as_json)
@@ -257,7 +257,7 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     if (!late.empty())
         say(stderr, "tactor: warning: {}\n", late);
     session::warn_of_server(server);
-    run_report r;
+    play_report r;
     r.strokes = std::move(strokes);
     const auto broken = play(session, r.strokes);
     static_cast<session::run_facts&>(r) = session.finish();
@@ -268,7 +268,7 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     return judge_run(r, session.signal(), broken);
 }
 
-int judge_run(const run_report& r, int signal, const std::optional<error>& broken)
+int judge_run(const play_report& r, int signal, const std::optional<error>& broken)
 {
     r.check_amplifier();
     if (signal != 0)

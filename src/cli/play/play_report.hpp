@@ -32,7 +32,7 @@ struct stroke_outcome {
     std::optional<stroke_report> report = {};
 };
 
-struct run_report : session::run_facts {
+struct play_report : session::run_facts {
     std::vector<stroke_outcome> strokes = {};
 };
 
@@ -46,7 +46,7 @@ std::string describe(const stroke_outcome& s, unsigned rate);
 std::string describe(const stream_setup& d);
 
 /// Returns the final error about strokes that did not finish, if any.
-std::optional<error> unfinished(const run_report& r);
+std::optional<error> unfinished(const play_report& r);
 
 /// Prints the end of a stroke on standard output, unless that is JSON.
 void tell(const stroke_outcome& s, unsigned rate, bool as_json);
@@ -62,10 +62,10 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
 
 /// Returns the exit status of a run. `signal`: ended it; 0: none did. \throws error for a run that was broken
 /// off or has strokes that did not finish.
-int judge_run(const run_report& r, int signal, const std::optional<error>& broken);
+int judge_run(const play_report& r, int signal, const std::optional<error>& broken);
 
 /// Prints an object of schema tactor-play/1.
-void print_json(std::FILE* to, const run_report& r);
+void print_json(std::FILE* to, const play_report& r);
 /// Returns the schema of such an object.
 nlohmann::ordered_json play_schema();
 

@@ -319,19 +319,18 @@ void add_serve_options(CLI::App& c, serve_options& o)
 
 } // namespace
 
-command add_serve(CLI::App& app)
+int run_serve(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("serve", "Own the array and let other programs draw through it");
-    auto s = std::make_shared<settings>();
-    auto o = std::make_shared<serve_options>();
-    add_serve_options(*c, *o);
-    add_options(*c, *s, options::on_serve);
-    add_format_option(*c, o->format, {"text", "json"},
+    serve_options o;
+    add_serve_options(line.app, o);
+    settings& s = add_options(line, options::on_serve);
+    add_format_option(line.app, o.format, {"text", "json"},
                       "format of the lines that say where it listens (default text)");
-    c->footer("tactor serve --http 4003 -D null\n"
-              "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
-              "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
-    return [s, o] { return run_with(*s, [&] { return serve(*s, *o); }); };
+    line.app.footer("tactor serve --http 4003 -D null\n"
+                    "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
+                    "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
+    line.parse();
+    return serve(s, o);
 }
 
 } // namespace tactor::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // tactor status and tactor stop: what a server does, and an end to it.
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -67,7 +66,7 @@ void print_json_line(const net::json& j)
 }
 
 // Prints notifications until the server ends. Throws interrupted.
-int watch(rpc_client& server, const status_options& o)
+void watch(rpc_client& server, const status_options& o)
 {
     for (;;) {
         while (const auto n = server.notification()) {
@@ -77,15 +76,15 @@ int watch(rpc_client& server, const status_options& o)
                 print_event(*n);
             flush_output();
             if (std::ferror(stdout) != 0)
-                return status_ok; // main() reports it
+                return; // main() reports it
             if ((*n)["method"] == "stream" && (*n)["params"].value("state", "") == "closing")
-                return status_ok;
+                return;
         }
         server.wait();
     }
 }
 
-int status(const status_options& o, session::interrupt& stop)
+void status(const status_options& o, session::interrupt& stop)
 {
     rpc_client server(o.socket, stop);
     if (o.watch)
@@ -96,7 +95,8 @@ int status(const status_options& o, session::interrupt& stop)
     else
         print_status(s);
     flush_output();
-    return o.watch ? watch(server, o) : static_cast<int>(status_ok);
+    if (o.watch)
+        watch(server, o);
 }
 
 // Calls `ask`, which a signal interrupts, also while the server does not answer.
@@ -105,7 +105,8 @@ int until_interrupted(F ask)
 {
     session::interrupt stop;
     try {
-        return ask(stop);
+        ask(stop);
+        return status_ok;
     } catch (const interrupted& i) {
         return session::interrupt::status(i.signal);
     }
@@ -113,32 +114,27 @@ int until_interrupted(F ask)
 
 } // namespace
 
-command add_status(CLI::App& app)
+int run_status(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("status", "Print what the server does");
-    auto o = std::make_shared<status_options>();
-    add_socket(*c, o->socket);
-    c->add_flag("--watch", o->watch, "print each change on a line until Ctrl-C");
-    add_format_option(*c, o->format, {"text", "json"}, "format of the output (default text)");
-    c->footer("tactor status\n"
-              "tactor status --watch\n"
-              "tactor status --format json");
-    return [o] { return until_interrupted([&](session::interrupt& stop) { return status(*o, stop); }); };
+    status_options o;
+    add_socket(line.app, o.socket);
+    line.app.add_flag("--watch", o.watch, "print each change on a line until Ctrl-C");
+    add_format_option(line.app, o.format, {"text", "json"}, "format of the output (default text)");
+    line.app.footer("tactor status\n"
+                    "tactor status --watch\n"
+                    "tactor status --format json");
+    line.parse();
+    return until_interrupted([&](session::interrupt& stop) { status(o, stop); });
 }
 
-command add_stop(CLI::App& app)
+int run_stop(command_line& line)
 {
-    CLI::App* c = app.add_subcommand("stop", "Fade out all strokes of the server");
-    auto o = std::make_shared<status_options>();
-    add_socket(*c, o->socket);
-    c->footer("tactor stop\n"
-              "tactor stop --socket /run/tactor/tactor.sock");
-    return [o] {
-        return until_interrupted([&](session::interrupt& stop) {
-            rpc_client(o->socket, stop).call("stop");
-            return static_cast<int>(status_ok);
-        });
-    };
+    std::optional<std::string> socket;
+    add_socket(line.app, socket);
+    line.app.footer("tactor stop\n"
+                    "tactor stop --socket /run/tactor/tactor.sock");
+    line.parse();
+    return until_interrupted([&](session::interrupt& stop) { rpc_client(socket, stop).call("stop"); });
 }
 
 } // namespace tactor::cli

@@ -318,7 +318,7 @@ private:
     session::interrupt stop_;
     rpc_client server_;
     net::json asked_;
-    run_report report_;
+    play_report report_;
     std::vector<net::json> ends_;
     std::optional<error> broken_;
     std::uint64_t xruns_ = 0;
