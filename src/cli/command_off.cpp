@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/settings.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -5,12 +5,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/picture_options.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "cli/warnings.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"

@@ -9,10 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
-#include "cli/warnings.hpp"
+#include "cli/settings.hpp"
 #include "core/words.hpp"
 #include "session/environment.hpp"
 #include "session/interrupt.hpp"

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/option_words.hpp"
-#include "cli/warnings.hpp"
+#include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "core/start_times.hpp"
 #include "session/pipes.hpp"
 

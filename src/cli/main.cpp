@@ -20,9 +20,8 @@
 #include <tactor/error.hpp>
 #include <tactor/version.hpp>
 
-#include "cli/commands.hpp"
-#include "cli/option_words.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "cli/usage.hpp"
 #include "options/settle.hpp"
 #include "session/pipes.hpp"

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The tool prints by the names of session/say.hpp.
+/// The tool prints by the names of session/say.hpp: text, warnings, and how far the work is.
 #pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tactor/tactor.hpp>
 
 #include "session/say.hpp"
 
@@ -18,5 +26,31 @@ using session::show;
 using session::shown;
 using session::wrap_lines;
 using session::wrapped;
+
+/// Prints warnings. Of those that differ only in numbers and quoted names it prints the first, and how many
+/// more there are.
+void say_warnings(std::span<const std::string> warnings);
+
+/// Returns the warnings of all plans, in order.
+std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);
+
+/// A line on standard error that counts up in per cent. It needs a terminal, begins after half a second, and
+/// leaves nothing behind.
+class progress_line {
+public:
+    explicit progress_line(const std::string& name);
+    progress_line(const progress_line&) = delete;
+    progress_line& operator=(const progress_line&) = delete;
+    ~progress_line();
+
+    /// Shows how much is done, at most twice a second.
+    void update(std::uint64_t done, std::uint64_t all);
+
+private:
+    std::string name_;
+    bool terminal_;
+    bool shown_ = false;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 } // namespace tactor::cli

@@ -2,14 +2,15 @@
 #include "cli/settings.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/option_words.hpp"
 #include "options/option.hpp"
 #include "options/settle.hpp"
+#include "options/option.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -33,6 +34,20 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
                 ->type_name_fn([&o] { return options::type_text(o); });
     added->group(std::string(o.in));
 }
+
+constexpr std::array own_words{options::own_word{"command:plan", "tactor plan STROKE --format json"},
+                               options::own_word{"array=none", "say no --array"},
+                               options::own_word{"force=true", "--force"},
+                               options::own_word{"wider=true", "without a number of channels it"}};
+
+std::string spell_option(const options::option& o, std::string_view value)
+{
+    if (value.empty() || o.what == options::kind::flag)
+        return option_name(o);
+    return fmt::format("{} {}", o.letter.empty() ? option_name(o) : fmt::format("-{}", o.letter), value);
+}
+
+constexpr options::spelling by_tool{.write = spell_option, .own = own_words};
 
 } // namespace
 
@@ -100,6 +115,39 @@ void add_strokes(command_line& line, int most)
         "file (.toml, .csv, .svg; .json: a plan), or - for such a file on standard input");
     strokes->type_name("");
     strokes->expected(1, most)->allow_extra_args(most > 1);
+}
+
+void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width)
+{
+    begin_group(command, "Picture");
+    add_text(command, "--width", "MM", fmt::format("width of the picture (default {})", usual_width),
+             [&into](const std::string& t) {
+                 into.width_mm =
+                     options::parse_number("--width", t, {plot::least_width_mm, plot::most_width_mm}, "mm");
+             });
+    add_text(command, "--dpi", "N", "resolution of a PNG (default 300)", [&into](const std::string& t) {
+        into.dpi =
+            static_cast<unsigned>(options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
+    });
+    command.add_option("--title", into.title, "title of the picture; none leaves the heading out")
+        ->type_name("TEXT|none");
+    begin_group(command);
+    add_force_option(command, into.force);
+}
+
+std::string option_name(const options::option& o)
+{
+    return "--" + options::dashed(o);
+}
+
+std::string spelled(std::string_view marked)
+{
+    return options::spell(marked, by_tool);
+}
+
+error in_options(const error& e)
+{
+    return options::spell(e, by_tool);
 }
 
 } // namespace tactor::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options of the command line that fill the settings.
+/// The command line of a command: its options and their values, their names in errors, and exit statuses.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,43 @@
 
 #include <tactor/tactor.hpp>
 
-#include "cli/commands.hpp"
 #include "options/option.hpp"
+#include "plot/figure.hpp"
+#include "plot/paint/output.hpp"
 #include "session/environment.hpp"
 
 namespace CLI {
+class App;
 class Option;
-}
+} // namespace CLI
 
 namespace tactor::cli {
 
 using session::environment;
 using session::settings;
+
+/// Exit statuses (see tactor(1)).
+enum exit_status { status_ok = 0, status_failed = 1, status_usage = 2, status_device = 3 };
+
+/// Returns the exit status for an error.
+constexpr int exit_status_for(error_kind kind) noexcept
+{
+    return kind == error_kind::bad_input       ? status_usage
+           : kind == error_kind::not_available ? status_device
+                                               : status_failed;
+}
+
+/// The command line of a command.
+struct command_line {
+    CLI::App& app; ///< of the command: takes its options
+    std::vector<std::string> words;
+    std::function<void(const CLI::App&)> show = {}; ///< shows the options in place of running the command
+    settings values = {};                           ///< values of the options of the table
+
+    /// Parses the words, and prints the help if they ask for it. \throws error (bad_input); CLI::Success if
+    /// the command has nothing to do.
+    void parse() const;
+};
 
 /// Adds the options of the table that a command takes: `place` is its bit. Returns their values.
 settings& add_options(command_line& line, std::uint64_t place);
@@ -54,5 +79,48 @@ std::size_t choose(std::string_view option, const std::string& text, const std::
 
 /// \throws error (bad_input) about an option.
 [[noreturn]] void refuse_option(std::string_view option, const std::string& why, std::string_view hint);
+
+/// Options of every picture.
+struct picture_options {
+    std::string file = {}; ///< empty: none
+    double width_mm = plot::figure_options{}.width_mm;
+    unsigned dpi = plot::usual_dpi;
+    bool force = false;     ///< replaces a file that tactor did not write
+    std::string title = {}; ///< --title; empty: the picture's own, "none": none
+
+    bool has_title() const { return title != "none"; }
+    /// Returns the title that is asked for, or `own`.
+    std::string choose_title(const std::string& own) const { return title.empty() ? own : title; }
+};
+
+/// Adds --width, --dpi, --title and --force. `usual_width`: words for the help.
+void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width);
+
+/// Returns "--level-dbfs" for the row level_dbfs.
+std::string option_name(const options::option& o);
+
+/// Returns the text with its marks as options: "--timing fit".
+std::string spelled(std::string_view marked);
+
+/// The same error with what it names, and what it advises, as options: "--soa" for "soa_s", "--timing fit"
+/// for "timing = fit". Doing so twice changes nothing.
+error in_options(const error& e);
+
+/// Each returns the exit status. \throws error; CLI::Success.
+int run_plan(command_line& line);
+int run_analyze(command_line& line);
+int run_compare(command_line& line);
+int run_experiment(command_line& line);
+int run_report(command_line& line);
+int run_render(command_line& line);
+int run_play(command_line& line);
+int run_plot(command_line& line);
+int run_devices(command_line& line);
+int run_calibrate(command_line& line);
+int run_check(command_line& line);
+int run_off(command_line& line);
+int run_serve(command_line& line);
+int run_status(command_line& line);
+int run_stop(command_line& line);
 
 } // namespace tactor::cli

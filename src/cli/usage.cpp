@@ -20,9 +20,8 @@
 
 #include <tactor/path.hpp>
 
-#include "cli/commands.hpp"
-#include "cli/option_words.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 
@@ -31,6 +30,12 @@ namespace {
 
 constexpr int name_columns = 26;
 constexpr const char* own_group = "Options"; // where CLI11 puts what has no group
+
+// Returns a name without the dashes before it.
+std::string_view bare_name(std::string_view name) noexcept
+{
+    return name.substr(std::min(name.find_first_not_of('-'), name.size()));
+}
 
 const options::option* find_row(const CLI::Option& o)
 {

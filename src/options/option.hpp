@@ -4,7 +4,7 @@
 /// values of all options; and how errors about them become messages of a front end.
 ///
 /// An error has a field ("soa_s"), a place in a file, and marks in its texts (core/marks.hpp). Each front end
-/// has a spelling that writes field and marks: cli/option_words.cpp ("--soa"), server/faults.cpp
+/// has a spelling that writes field and marks: cli/settings.cpp ("--soa"), server/faults.cpp
 /// ("options.soa"), python/options.cpp ("soa"), study/experiment/definition.cpp. at_default() puts the place
 /// in [defaults] before an option's error. None of them looks into the words.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/option_words.hpp"
+#include "cli/settings.hpp"
 
 #include <string>
 

@@ -12,8 +12,6 @@
 #include <tactor/error.hpp>
 
 #include "cli/analyze/analyze_output.hpp"
-#include "cli/commands.hpp"
-#include "cli/picture_options.hpp"
 #include "cli/settings.hpp"
 #include "core/split.hpp"
 #include "plot/figure.hpp"

@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/session/page_options.hpp"

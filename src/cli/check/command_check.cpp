@@ -9,7 +9,6 @@
 
 #include "cli/check/finding.hpp"
 #include "cli/check/walk_session.hpp"
-#include "cli/commands.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"

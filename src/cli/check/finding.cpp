@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "core/members.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"

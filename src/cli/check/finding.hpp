@@ -19,7 +19,6 @@
 #include <tactor/tactor.hpp>
 
 #include "cli/input.hpp"
-#include "cli/option_words.hpp"
 #include "cli/settings.hpp"
 #include "session/device.hpp"
 #include "session/walk.hpp"

@@ -8,13 +8,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/option_words.hpp"
-#include "cli/picture_options.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "cli/warnings.hpp"
 #include "core/kind_names.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"

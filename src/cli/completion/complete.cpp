@@ -11,7 +11,7 @@
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
-#include "cli/option_words.hpp"
+#include "cli/settings.hpp"
 #include "core/split.hpp"
 #include "study/experiment/definition.hpp"
 

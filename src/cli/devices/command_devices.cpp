@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/commands.hpp"
 #include "cli/devices/devices_text.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"

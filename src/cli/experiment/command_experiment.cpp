@@ -12,12 +12,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/play/live_picture.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "cli/warnings.hpp"
 #include "core/words.hpp"
 #include "net/listen.hpp"
 #include "session/device.hpp"

@@ -17,7 +17,6 @@
 #include "cli/say.hpp"
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
-#include "cli/warnings.hpp"
 #include "core/sha256.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"

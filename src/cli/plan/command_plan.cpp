@@ -8,11 +8,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "cli/warnings.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "plot/figure.hpp"

@@ -6,15 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/option_words.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/play/live_picture.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "cli/warnings.hpp"
 #include "session/environment.hpp"
 #include "session/live_remarks.hpp"
 #include "session/play_session.hpp"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/check/finding.hpp"
-#include "cli/option_words.hpp"
 #include "cli/play/play_report.hpp"
+#include "cli/settings.hpp"
 #include "files/json/schema.hpp"
 #include "files/plan/plan_json.hpp"
 #include "session/device.hpp"

@@ -17,7 +17,6 @@
 
 #include <tactor/version.hpp>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"

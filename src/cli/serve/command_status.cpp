@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/settings.hpp"

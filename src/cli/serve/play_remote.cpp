@@ -17,13 +17,11 @@
 
 #include <tactor/stroke.hpp>
 
-#include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/option_words.hpp"
 #include "cli/play/live_lines.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
-#include "cli/warnings.hpp"
+#include "cli/settings.hpp"
 #include "files/plan/plan_json.hpp"
 #include "files/text_file.hpp"
 #include "session/interrupt.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/warnings.hpp"
+#include "cli/say.hpp"
 
 #include <cstdio>
 #include <map>
@@ -9,8 +9,6 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
-
-#include "cli/say.hpp"
 
 namespace tactor::cli {
 
