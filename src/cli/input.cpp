@@ -43,20 +43,6 @@ void fit_by_file(const std::string& file, piece& p, const layout& faces)
     }
 }
 
-piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
-{
-    piece p{argument};
-    if (s.path_data)
-        p.strokes = session::read_strokes("path", *s.path_data, argument, s);
-    else if (s.shape)
-        p.strokes = session::read_strokes("stroke", *s.shape, argument, s);
-    else
-        p.strokes = read_one(s, e, argument);
-    fit_by_file(shown_name(argument), p, faces);
-    session::place_strokes(p, faces, s);
-    return p;
-}
-
 // --path and --shape NAME stand for a STROKE.
 bool is_option(const std::string& argument)
 {
@@ -70,19 +56,6 @@ std::string default_name(const std::string& argument)
         return argument.substr(argument.find_first_not_of('-', argument.rfind(' ') + 1));
     const bool file = argument != "-" && !session::is_preset(stroke_presets(), argument);
     return file ? fs::path(argument).stem().string() : shown_name(argument);
-}
-
-// A plan comes with its strokes; those that are read as strokes are not planned yet.
-piece open_argument(const settings& s, const environment& e, const layout& faces, const std::string& argument)
-{
-    const auto planned = e.plans.find(argument);
-    if (planned == e.plans.end())
-        return read_piece(s, e, faces, argument);
-    const files::plan_file& f = planned->second;
-    files::check_same_array(argument, f.tactors, e.tactors);
-    piece p{f.made, true};
-    p.name = argument;
-    return p;
 }
 
 // Returns an error about what the stroke itself sets with the place in its file, or as one about the stroke:
@@ -114,16 +87,6 @@ void for_each_stroke(const piece& p, std::size_t count, F f)
             throw of_stroke(x, p, i);
         }
     }
-}
-
-// Refuses strokes that do not begin in the piece, also where nobody wants samples.
-void check_starts(const piece& p)
-{
-    detail::start_times times;
-    for_each_stroke(p, p.plans.size(), [&](std::size_t i) {
-        times.start(p.plans[i].start_s, p.plans[i].anchor);
-        times.lasts(p.plans[i].plan.total_s);
-    });
 }
 
 } // namespace
@@ -163,11 +126,11 @@ std::string shown_name(const std::string& argument)
     return argument == "-" ? "standard input" : argument;
 }
 
-std::string name_stroke(const piece& p, std::size_t i)
+std::string name_stroke(const piece& p, std::size_t i, const environment& e)
 {
     const std::string argument = shown_name(p.name);
     const std::string& own = p.strokes[i].name;
-    if (p.from_plan)
+    if (e.plans.contains(p.name))
         return own;
     return p.strokes.size() == 1 && own == default_name(p.name) ? argument
                                                                 : fmt::format("{}: {}", argument, own);
@@ -194,27 +157,43 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
     return e.reworded(is_whole ? from : fmt::format("{}: {}", from, e.subject()), e.why(), e.hint());
 }
 
-std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces)
+piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
-    std::vector<piece> pieces;
-    for (const std::string& argument : stroke_arguments(s))
-        pieces.push_back(open_argument(s, e, faces, argument));
-    return pieces;
+    const auto planned = e.plans.find(argument);
+    if (planned == e.plans.end())
+        return read_piece(s, e, faces, argument);
+    const files::plan_file& f = planned->second;
+    files::check_same_array(argument, f.tactors, e.tactors);
+    piece p = f.made;
+    p.name = argument;
+    return p;
 }
 
-piece read_one_piece(const settings& s, const environment& e, const layout& faces)
+piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
-    return read_piece(s, e, faces, stroke_arguments(s).front());
+    piece p{argument};
+    if (s.path_data)
+        p.strokes = session::read_strokes("path", *s.path_data, argument, s);
+    else if (s.shape)
+        p.strokes = session::read_strokes("stroke", *s.shape, argument, s);
+    else
+        p.strokes = read_one(s, e, argument);
+    fit_by_file(shown_name(argument), p, faces);
+    session::place_strokes(p, faces, s);
+    return p;
 }
 
 piece plan_one_piece(const settings& s, const environment& e)
 {
     const layout faces(e.tactors);
-    piece p = std::move(open_pieces(s, e, faces).front());
-    if (p.plans.empty())
-        for_each_stroke(p, p.strokes.size(),
-                        [&](std::size_t i) { session::plan_stroke(p, i, e.tactors, faces, s); });
-    check_starts(p);
+    piece p = open_piece(s, e, faces, stroke_arguments(s).front());
+    detail::start_times times;
+    for_each_stroke(p, p.strokes.size(), [&](std::size_t i) {
+        if (i == p.plans.size())
+            session::plan_stroke(p, i, e.tactors, faces, s);
+        times.start(p.plans[i].start_s, p.plans[i].anchor);
+        times.lasts(p.plans[i].plan.total_s);
+    });
     return p;
 }
 

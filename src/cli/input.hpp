@@ -14,10 +14,7 @@
 
 namespace tactor::cli {
 
-/// The piece of one STROKE argument.
-struct piece : session::piece {
-    bool from_plan = false; ///< the argument is a plan, which knows its stroke's name
-};
+using session::piece;
 
 /// Returns the STROKE arguments, or the option that stands for them. \throws error unless there is one of
 /// them.
@@ -32,19 +29,20 @@ std::string shown_name(const std::string& argument);
 
 /// Returns the name of the piece's stroke i as every command prints it: the STROKE argument, followed by the
 /// stroke's own name where it has one; of a plan, the name of the stroke that was planned.
-std::string name_stroke(const piece& p, std::size_t i);
+std::string name_stroke(const piece& p, std::size_t i, const environment& e);
 
 /// Returns an error about the piece's stroke i, if it has that, with its file and its number among several.
 error of_stroke(const error& x, const piece& p, std::size_t i);
 
-/// Reads all STROKE arguments. A plan comes with its plans; what is a stroke is not planned yet. `faces` is
-/// what --fit puts strokes on. \throws error.
-std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces);
+/// Reads one of the stroke_arguments(). A plan comes with its plans; what is a stroke is not planned yet.
+/// `faces` is what --fit puts strokes on. \throws error.
+piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
 
-/// Reads the only STROKE argument, which may be no plan, without planning it. \throws error.
-piece read_one_piece(const settings& s, const environment& e, const layout& faces);
+/// Does the same for an argument that may be no plan. \throws error.
+piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
 
-/// Reads and plans where only one STROKE is taken.
+/// Reads and plans where only one STROKE is taken. \throws error, also for a stroke that does not begin in
+/// the piece.
 piece plan_one_piece(const settings& s, const environment& e);
 
 /// Makes the score of a piece, with `render.rate` and channels settled. Takes the plans that the piece has;

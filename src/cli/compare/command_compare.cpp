@@ -257,7 +257,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
     static_cast<void>(burst_duration_s(s.plan));
     const layout faces(e.tactors);
-    const piece p = read_one_piece(s, e, faces);
+    const piece p = read_piece(s, e, faces, stroke_arguments(s).front());
     if (!asked.picture.file.empty() && p.strokes.size() > 1)
         throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", p.strokes.size()),
                     "a picture shows one");
@@ -266,7 +266,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     const std::vector<comparison> all = compare_all(p, e, faces, s.plan, std::move(choice));
     std::vector<std::string> titles;
     for (std::size_t i = 0; i < all.size(); ++i)
-        titles.push_back(name_stroke(p, i));
+        titles.push_back(name_stroke(p, i, e));
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
         throw why_refused(all, p);

@@ -171,7 +171,9 @@ int play(settings& s, const play_options& o)
         return play_live(s, o);
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
-    auto pieces = open_pieces(s, e, faces);
+    std::vector<piece> pieces;
+    for (const std::string& argument : stroke_arguments(s))
+        pieces.push_back(open_piece(s, e, faces, argument));
     const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
     std::vector<stroke_outcome> strokes;
     for (std::size_t i = 0; i < pieces.size(); ++i)

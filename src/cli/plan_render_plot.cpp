@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+// plan, render and plot: what a STROKE becomes without a device, as text, samples or a picture.
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "cli/input.hpp"
+#include "cli/say.hpp"
+#include "cli/settings.hpp"
+#include "core/words.hpp"
+#include "files/plan/plan_json.hpp"
+#include "plot/figure.hpp"
+#include "plot/paint/output.hpp"
+#include "session/environment.hpp"
+#include "session/interrupt.hpp"
+#include "session/pipes.hpp"
+
+namespace tactor::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns a line on what --fit did to places; several strokes share it.
+std::string fit_note(const fitting& f)
+{
+    return fmt::format(
+        "fitted: ({:.6g}, {:.6g}) mm as drawn is ({:.6g}, {:.6g}) mm here, lengths times {:.6g}{}\n",
+        f.from.x_mm, f.from.y_mm, f.to.x_mm, f.to.y_mm, f.scale,
+        f.line ? ", onto the line of the array" : "");
+}
+
+std::string level_text(const render_options& sound, const stroke& s)
+{
+    std::string text = sound.sl_db ? fmt::format("{} dB SL", plain_number(*sound.sl_db))
+                                   : fmt::format("{} dBFS", plain_number(sound.level_dbfs));
+    if (s.choices.level_db != 0.0)
+        text += fmt::format(" and {} dB of its own", plain_number(s.choices.level_db));
+    return text;
+}
+
+std::string heading(const std::string& title, const stroke& s, const plan& p, double start_s, const array& a,
+                    const render_options& sound)
+{
+    const std::string soa = p.soa_s ? ", SOA " + seconds_text(*p.soa_s) : "";
+    const std::string bursts = p.curve ? "continuous" : counted(p.bursts.size(), "burst");
+    return fmt::format(
+        "{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
+        "vibration: {}{}, level {}\n",
+        title, a.name, p.algorithm, plot::describe_phantom(p), bursts, soa, seconds_text(start_s, 9),
+        plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s), seconds_text(p.total_s),
+        p.wave.kind == waveform_kind::sine ? "sine of " : "", plot::describe_sound(p), level_text(sound, s));
+}
+
+void print_one(std::FILE* out, const std::string& title, const stroke& s, const plan& p, double start_s,
+               const array& a, const render_options& sound)
+{
+    say(out, "{}", heading(title, s, p, start_s, a, sound));
+    if (s.note != note_kind::none)
+        say(out, "note: {}\n", files::note_text(s.note));
+    say(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.curve ? "t_s" : "onset_s", "duration_s", "x_mm", "y_mm",
+        "tactor:amplitude");
+    files::for_each_row(p, [&](const burst& b) {
+        std::string drives;
+        for (const drive& d : b.drives)
+            drives += fmt::format(" {}:{:.4f}", d.tactor, d.amplitude);
+        fmt::print(out, "{}",
+                   fit_lines(out, fmt::format("{:10.6f} {:10.6f} {:9.3f} {:9.3f} {}\n", b.onset_s,
+                                              b.duration_s, b.position.x_mm, b.position.y_mm, drives)));
+    });
+    for (const conflict& c : p.conflicts)
+        say(out, "conflict: tactor {} serves two bursts from {:.6f} s to {:.6f} s\n", c.tactor, c.from_s,
+            c.to_s);
+    for (const meeting& m : p.dropped)
+        say(out, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm, m.position.y_mm,
+            m.t_s);
+    for (const std::string& w : p.warnings)
+        say(out, "warning: {}\n", w);
+}
+
+// Both write as they go: a plan of an hour needs no document in memory.
+void print_text(std::FILE* out, const piece& p, const environment& e, const render_options& sound)
+{
+    const auto starts = start_times_s(p.plans);
+    if (p.fit)
+        say(out, "{}", fit_note(*p.fit));
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        if (i != 0)
+            fmt::print(out, "\n");
+        print_one(out, name_stroke(p, i, e), p.strokes[i], p.plans[i].plan, starts[i], e.tactors, sound);
+    }
+}
+
+void print_csv(std::FILE* out, const piece& p, const environment& e)
+{
+    fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
+    const auto starts = start_times_s(p.plans);
+    for (std::size_t i = 0; i < p.plans.size(); ++i) {
+        files::for_each_row(p.plans[i].plan, [&](const burst& b) {
+            const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";
+            for (const drive& d : b.drives)
+                fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, starts[i], b.onset_s, b.duration_s, tau,
+                           b.position.x_mm, b.position.y_mm, d.tactor, e.tactors.tactors[d.tactor].channel,
+                           d.amplitude);
+        });
+    }
+}
+
+void print_plan(settings& s, const std::string& format)
+{
+    const environment e = session::read_environment(s);
+    const piece p = plan_one_piece(s, e);
+    const render_options sound = session::settle_render(s, e);
+    const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
+    session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
+    if (format == "json")
+        files::write_plans({p, e.tactors, samples, sound}, [](std::string_view part) {
+            // A plan of an hour ends where its reader does.
+            if (std::fwrite(part.data(), 1, part.size(), stdout) != part.size())
+                throw std::system_error(errno, std::generic_category(), "cannot write a plan");
+        });
+    else if (format == "csv") {
+        say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
+        print_csv(stdout, p, e);
+    } else
+        print_text(stdout, p, e, sound);
+}
+
+// Returns true for a file that may be replaced: an empty one, or a WAV file.
+bool holds_wav(const fs::path& file)
+{
+    std::array<char, 12> head{};
+    std::ifstream in(file, std::ios::binary);
+    in.read(head.data(), head.size());
+    const std::string_view begin(head.data(), static_cast<std::size_t>(in.gcount()));
+    return begin.empty() ||
+           ((begin.starts_with("RIFF") || begin.starts_with("RF64")) && begin.ends_with("WAVE"));
+}
+
+// "-" is standard output. A slip of the keyboard must not replace somebody's thesis.
+fs::path checked_output(const std::string& name)
+{
+    constexpr const char* standard_output = "/dev/stdout";
+    fs::path file = name == "-" ? standard_output : name;
+    if (file == standard_output) {
+        if (isatty(STDOUT_FILENO) != 0)
+            throw error(error_kind::bad_input, "-o",
+                        "standard output is a terminal, which samples would garble",
+                        "name a file, or pipe it into another program");
+        return file;
+    }
+    std::error_code none;
+    const fs::file_status there = fs::status(file, none);
+    if (name.empty() || fs::is_directory(there) || (fs::exists(there) && !fs::is_regular_file(there)))
+        return file;
+    if (in_small_letters(file.extension().string()) != ".wav")
+        throw error(error_kind::bad_input, name, "the name of a WAV file ends in .wav",
+                    "name it so, or write -o - > FILE");
+    if (fs::exists(there) && !holds_wav(file))
+        throw error(error_kind::bad_input, name, "there is such a file, which is not a WAV file",
+                    "choose another name, or remove it first");
+    return file;
+}
+
+int render(settings& s, const std::string& name)
+{
+    const fs::path file = checked_output(name); // before the work
+    const environment e = session::read_environment(s);
+    const layout faces(e.tactors);
+    piece p = open_piece(s, e, faces, stroke_arguments(s).front());
+    const render_options how = session::settle_render(s, e);
+    const score sc = plan_and_score(p, s, e, faces, how);
+    const format_kind format = s.format.value_or(format_kind::float32);
+    say_warnings(collect_warnings(sc.plans()));
+    session::tell_of_other_carrier(e, how, std::span(&sc, 1));
+    session::tell_of_pipe_to_write(file.string());
+    session::interrupt stop;
+    int signal = 0;
+    {
+        progress_line line(name);
+        write_wav(sc, format, file, [&](std::uint64_t done, std::uint64_t all) {
+            line.update(done, all);
+            signal = stop.poll();
+            return signal == 0;
+        });
+    }
+    if (signal != 0)
+        return session::interrupt::status(signal);
+    say(file == "/dev/stdout" ? stderr : stdout, "{}: {}, {} Hz, {}, {} ({:.3f} s)\n", name,
+        counted(sc.channels(), "channel"), sc.rate(), to_string(format), counted(sc.frames(), "frame"),
+        static_cast<double>(sc.frames()) / sc.rate());
+    return status_ok;
+}
+
+using plot::figure_view;
+
+struct plot_settings {
+    picture_options picture;
+    figure_view view = figure_view::both;
+    bool animated = false;
+};
+
+constexpr std::array views{figure_view::array, figure_view::timing, figure_view::wave, figure_view::both};
+
+void add_plot_options(CLI::App& c, plot_settings& p)
+{
+    c.add_option("-o,--output", p.picture.file, "picture to write")
+        ->type_name("FILE.svg|.png|.pdf")
+        ->required();
+    add_text(c, "--view", "array|timing|wave|both",
+             "show the array, the bursts over time, the samples, or the first two (default both)",
+             [&p](const std::string& t) {
+                 p.view = views[choose("--view", t, {"array", "timing", "wave", "both"})];
+             });
+    c.add_flag("--animate", p.animated, "SVG: light up the tactors that play, again and again, in real time");
+    add_picture_options(c, p.picture, "85, one print column");
+}
+
+int draw(settings& s, const plot_settings& p)
+{
+    const picture_options& o = p.picture;
+    const plot::file_format format = plot::find_format(o.file); // before the work
+    if (p.animated && format != plot::file_format::svg)
+        refuse_option("--animate", "only SVG can move", "name a file .svg");
+    if (p.animated && p.view == figure_view::wave)
+        refuse_option("--animate", "the waveform does not move", "leave out --view wave");
+    const environment e = session::read_environment(s);
+    const piece q = plan_one_piece(s, e);
+    plot::check_output(o.file, o.force);
+    // Only the samples have levels: a picture of a plan needs none that a card could play.
+    std::optional<score> sound;
+    if (p.view == figure_view::wave)
+        sound = make_score(q, e, session::settle_render(s, e));
+    const std::string name = plot::name_scene(q.strokes, fs::path(shown_name(q.name)).filename().string());
+    const plot::canvas picture = plot::draw_figure(
+        {e.tactors, o.choose_title(name), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
+        {p.view, o.width_mm, o.has_title(), p.animated});
+    session::tell_of_pipe_to_write(o.file);
+    plot::save(picture, o.file, o.dpi, o.force);
+    say_warnings(collect_warnings(q.plans));
+    say(stdout, "{}: {:.4g} x {:.4g} mm\n", o.file, picture.width / plot::pt_per_mm,
+        picture.height / plot::pt_per_mm);
+    return status_ok;
+}
+
+} // namespace
+
+int run_plan(command_line& line)
+{
+    std::string format;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_plan);
+    add_format_option(line.app, format, {"text", "json", "csv"}, "format of the output (default text)");
+    line.app.footer("tactor plan park2016-1\n"
+                    "tactor plan --shape circle --duration 2\n"
+                    "tactor plan park2016-1 --format json");
+    line.parse();
+    print_plan(s, format);
+    return status_ok;
+}
+
+int run_render(command_line& line)
+{
+    std::string file;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_render);
+    line.app.add_option("-o,--output", file, "the file to write; - is standard output")
+        ->type_name("FILE.wav")
+        ->required();
+    line.app.footer("tactor render park2016-3 -o stroke.wav\n"
+                    "tactor render --path \"M 0 10 L 40 30\" --speed 80 -o line.wav\n"
+                    "tactor render --shape circle --duration 2 --sample-format s16 -o circle.wav");
+    line.parse();
+    return render(s, file);
+}
+
+int run_plot(command_line& line)
+{
+    plot_settings p;
+    add_strokes(line);
+    settings& s = add_options(line, options::on_plot);
+    add_plot_options(line.app, p);
+    line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
+                    "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
+                    "tactor plot park2016-1 --view wave --width 170 -o wave.png");
+    line.parse();
+    return draw(s, p);
+}
+
+} // namespace tactor::cli
