@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/check/finding.hpp"
+#include "cli/check/check.hpp"
 #include "cli/devices/devices_text.hpp"
 #include "cli/play/play_report.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Findings of `check` about arrays, levels and actuators.
-#include "cli/check/finding.hpp"
+#include "cli/check/check.hpp"
 
 #include <algorithm>
 #include <utility>

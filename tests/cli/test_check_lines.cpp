@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cli/check/finding.hpp"
+#include "cli/check/check.hpp"
 
 namespace check_lines_test {
 

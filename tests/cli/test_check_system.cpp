@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Findings of `check` on machines made of files.
-#include "cli/check/finding.hpp"
+#include "cli/check/check.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A walk on a device whose clock the test moves: tactors that are not driven to their end.
-#include "cli/check/walk_session.hpp"
+#include "cli/check/check.hpp"
 
 #include <algorithm>
 #include <cstddef>

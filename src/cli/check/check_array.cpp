@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/finding.hpp"
+#include "cli/check/check.hpp"
 
 #include <algorithm>
 #include <array>

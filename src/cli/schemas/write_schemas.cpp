@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/check/finding.hpp"
+#include "cli/check/check.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/settings.hpp"
 #include "files/json/schema.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/walk_session.hpp"
+#include "cli/check/check.hpp"
 
 #include <cerrno>
 #include <cstdio>
