@@ -7,7 +7,7 @@
 
 #include "cli/check/check.hpp"
 #include "cli/devices/devices_text.hpp"
-#include "cli/play/play_report.hpp"
+#include "cli/play/play.hpp"
 
 namespace {
 

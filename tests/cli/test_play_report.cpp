@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The final message of a run whose strokes did not all finish.
-#include "cli/play/play_report.hpp"
+#include "cli/play/play.hpp"
 
 #include <string>
 #include <utility>

@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/play/play_report.hpp"
+#include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/members.hpp"

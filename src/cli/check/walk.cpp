@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/play/live_picture.hpp"
+#include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
 #include "session/pipes.hpp"

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "cli/experiment/experiment_options.hpp"
-#include "cli/play/live_picture.hpp"
+#include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"

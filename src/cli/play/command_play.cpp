@@ -1,23 +1,67 @@
 // SPDX-License-Identifier: MIT
+#include "cli/play/play.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <poll.h>
+#include <tactor/error.hpp>
 #include <unistd.h>
 
 #include "cli/input.hpp"
-#include "cli/play/live_lines.hpp"
-#include "cli/play/live_picture.hpp"
-#include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
+#include "core/split.hpp"
+#include "core/words.hpp"
+#include "files/text_file.hpp"
+#include "session/device.hpp"
 #include "session/environment.hpp"
+#include "session/interrupt.hpp"
 #include "session/live_remarks.hpp"
+#include "session/pipes.hpp"
 #include "session/play_session.hpp"
 
 namespace tactor::cli {
 namespace {
+
+constexpr std::size_t longest_line = 4096;
+constexpr double farthest_mm = 1e6;
+
+// Splits at blanks. A comma is a separator only before a blank: elsewhere it may be a decimal one.
+std::vector<std::string_view> split(std::string_view line)
+{
+    std::vector<std::string_view> words;
+    constexpr const char* blanks = " \t\r";
+    for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
+        words.push_back(line.substr(at, end - at));
+        at = line.find_first_not_of(blanks, end);
+        if (at != std::string_view::npos && words.back().size() > 1 && words.back().back() == ',')
+            words.back().remove_suffix(1);
+    }
+    return words;
+}
+
+// Reads a number, also nan, and with a plus sign.
+std::optional<double> read_number(std::string_view word)
+{
+    if (word.starts_with('+') && !word.starts_with("+-"))
+        word.remove_prefix(1);
+    return detail::number_in<double>(word);
+}
+
+source_place line_place(std::size_t line)
+{
+    return {.file = "standard input", .line = static_cast<unsigned>(line)};
+}
 
 std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, const environment& e,
                                const layout& faces, const render_options& render)
@@ -97,6 +141,35 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
     return {};
 }
 
+// Opens the device for so many channels at that rate, Hz, calls play(session, outcomes), ends, and prints the
+// report. Returns the exit status. play() returns the error that broke the run off, if any. \throws error:
+// first of all if the amplifier may be on.
+template <class F>
+int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, const play_options& o,
+             std::vector<stroke_outcome> strokes, F play)
+{
+    session::tell_of_no_device(s, e);
+    const alsa_options device = session::device_options(s, s.stream, e, channels, rate);
+    const std::string server = session::settle_server(device.pcm);
+    session::play_session session(device, s.stream, e);
+    if (!o.json())
+        say(stdout, "{}\n", describe(session.setup()));
+    flush_output();
+    const std::string late = session::latency_warning(s.stream.latency_ms, session.setup());
+    if (!late.empty())
+        say(stderr, "tactor: warning: {}\n", late);
+    session::warn_of_server(server);
+    play_report r;
+    r.strokes = std::move(strokes);
+    const auto broken = play(session, r.strokes);
+    static_cast<session::run_facts&>(r) = session.finish();
+    if (o.json())
+        print_json(stdout, r);
+    else if (s.stream.verbose || !is_clean(r))
+        print_table(stdout, r);
+    return judge_run(r, session.signal(), broken);
+}
+
 // Plays a stroke that lines move, until they end.
 stroke_report follow_lines(session::play_session& session, const live_options& o, live_lines& lines)
 {
@@ -111,7 +184,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
         }
         if (lines.over() && !std::exchange(ended, true))
             stroke.end();
-        return session::look{.descriptor = lines.over() ? -1 : lines.descriptor()};
+        return session::look{.descriptor = lines.descriptor()};
     });
 }
 
@@ -146,9 +219,9 @@ int play_live(settings& s, const play_options& o)
     l.timeout_s = live_timeout_s;
     l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
     return hold_run(
-        s, e, l.render.channels, l.render.rate, o.json(), {{"live"}},
+        s, e, l.render.channels, l.render.rate, o, {{"live"}},
         [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) -> std::optional<error> {
-            live_lines lines(STDIN_FILENO, s.intensity_max.value_or(1.0));
+            live_lines lines(s.intensity_max.value_or(1.0));
             stroke_outcome& out = outcomes.front();
             out.report = follow_lines(session, l, lines);
             out.length_frames = out.report->frames;
@@ -178,13 +251,100 @@ int play(settings& s, const play_options& o)
     std::vector<stroke_outcome> strokes;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         strokes.push_back({pieces[i].name, scores[i].frames()});
-    return hold_run(s, e, scores.front().channels(), scores.front().rate(), o.json(), std::move(strokes),
+    return hold_run(s, e, scores.front().channels(), scores.front().rate(), o, std::move(strokes),
                     [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
                         return play_all(session, o.json(), e.tactors, pieces, scores, outcomes);
                     });
 }
 
 } // namespace
+
+// Reads available bytes. Returns false if there are none.
+bool live_lines::fill()
+{
+    pollfd p{STDIN_FILENO, POLLIN, 0};
+    if (end_ || ::poll(&p, 1, 0) <= 0)
+        return false;
+    char bytes[4096];
+    const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+    if (n < 0 && (errno == EINTR || errno == EAGAIN))
+        return false;
+    if (n < 0)
+        session::refuse_standard_input(errno);
+    if (n == 0) {
+        end_ = true;
+        if (!buffer_.empty() && buffer_.back() != '\n')
+            buffer_ += '\n'; // the last line counts without its end, too
+        return !buffer_.empty();
+    }
+    buffer_.append(bytes, static_cast<std::size_t>(n));
+    return true;
+}
+
+std::optional<timed_point> live_lines::next()
+{
+    do {
+        for (std::size_t end = buffer_.find('\n'); end != std::string::npos; end = buffer_.find('\n')) {
+            const std::string line = buffer_.substr(0, end);
+            buffer_.erase(0, end + 1);
+            ++line_;
+            if (const auto point = parse(line_ == 1 ? detail::without_mark(line) : line))
+                return point;
+        }
+        if (buffer_.size() > longest_line)
+            throw error(error_kind::bad_input, line_place(line_ + 1),
+                        fmt::format("a line of more than {} bytes", longest_line),
+                        "give x y [intensity], in mm");
+    } while (fill());
+    return std::nullopt;
+}
+
+std::optional<timed_point> live_lines::parse(std::string_view line)
+{
+    const auto words = split(line);
+    if (words.empty() || words.front().front() == '#')
+        return std::nullopt;
+    const auto refuse = [&](const std::string& why) {
+        throw error(error_kind::bad_input, line_place(line_), why,
+                    "give x y [intensity]: two places in mm and a factor from 0 to 1, such as 20 12.5 0.8");
+    };
+    double v[3] = {};
+    bool lost = false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i].find(',') != std::string_view::npos)
+            refuse(fmt::format("\"{}\" has a comma that could be a decimal one", words[i]));
+        if (i == std::size(v))
+            refuse(counted(words.size(), "word"));
+        const auto number = read_number(words[i]);
+        if (!number || std::isinf(*number))
+            refuse(fmt::format("\"{}\" is not a number", words[i]));
+        v[i] = *number;
+        lost = lost || std::isnan(v[i]);
+        if (std::abs(v[i]) > farthest_mm || (i == 2 && v[i] < 0.0))
+            refuse(fmt::format("{} is out of range", words[i]));
+    }
+    if (lost && last_)
+        return timed_point{.position = *last_, .intensity = 0.0};
+    if (lost)
+        return std::nullopt;
+    if (words.size() < 2)
+        refuse(counted(words.size(), "word"));
+    last_ = point{v[0], v[1]};
+    return timed_point{.position = *last_, .intensity = words.size() == 3 ? v[2] / intensity_max_ : 1.0};
+}
+
+int live_lines::descriptor() const noexcept
+{
+    return over() ? -1 : STDIN_FILENO;
+}
+
+void live_lines::warn(const std::string& remark) const
+{
+    say(stderr,
+        "tactor: warning: standard input:{}: {} (x y [intensity] is the order; further points of this kind "
+        "are counted)\n",
+        line_, remark);
+}
 
 int run_play(command_line& line)
 {

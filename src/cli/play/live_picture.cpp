@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/live_picture.hpp"
+#include "cli/play/play.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdint>
 #include <new>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,12 +18,19 @@
 #include <fmt/format.h>
 
 #include "cli/say.hpp"
+#include "core/owned.hpp"
 #include "core/words.hpp"
 #include "rt/variable.hpp"
 #include "session/walk.hpp"
 #include "synth/score/score_view.hpp"
 
 namespace tactor::cli {
+
+struct picture_style {
+    bool unicode = true; // true: shades, false: letters
+    bool colours = true; // false: NO_COLOR is set and not empty (no-color.org)
+};
+
 namespace {
 
 constexpr unsigned margin = 3;              // left of the array
@@ -45,6 +50,11 @@ const char* shade(double level, bool unicode)
     const auto i = static_cast<std::size_t>(std::clamp(std::ceil(level * 4.0), 0.0, 4.0));
     return unicode ? shades[i] : letters[i];
 }
+
+struct terminal_size {
+    unsigned columns = 80;
+    unsigned rows = 24;
+};
 
 // Grid of characters, which are about twice as high as wide.
 class grid {
@@ -190,9 +200,6 @@ bool speaks_utf8()
     return false;
 }
 
-// Time for a slow terminal. One that takes nothing blocks the next printed line anyway.
-constexpr int patience_ms = 2000;
-
 std::string to_its_beginning(std::size_t lines)
 {
     return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
@@ -220,57 +227,68 @@ bool can_draw()
     return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
 }
 
-// Opens standard output again: O_NONBLOCK on it would hold for all processes that share it, such as the
-// shell.
-terminal::terminal() : file_(open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC))
-{
-}
+// Writer to the terminal that never waits for it: a terminal that is stopped (Ctrl-S) or slow must not keep a
+// signal from ending the program.
+class terminal {
+public:
+    const picture_style style{speaks_utf8(), rt::variable("NO_COLOR").empty()};
 
-terminal_size terminal::size() const noexcept
-{
-    winsize w{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) != 0 || w.ws_col == 0 || w.ws_row == 0)
-        return {};
-    return {w.ws_col, w.ws_row};
-}
-
-bool terminal::idle()
-{
-    while (!left_.empty()) {
-        const ssize_t n = ::write(file_.get(), left_.data(), left_.size());
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
-            return false;
-        if (n < 0)
-            left_.clear(); // hung up
-        else
-            left_.erase(0, static_cast<std::size_t>(n));
+    // Returns the size as it is now: windows change.
+    static terminal_size size() noexcept
+    {
+        winsize w{};
+        if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) != 0 || w.ws_col == 0 || w.ws_row == 0)
+            return {};
+        return {w.ws_col, w.ws_row};
     }
-    return true;
-}
 
-void terminal::write(std::string text)
-{
-    left_ += text;
-    idle();
-}
-
-void terminal::finish()
-{
-    for (int waited = 0; !idle() && waited < patience_ms; waited += patience_ms / 10) {
-        pollfd p{.fd = file_.get(), .events = POLLOUT, .revents = 0};
-        ::poll(&p, 1, patience_ms / 10);
+    // Writes what is left of earlier texts. Returns true if the terminal has taken all.
+    bool idle()
+    {
+        while (!left_.empty()) {
+            const ssize_t n = ::write(file_.get(), left_.data(), left_.size());
+            if (n < 0 && errno == EINTR)
+                continue;
+            if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+                return false;
+            if (n < 0)
+                left_.clear(); // hung up
+            else
+                left_.erase(0, static_cast<std::size_t>(n));
+        }
+        return true;
     }
-}
 
-live_picture::live_picture(const array& a, bool wanted)
-    : array_(a), style_{speaks_utf8(), rt::variable("NO_COLOR").empty()}
+    // Writes as much as the terminal takes; keeps the rest.
+    void write(const std::string& text)
+    {
+        left_ += text;
+        idle();
+    }
+
+    // Waits up to two seconds for the rest. A terminal that takes nothing blocks the next printed line
+    // anyway.
+    void finish()
+    {
+        for (int tries = 10; !idle() && tries > 0; --tries) {
+            pollfd p{.fd = file_.get(), .events = POLLOUT, .revents = 0};
+            ::poll(&p, 1, 200);
+        }
+    }
+
+private:
+    // Standard output, opened again: O_NONBLOCK on it would hold for all processes that share it, such as the
+    // shell.
+    detail::owned_fd file_{open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
+    std::string left_;
+};
+
+live_picture::live_picture(const array& a) : array_(a)
 {
     flush_output(); // printed lines stay above it
-    if (!wanted || !can_draw())
+    if (!can_draw())
         return;
-    terminal_.emplace();
+    terminal_ = std::make_unique<terminal>();
     struct sigaction ask = {};
     ask.sa_handler = ask_to_stop;
     ask.sa_flags = SA_RESTART;
@@ -318,20 +336,20 @@ void live_picture::draw(const instant& now, double t_s, double total_s)
     stop_where_asked();
     if (is_in_background() || !terminal_->idle())
         return;
-    const auto lines = picture_lines(array_, now, t_s, total_s, terminal_->size(), style_);
+    const auto lines = picture_lines(array_, now, t_s, total_s, terminal::size(), terminal_->style);
     std::string text = to_its_beginning(drawn_lines_);
     for (const std::string& line : lines)
         text += line + "\033[K\n";
-    terminal_->write(std::move(text) + "\033[J");
+    terminal_->write(text + "\033[J");
     drawn_lines_ = lines.size();
 }
 
 stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
                            bool wanted)
 {
-    live_picture picture(a, wanted);
-    if (!picture.active())
+    if (!wanted || !can_draw())
         return session.follow();
+    live_picture picture(a);
     synth::sounding_now sounding(s);
     const layout faces(a);
     const double total_s = static_cast<double>(s.frames()) / s.rate();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/play_report.hpp"
+#include "cli/play/play.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -135,40 +135,6 @@ std::string xruns_text(const player_stats& s)
     return fmt::format("{}, the longest {:.1f} ms", s.xruns, *longest * 1e3);
 }
 
-// Returns true if nothing disturbed or limited the strokes.
-bool is_clean(const play_report& r)
-{
-    const player_stats& s = r.stats;
-    return s.xruns + s.limited_frames + s.power_limited_frames + s.drives_cut + s.stalls + s.off_failures +
-                   s.sync_missed + r.reopened ==
-               0 &&
-           !s.left_on;
-}
-
-// Prints a short table of the counters.
-void print_table(std::FILE* to, const play_report& r)
-{
-    const player_stats& s = r.stats;
-    fmt::print(to, "xruns           {}\n", xruns_text(s));
-    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
-    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
-    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
-    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
-               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
-    if (s.stalls != 0)
-        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
-    if (s.off_failures != 0)
-        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
-                   s.left_on ? "" : ", off in the end");
-    if (s.sync_pulses + s.sync_missed != 0)
-        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
-                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
-    if (r.reopened != 0)
-        fmt::print(to, "reopened        {}\n", r.reopened);
-    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
-               r.locked_memory ? "locked" : "not locked");
-}
-
 } // namespace
 
 std::string fate(const stroke_outcome& s, unsigned rate)
@@ -231,6 +197,38 @@ void print_json(std::FILE* to, const play_report& r)
     fmt::print(to, "{}\n", all.dump(2));
 }
 
+bool is_clean(const play_report& r)
+{
+    const player_stats& s = r.stats;
+    return s.xruns + s.limited_frames + s.power_limited_frames + s.drives_cut + s.stalls + s.off_failures +
+                   s.sync_missed + r.reopened ==
+               0 &&
+           !s.left_on;
+}
+
+void print_table(std::FILE* to, const play_report& r)
+{
+    const player_stats& s = r.stats;
+    fmt::print(to, "xruns           {}\n", xruns_text(s));
+    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
+    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
+    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
+    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
+               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
+    if (s.stalls != 0)
+        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+    if (s.off_failures != 0)
+        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
+                   s.left_on ? "" : ", off in the end");
+    if (s.sync_pulses + s.sync_missed != 0)
+        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
+                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
+    if (r.reopened != 0)
+        fmt::print(to, "reopened        {}\n", r.reopened);
+    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
+               r.locked_memory ? "locked" : "not locked");
+}
+
 nlohmann::ordered_json play_schema()
 {
     return files::json_schema::describe_object([](auto& io) { report_members(io, play_report{}); });
@@ -241,31 +239,6 @@ void tell(const stroke_outcome& s, unsigned rate, bool as_json)
     if (!as_json && s.report)
         say(stdout, "{}\n", describe(s, rate));
     flush_output();
-}
-
-int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, bool as_json,
-             std::vector<stroke_outcome> strokes, const playing& play)
-{
-    session::tell_of_no_device(s, e);
-    const alsa_options device = session::device_options(s, s.stream, e, channels, rate);
-    const std::string server = session::settle_server(device.pcm);
-    session::play_session session(device, s.stream, e);
-    if (!as_json)
-        say(stdout, "{}\n", describe(session.setup()));
-    flush_output();
-    const std::string late = session::latency_warning(s.stream.latency_ms, session.setup());
-    if (!late.empty())
-        say(stderr, "tactor: warning: {}\n", late);
-    session::warn_of_server(server);
-    play_report r;
-    r.strokes = std::move(strokes);
-    const auto broken = play(session, r.strokes);
-    static_cast<session::run_facts&>(r) = session.finish();
-    if (as_json)
-        print_json(stdout, r);
-    else if (s.stream.verbose || !is_clean(r))
-        print_table(stdout, r);
-    return judge_run(r, session.signal(), broken);
 }
 
 int judge_run(const play_report& r, int signal, const std::optional<error>& broken)

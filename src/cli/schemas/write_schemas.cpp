@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/check/check.hpp"
-#include "cli/play/play_report.hpp"
+#include "cli/play/play.hpp"
 #include "cli/settings.hpp"
 #include "files/json/schema.hpp"
 #include "files/plan/plan_json.hpp"

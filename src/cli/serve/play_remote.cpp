@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/play_report.hpp"
+#include "cli/play/play.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,6 @@
 #include <tactor/stroke.hpp>
 
 #include "cli/input.hpp"
-#include "cli/play/live_lines.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/settings.hpp"
@@ -141,25 +140,15 @@ public:
             begin["smooth_s"] = *stream_.smooth_s;
         server_.let_finish(to_finish);
         const net::json n = server_.call("begin", begin)["stroke"];
-        try {
-            while (!ended(n, out)) {
-                wait(lines.over() ? -1 : lines.descriptor());
-                if (signal_ != 0 && !cancelled_) {
-                    cancelled_ = true;
-                    server_.tell("cancel", {{"stroke", n}});
-                }
-                if (!cancelled_)
-                    draw(n, lines);
-                if (lines.over() && !std::exchange(ended_, true) && !cancelled_)
-                    server_.tell("end", {{"stroke", n}});
-            }
-        } catch (const error&) {
-            try {
+        // After a throw the server ends the stroke as it ends those of a client that goes away.
+        for (bool end_sent = false; !ended(n, out);) {
+            wait(lines.descriptor());
+            if (signal_ != 0 && !std::exchange(cancelled_, true))
                 server_.tell("cancel", {{"stroke", n}});
-            } catch (
-                const error&) { // NOLINT(bugprone-empty-catch): the server is gone, which is reported already
-            }
-            throw;
+            if (!cancelled_)
+                draw(n, lines);
+            if (lines.over() && !std::exchange(end_sent, true) && !cancelled_)
+                server_.tell("end", {{"stroke", n}});
         }
         tell(out, report_.device.rate, options_.json());
         judge(out, true);
@@ -321,7 +310,6 @@ private:
     std::optional<error> broken_;
     std::uint64_t xruns_ = 0;
     bool cancelled_ = false;
-    bool ended_ = false;
     bool is_loud_ = false; ///< a point was above intensity 1
     int signal_ = 0;
 };
@@ -334,7 +322,7 @@ int play_remote(const settings& s, const play_options& o)
     const auto pieces = s.stream.live ? decltype(stroke_params(s)){} : stroke_params(s);
     try {
         remote_player player(s, o);
-        live_lines lines(STDIN_FILENO, s.intensity_max.value_or(1.0));
+        live_lines lines(s.intensity_max.value_or(1.0));
         return s.stream.live ? player.live(lines) : player.play(pieces);
     } catch (const interrupted& i) {
         return session::interrupt::status(i.signal);
