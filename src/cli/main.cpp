@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
+// The commands of the tool, how the shells complete them, and how it ends.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <new>
 #include <string>
 #include <string_view>
@@ -17,14 +20,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tactor/array.hpp>
 #include <tactor/error.hpp>
+#include <tactor/stroke.hpp>
 #include <tactor/version.hpp>
 
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "cli/usage.hpp"
+#include "core/split.hpp"
 #include "options/settle.hpp"
 #include "session/pipes.hpp"
+#include "study/experiment/definition.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -110,16 +117,101 @@ void show_options(const CLI::App& app, const command& c, F show)
     }
 }
 
+// Prints a word that fits where it begins as `typed`. Each line for a shell has a word, a tab and a
+// description.
+void offer(const std::string& typed, const std::string& word, const std::string& description)
+{
+    if (word.starts_with(typed))
+        fmt::print("{}{}{}\n", word, description.empty() ? "" : "\t", description);
+}
+
+// Cards by the names that survive a reboot. Nothing is opened: whoever presses Tab does not want that.
+std::vector<std::string> pcm_names()
+{
+    std::vector<std::string> names{"null"};
+    std::ifstream cards("/proc/asound/cards");
+    for (std::string line; std::getline(cards, line);) {
+        const std::size_t open = line.find('[');
+        const std::size_t close = line.find_first_of(" ]", open);
+        if (close != std::string::npos)
+            names.push_back("hw:CARD=" + line.substr(open + 1, close - open - 1));
+    }
+    return names;
+}
+
+// The type of an option, or the name of an argument, says its values: "a|b|c", "a,b,c" for a list, or what
+// they stand for in capitals.
+void offer_values(const std::string& type, const std::string& typed, const std::string& before)
+{
+    const auto offer_all = [&](const auto& values) {
+        for (const std::string_view v : values)
+            if (!v.empty() && v != "..." &&
+                std::none_of(v.begin(), v.end(), [](unsigned char c) { return std::isupper(c) != 0; }))
+                offer(before + typed, before + std::string(v), "");
+    };
+    const auto means = [&](const char* word) { return type.find(word) != std::string::npos; };
+    if (type == "NAME|FILE")
+        offer_all(array_presets());
+    else if (type == "PCM")
+        offer_all(pcm_names());
+    else if (type == "STROKE")
+        offer_all(stroke_presets());
+    else if (type == "EXPERIMENT")
+        offer_all(study::shipped_experiments());
+    else if (!type.starts_with("FILE"))
+        offer_all(detail::split(type, type.find('|') == std::string::npos ? ',' : '|'));
+    if (means("FILE") || means("DIR") || means("PATH") || means("STROKE") || means("EXPERIMENT"))
+        fmt::print(":files\n");
+}
+
+void offer_options(const CLI::App& command, const std::string& typed)
+{
+    for (const CLI::Option* o : command.get_options()) {
+        const std::string help = spelled(o->get_description());
+        for (const std::string& name : o->get_lnames())
+            offer(typed, "--" + name, help);
+        for (const std::string& name : o->get_snames())
+            offer(typed, "-" + name, help);
+    }
+}
+
+// Returns the option with that name where it takes a value, else null.
+const CLI::Option* find_option(const CLI::App& command, const std::string& name)
+{
+    const CLI::Option* o = name.starts_with('-') ? command.get_option_no_throw(name) : nullptr;
+    return o != nullptr && o->get_type_size() != 0 ? o : nullptr;
+}
+
+void complete_command_line(const CLI::App& command, const std::vector<std::string>& words)
+{
+    const std::string& typed = words.back();
+    const std::string head = typed.starts_with("--") ? typed.substr(0, typed.find('=') + 1) : "";
+    if (const CLI::Option* o = words.size() > 1 ? find_option(command, words[words.size() - 2]) : nullptr)
+        offer_values(o->get_type_name(), typed, "");
+    else if (!head.empty()) {
+        if (const CLI::Option* named = find_option(command, head.substr(0, head.size() - 1)))
+            offer_values(named->get_type_name(), typed.substr(head.size()), head);
+    } else if (typed.starts_with('-'))
+        offer_options(command, typed);
+    else
+        for (const CLI::Option* argument :
+             command.get_options([](const CLI::Option* x) { return x->get_positional(); }))
+            offer_values(argument->get_single_name(), typed, "");
+}
+
+// Prints lines for a shell, which calls `tactor __complete WORD...`. `words`: those after "tactor", the last
+// one as far as it has been typed. Where a file or a folder fits, a line is ":files".
 void print_completions(const CLI::App& app, const std::vector<std::string>& words)
 {
-    const auto print = [&](const CLI::App&) {
-        for (const std::string& line : complete(app, words))
-            fmt::print("{}\n", line);
-    };
-    if (const command* named = words.size() > 1 ? find_command(words.front()) : nullptr)
-        show_options(app, *named, print);
-    else
-        print(app);
+    if (words.size() == 1) {
+        for (const command& c : commands)
+            offer(words[0], std::string(c.name), c.summary);
+        if (words[0].starts_with('-'))
+            offer_options(app, words[0]);
+    } else if (const command* c = words.empty() ? nullptr : find_command(words[0]))
+        show_options(app, *c, [&](const CLI::App& options) {
+            complete_command_line(options, {words.begin() + 1, words.end()});
+        });
 }
 
 void print_all_help(const CLI::App& app)
@@ -164,7 +256,7 @@ int run(const std::vector<std::string>& words)
     for (const command& c : commands)
         if (named == nullptr || named == &c || first != named->name)
             app.add_subcommand(std::string(c.name), c.summary);
-    if (first == complete_command)
+    if (first == "__complete")
         print_completions(app, {words.begin() + 1, words.end()});
     else if (first == "--help-all" && words.size() == 1)
         print_all_help(app);

@@ -50,11 +50,6 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
     return all;
 }
 
-progress_line::progress_line(const std::string& name)
-    : name_(shown(name)), terminal_(::isatty(STDERR_FILENO) != 0)
-{
-}
-
 progress_line::~progress_line()
 {
     if (shown_)
@@ -64,12 +59,12 @@ progress_line::~progress_line()
 void progress_line::update(std::uint64_t done, std::uint64_t all)
 {
     const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ || now - last_ < std::chrono::milliseconds(500))
+    if (now - last_ < std::chrono::milliseconds(500) || ::isatty(STDERR_FILENO) == 0)
         return;
     last_ = now;
     shown_ = true;
     const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(all);
-    std::fputs(fmt::format("\r\033[K{}: {:.1f} %", name_, percent).c_str(), stderr);
+    std::fputs(fmt::format("\r\033[K{}: {:.1f} %", shown(name_), percent).c_str(), stderr);
     std::fflush(stderr);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tactor/tactor.hpp>
@@ -38,7 +39,7 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);
 /// leaves nothing behind.
 class progress_line {
 public:
-    explicit progress_line(const std::string& name);
+    explicit progress_line(std::string name) : name_(std::move(name)) {}
     progress_line(const progress_line&) = delete;
     progress_line& operator=(const progress_line&) = delete;
     ~progress_line();
@@ -48,7 +49,6 @@ public:
 
 private:
     std::string name_;
-    bool terminal_;
     bool shown_ = false;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Pages of help, errors of the command line, and a shell's completion, all from the options as declared.
+/// Pages of help, and errors of the command line, from the options as declared.
 #pragma once
 
 #include <map>
@@ -59,12 +59,5 @@ error no_command();
 /// and without quotes. Nothing if there is no such slip. `commands`: names of all commands.
 std::optional<error> find_slip(const std::vector<std::string>& words,
                                const std::vector<std::string>& commands);
-
-/// First argument of the hidden command that the shells' completions call: `tactor __complete WORD...`.
-inline constexpr const char* complete_command = "__complete";
-
-/// Returns lines for a shell. `words`: those after "tactor", the last one as far as it has been typed. Each
-/// line is a word that begins so, a tab and a description, or ":files" where a file or a folder fits.
-std::vector<std::string> complete(const CLI::App& app, const std::vector<std::string>& words);
 
 } // namespace tactor::cli

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/check/check.hpp"
-#include "cli/devices/devices_text.hpp"
+#include "cli/devices.hpp"
 #include "cli/play/play.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 // Output of `devices` for machines with cards and chips.
 #include <doctest/doctest.h>
 
-#include "cli/devices/devices_text.hpp"
+#include "cli/devices.hpp"
 
 namespace devices_text_test {
 

@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/devices/devices_text.hpp"
+#include "cli/devices.hpp"
 #include "core/split.hpp"
 #include "rt/thread.hpp"
 #include "session/own_memory.hpp"

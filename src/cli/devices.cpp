@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
+// The commands devices and off.
+#include "cli/devices.hpp"
+
 #include <algorithm>
+#include <chrono>
+#include <string>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/devices/devices_text.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
@@ -151,6 +156,50 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
     return s;
 }
 
+// Off: where no player and no holder is left to switch the amplifier off.
+
+using namespace std::chrono_literals;
+
+// The holder of a player that was just killed has the line for 0.2 s more, at most a second where it may not
+// run in real time.
+constexpr auto longest_wait = 2s;
+
+gpio_line_place wait_until_free(const gpio_line_name& line)
+{
+    const auto until = std::chrono::steady_clock::now() + longest_wait;
+    gpio_line_place p = find_gpio_line(line);
+    while (!p.line.consumer.empty() && std::chrono::steady_clock::now() < until) {
+        std::this_thread::sleep_for(10ms);
+        p = find_gpio_line(line);
+    }
+    return p;
+}
+
+// The files that could have said it.
+std::string searched(const environment& e)
+{
+    const bool own_file = !e.array_file.empty() && e.array_file != e.config_name;
+    if (e.config_name.empty())
+        return fmt::format("{}, and there is no configuration", own_file ? e.array_file : "the array");
+    return own_file ? fmt::format("{} or {}", e.array_file, e.config_name) : e.config_name;
+}
+
+void switch_off(settings& s)
+{
+    const environment e = session::read_environment(s);
+    if (!e.config.amplifier)
+        throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
+                    "say its line there, see tactor.toml(5), or name the file that does with --array");
+    const amplifier_settings& a = *e.config.amplifier;
+    const gpio_line_place p = wait_until_free(a.line);
+    // Requested as off, so it goes there at once; asked once more for what the driver says.
+    if (!open_output(a.line, a.active_low)->set(false))
+        throw error(error_kind::not_available, "amplifier",
+                    fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),
+                    "cut the amplifier's supply; then see what dmesg says");
+    fmt::print("amplifier: line {} of {} ({}) is off\n", p.line.offset, p.label, p.path);
+}
+
 } // namespace
 
 std::string process_names(const std::vector<process_info>& all)
@@ -182,6 +231,16 @@ int run_devices(command_line& line)
         fmt::print("{}", session::devices_json(d));
     else
         say_text(stdout, devices_text(d));
+    return status_ok;
+}
+
+int run_off(command_line& line)
+{
+    settings& s = add_options(line, options::on_off);
+    line.app.footer("tactor off --config tactor.toml\n"
+                    "tactor off --array palm.toml");
+    line.parse();
+    switch_off(s);
     return status_ok;
 }
 
