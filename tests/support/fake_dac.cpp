@@ -284,4 +284,24 @@ void fake_dac::cry_ready(bool on)
     happened();
 }
 
+std::vector<std::byte> fake_dac::captured(std::uint64_t from) const
+{
+    const std::lock_guard lock(mutex_);
+    const std::uint64_t first = std::min<std::uint64_t>(from * frame_bytes_, captured_.size());
+    return {captured_.begin() + static_cast<std::ptrdiff_t>(first), captured_.end()};
+}
+
+void fake_dac::reserve_capture(std::size_t bytes)
+{
+    const std::lock_guard lock(mutex_);
+    captured_.reserve(bytes);
+    capture_limit_ = bytes;
+}
+
+void fake_dac::stop_capture()
+{
+    const std::lock_guard lock(mutex_);
+    capture_limit_ = captured_.size();
+}
+
 } // namespace tactor::test

@@ -53,20 +53,28 @@ public:
     /// Makes every poll look ready.
     void cry_ready(bool on);
     /// Hides its descriptors in an xrun, like dmix.
-    void hide_descriptors_in_xrun();
+    void hide_descriptors_in_xrun()
+    {
+        const std::lock_guard lock(mutex_);
+        hides_descriptors_ = true;
+    }
     /// Number of polls while it had no descriptors; dmix ends the process then.
-    unsigned asked_in_vain() const;
+    unsigned asked_in_vain() const { return look(asked_in_vain_); }
 
     /// Returns all bytes that were transferred so far, over all epochs, from a frame on.
     std::vector<std::byte> captured(std::uint64_t from = 0) const;
-    std::size_t captured_frames() const;
-    std::size_t frame_bytes() const;
-    std::uint64_t queued() const;
-    unsigned starts() const;
-    unsigned prepares() const;
-    unsigned drops() const;
-    bool closed() const;
-    bool running() const;
+    std::size_t captured_frames() const { return look(total_); }
+    std::size_t frame_bytes() const { return look(frame_bytes_); }
+    std::uint64_t queued() const
+    {
+        const std::lock_guard lock(mutex_);
+        return queued_locked();
+    }
+    unsigned starts() const { return look(starts_); }
+    unsigned prepares() const { return look(prepares_); }
+    unsigned drops() const { return look(drops_); }
+    bool closed() const { return look(closed_); }
+    bool running() const { return look(running_); }
 
     /// Blocks until the condition holds; checks it at each event of the device.
     template <typename Condition>
@@ -92,6 +100,12 @@ private:
     struct callbacks;
     static const snd_pcm_ioplug_callback_t table;
 
+    template <class T>
+    T look(const T& member) const
+    {
+        const std::lock_guard lock(mutex_);
+        return member;
+    }
     void happened();
     void update_readiness();
     std::uint64_t queued_locked() const { return transferred_ - clock_; }

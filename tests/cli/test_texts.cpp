@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Output of `devices` for machines with cards and chips.
+// Texts of the tool, from values: options in errors, devices, and the final message of a run.
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include "cli/devices.hpp"
+#include "cli/play/play.hpp"
+#include "cli/settings.hpp"
 
-namespace devices_text_test {
+namespace texts_test {
 
 using namespace tactor;
 using namespace tactor::cli;
 
 namespace {
+
+std::string spell(const error& e)
+{
+    return in_options(e).what();
+}
+
+std::string spell(const char* hint)
+{
+    return spell(error(error_kind::bad_input, "soa_s", "no", hint).with_field("soa_s"));
+}
 
 gpio_chip_info header_chip()
 {
@@ -51,7 +67,55 @@ session::device_list studio()
     return d;
 }
 
+constexpr const char* tired = "it is tired";
+
+stroke_outcome ended(const char* name, state_kind how)
+{
+    stroke_report r{.state = how, .frames = 24000};
+    if (how != state_kind::finished)
+        r.why = tired;
+    return {name, 48000, r};
+}
+
+play_report run(std::vector<stroke_outcome> strokes)
+{
+    play_report r;
+    r.device.rate = 48000;
+    r.strokes = std::move(strokes);
+    return r;
+}
+
+std::string said(std::vector<stroke_outcome> strokes)
+{
+    const auto e = unfinished(run(std::move(strokes)));
+    REQUIRE(e);
+    CHECK(e->kind() == error_kind::runtime);
+    return e->what();
+}
+
 } // namespace
+
+TEST_CASE("fields and marks of the library become options and commands of the tool")
+{
+    CHECK(spell("lower {level_dbfs}, or gain_db") == "--soa: no (lower --level-dbfs, or gain_db)");
+    CHECK(spell("{timing=fit}; {drop_points=true} leaves places out") ==
+          "--soa: no (--timing fit; --drop-points leaves places out)");
+    CHECK(spell("{fit=true| scales it, }or {outside=clamp}") ==
+          "--soa: no (--fit scales it, or --outside clamp)");
+    CHECK(spell("{device=hw:CARD=A}; {command:devices} lists all") ==
+          "--soa: no (-D hw:CARD=A; tactor devices lists all)");
+    CHECK(spell("{command:plan} makes one") == "--soa: no (tactor plan STROKE --format json makes one)");
+    CHECK(spell("{force=true}; {wider=true} leaves the others silent") ==
+          "--soa: no (--force; without a number of channels it leaves the others silent)");
+    CHECK(spell("{array=none}: it has its own") == "--soa: no (say no --array: it has its own)");
+}
+
+TEST_CASE("keys of a stroke file stay as they are there")
+{
+    CHECK(spell(error(error_kind::bad_input, source_place{"s.toml", 3, 1}, "no",
+                      "{faces=delaunay}, {outside=clamp}")) ==
+          "s.toml:3:1: no (faces = delaunay, --outside clamp)");
+}
 
 TEST_CASE("cards, other PCMs and chips have this form")
 {
@@ -110,4 +174,28 @@ TEST_CASE("JSON has the numbers, and names that are not UTF-8 do not break it")
         CHECK_MESSAGE(json.find(part) != std::string::npos, part);
 }
 
-} // namespace devices_text_test
+TEST_CASE("a run whose strokes all finished has no message")
+{
+    CHECK_FALSE(unfinished(run({ended("a", state_kind::finished), ended("b", state_kind::finished)})));
+}
+
+TEST_CASE("one stroke that did not finish is an error, wherever it is")
+{
+    const stroke_outcome whole = ended("a", state_kind::finished);
+    const stroke_outcome cut = ended("b", state_kind::interrupted);
+    CHECK(said({cut}) == "b: interrupted after 0.500 s: it is tired");
+    CHECK(said({cut, whole}) == said({cut}));
+    CHECK(said({whole, cut}) == said({cut}));
+    CHECK(said({ended("b", state_kind::cancelled), whole}) == "b: cancelled after 0.500 s: it is tired");
+}
+
+TEST_CASE("of several unfinished strokes the last is named, with their number")
+{
+    CHECK(said({ended("a", state_kind::interrupted), ended("b", state_kind::finished),
+                ended("c", state_kind::interrupted)}) ==
+          "c: interrupted after 0.500 s: it is tired; 2 of 3 strokes did not finish");
+    CHECK(said({ended("a", state_kind::interrupted), {"b"}}) ==
+          "b: not played; 2 of 2 strokes did not finish");
+}
+
+} // namespace texts_test
