@@ -210,22 +210,6 @@ struct plot_settings {
     bool animated = false;
 };
 
-constexpr std::array views{figure_view::array, figure_view::timing, figure_view::wave, figure_view::both};
-
-void add_plot_options(CLI::App& c, plot_settings& p)
-{
-    c.add_option("-o,--output", p.picture.file, "picture to write")
-        ->type_name("FILE.svg|.png|.pdf")
-        ->required();
-    add_text(c, "--view", "array|timing|wave|both",
-             "show the array, the bursts over time, the samples, or the first two (default both)",
-             [&p](const std::string& t) {
-                 p.view = views[choose("--view", t, {"array", "timing", "wave", "both"})];
-             });
-    c.add_flag("--animate", p.animated, "SVG: light up the tactors that play, again and again, in real time");
-    add_picture_options(c, p.picture, "85, one print column");
-}
-
 int draw(settings& s, const plot_settings& p)
 {
     const picture_options& o = p.picture;
@@ -289,7 +273,17 @@ int run_plot(command_line& line)
     plot_settings p;
     add_strokes(line);
     settings& s = add_options(line, options::on_plot);
-    add_plot_options(line.app, p);
+    line.app.add_option("-o,--output", p.picture.file, "picture to write")
+        ->type_name("FILE.svg|.png|.pdf")
+        ->required();
+    add_text(line.app, "--view", "array|timing|wave|both",
+             "show the array, the bursts over time, the samples, or the first two (default both)",
+             [&p](const std::string& t) {
+                 p.view = figure_view(choose("--view", t, {"array", "timing", "wave", "both"}));
+             });
+    line.app.add_flag("--animate", p.animated,
+                      "SVG: light up the tactors that play, again and again, in real time");
+    add_picture_options(line.app, p.picture, "85, one print column");
     line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
                     "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
                     "tactor plot park2016-1 --view wave --width 170 -o wave.png");

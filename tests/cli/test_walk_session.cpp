@@ -82,9 +82,9 @@ walk_result stumble(bool ask)
         p.player.realtime = false;
     };
     const running_clock clock(dac, running_clock::capture_kind::kept, stumble_once(dac));
-    walk_options o;
-    o.ask = ask;
-    return walk(device, e, r, o, source);
+    check_options o;
+    o.no_questions = !ask;
+    return walk(device, {}, e, r, o, source);
 }
 
 } // namespace

@@ -4,7 +4,6 @@
 /// plain value, so that tests can check others.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -80,17 +79,6 @@ using line_finder = gpio_line_place (*)(const gpio_line_name&);
 /// and drives none. `find`: find_gpio_line() but in tests.
 std::vector<finding> check_lines(const setup& config, bool felt, line_finder find = find_gpio_line);
 
-/// Returns the numbers of the tactors for which `take` holds.
-template <class F>
-std::vector<std::size_t> tactors_where(const array& a, F&& take)
-{
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (take(a.tactors[i]))
-            all.push_back(i);
-    return all;
-}
-
 /// Checks places, channels, levels, actuators, bursts and limits. Looks at values only.
 std::vector<finding> check_array(const settings& s, const environment& e);
 
@@ -137,18 +125,19 @@ struct system_needs {
     bool ignored = false;                   ///< udev keeps desktop sound servers off that card
     bool gpio = false;                      ///< [amplifier] or [sync] names a line
     bool amplifier = false;
-    int priority = player_options{}.priority;
     bool require_realtime = false;
 };
 
 /// Checks rights, sound servers and lines.
 std::vector<finding> check_system(const system_facts& f, const system_needs& n);
 
-struct walk_options {
-    session::stream_options stream;
-    bool json = false; ///< questions go to standard error
-    double carrier_hz = 250.0;
-    bool ask = true; ///< false: each is only named
+struct check_options {
+    std::string format = "text";
+    bool walk = false;
+    bool no_questions = false; ///< a walk only names each tactor
+    std::string output = {};   ///< empty: none
+
+    bool json() const { return format == "json"; }
 };
 
 struct walk_result {
@@ -160,7 +149,8 @@ struct walk_result {
 /// standard error if that is JSON.
 /// \throws error: errors of play; runtime when the walk is left before its end, or a tactor was interrupted
 ///         and not driven again.
-walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, const session::stream_source& source = {});
+walk_result walk(const alsa_options& device, const settings& s, const environment& e,
+                 const render_options& render, const check_options& o,
+                 const session::stream_source& source = {});
 
 } // namespace tactor::cli

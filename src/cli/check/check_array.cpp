@@ -115,6 +115,17 @@ spread peaks(const render_options& r, const array& a)
     return s;
 }
 
+// Returns the numbers of the tactors for which `take` holds.
+template <class F>
+std::vector<std::size_t> tactors_where(const array& a, F&& take)
+{
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (take(a.tactors[i]))
+            all.push_back(i);
+    return all;
+}
+
 finding check_levels(const render_options& r, const array& a, const plan_options& p)
 {
     try {

@@ -154,16 +154,19 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
                             f.root ? "; you are root" : ", group " + nodes.front().group));
 }
 
+const int asked_priority = player_options{}.priority;
+
 finding check_priority(const system_facts& f, const system_needs& n)
 {
-    if (f.rights.priority >= n.priority)
+    if (f.rights.priority >= asked_priority)
         return fine("real time",
-                    fmt::format("SCHED_FIFO up to {}, {} is asked for", f.rights.priority, n.priority));
+                    fmt::format("SCHED_FIFO up to {}, {} is asked for", f.rights.priority, asked_priority));
     const std::string found =
         f.rights.priority == 0
             ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
-            : fmt::format("SCHED_FIFO up to {} only, {} is asked for", f.rights.priority, n.priority);
-    return insist(warning("real time", found, rt::realtime_advice(f.rights, n.priority)), n.require_realtime);
+            : fmt::format("SCHED_FIFO up to {} only, {} is asked for", f.rights.priority, asked_priority);
+    return insist(warning("real time", found, rt::realtime_advice(f.rights, asked_priority)),
+                  n.require_realtime);
 }
 
 finding check_memory(const system_facts& f, const system_needs& n)
@@ -179,7 +182,7 @@ finding check_memory(const system_facts& f, const system_needs& n)
         warning("memory",
                 fmt::format("{} MiB may be locked (RLIMIT_MEMLOCK), {} MiB must be, a reserve included", most,
                             wanted),
-                rt::realtime_advice(f.rights, n.priority)),
+                rt::realtime_advice(f.rights, asked_priority)),
         n.require_realtime);
 }
 

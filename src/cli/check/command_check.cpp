@@ -168,15 +168,6 @@ finding check_device(const alsa_options& device, const session::stream_options& 
     }
 }
 
-struct check_options {
-    std::string format = "text";
-    bool walk = false;
-    bool no_questions = false;
-    std::string output; // empty: none
-
-    bool json() const { return format == "json"; }
-};
-
 // Adds the checks that need no array, so that they run even if a file cannot be read.
 void check_machine(const setup& config, const alsa_options& device, const session::stream_options& o,
                    std::vector<finding>& all)
@@ -263,8 +254,7 @@ void conclude(const check_options& o, const environment& e, const session::walk_
 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
 {
-    const walk_options how{s.stream, o.json(), s.plan.carrier_hz, !o.no_questions};
-    const walk_result w = walk(device_for(s, e), e, session::settle_render(s, e), how);
+    const walk_result w = walk(device_for(s, e), s, e, session::settle_render(s, e), o);
     if (w.signal != 0)
         return session::interrupt::status(w.signal);
     if (o.no_questions) {

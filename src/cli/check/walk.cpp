@@ -69,8 +69,15 @@ piece walk_one(const array& a, unsigned tactor, double carrier_hz)
 
 class walker {
 public:
-    walker(session::play_session& s, const environment& e, const render_options& r, const walk_options& o)
-        : session_(s), environment_(e), render_(r), options_(o), input_(s), to_(o.json ? stderr : stdout)
+    walker(session::play_session& session, const settings& s, const environment& e, const render_options& r,
+           const check_options& o)
+        : session_(session),
+          settings_(s),
+          environment_(e),
+          render_(r),
+          options_(o),
+          input_(session),
+          to_(o.json() ? stderr : stdout)
     {
     }
 
@@ -84,7 +91,7 @@ public:
         while (felt.size() < n) {
             const auto i = static_cast<unsigned>(felt.size());
             sound(i);
-            if (!options_.ask) {
+            if (options_.no_questions) {
                 say(describe_tactor(i) + "\n");
                 felt.emplace_back();
             } else if (const auto got = ask(i)) {
@@ -118,12 +125,12 @@ private:
 
     void sound(unsigned i)
     {
-        const piece p = walk_one(environment_.tactors, i, options_.carrier_hz);
+        const piece p = walk_one(environment_.tactors, i, settings_.plan.carrier_hz);
         const score samples = make_score(p, environment_, render_);
         const auto ended = session_.submit(samples);
         const stroke_report r = ended ? *ended
                                       : follow_drawn(session_, environment_.tactors, p, samples,
-                                                     !options_.json && !options_.stream.verbose);
+                                                     !options_.json() && !settings_.stream.verbose);
         session_.log_end(p.name, r);
         if (session_.signal() != 0)
             throw walk_interrupted{};
@@ -170,9 +177,10 @@ private:
     }
 
     session::play_session& session_;
+    const settings& settings_;
     const environment& environment_;
     const render_options& render_;
-    const walk_options& options_;
+    const check_options& options_;
     line_reader input_;
     std::FILE* to_;
     std::vector<std::string> unfinished_; // reason for each tactor; empty: it vibrated to the end
@@ -180,15 +188,15 @@ private:
 
 } // namespace
 
-walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, const session::stream_source& source)
+walk_result walk(const alsa_options& device, const settings& s, const environment& e,
+                 const render_options& render, const check_options& o, const session::stream_source& source)
 {
-    if (o.ask)
+    if (!o.no_questions)
         session::check_standard_input();
-    session::play_session session(device, o.stream, e, source);
+    session::play_session session(device, s.stream, e, source);
     walk_result result;
     try {
-        result.felt = walker(session, e, render, o).all();
+        result.felt = walker(session, s, e, render, o).all();
     } catch (const walk_interrupted&) {
         result.signal = session.signal();
     } catch (const error&) {

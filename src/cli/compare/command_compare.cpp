@@ -61,30 +61,6 @@ struct compare_options {
     picture_options picture;
 };
 
-void add_lists(CLI::App& c, compare_options& o)
-{
-    auto* algorithms = add_text(
-        c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
-        [&o](const std::string& t) { o.choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
-    auto* phantoms = add_text(
-        c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
-        [&o](const std::string& t) { o.choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
-    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
-    c.get_option("--phantom")->excludes(phantoms);
-    add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
-}
-
-void add_output_options(CLI::App& c, compare_options& o)
-{
-    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw target and prediction on the array, and speed over time", [&o](const std::string& t) {
-                 plot::find_format(t);
-                 o.picture.file = t;
-                 o.choice.keep_samples = true;
-             });
-    add_picture_options(c, o.picture, "85, one print column");
-}
-
 // Returns the last reason why no algorithm can play the strokes, and prints the others, each once.
 error why_refused(const std::vector<comparison>& all, const piece& p)
 {
@@ -297,8 +273,22 @@ int run_compare(command_line& line)
     c.get_option("STROKE")->description(
         "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
         "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");
-    add_lists(c, o);
-    add_output_options(c, o);
+    auto* algorithms = add_text(
+        c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
+        [&o](const std::string& t) { o.choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
+    auto* phantoms = add_text(
+        c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
+        [&o](const std::string& t) { o.choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
+    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
+    c.get_option("--phantom")->excludes(phantoms);
+    add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
+    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
+             "also draw target and prediction on the array, and speed over time", [&o](const std::string& t) {
+                 plot::find_format(t);
+                 o.picture.file = t;
+                 o.choice.keep_samples = true;
+             });
+    add_picture_options(c, o.picture, "85, one print column");
     c.footer("tactor compare park2016-3\n"
              "tactor compare park2016-3 --phantoms inverse-distance,barycentric\n"
              "tactor compare --shape line --observer low-speed -o line.svg");

@@ -126,6 +126,8 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
                               const std::vector<piece>& pieces, const std::vector<score>& scores,
                               std::vector<stroke_outcome>& outcomes)
 {
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        outcomes.push_back({pieces[i].name, scores[i].frames()});
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const bool there = play_piece(session, as_json, a, pieces[i], scores[i], outcomes[i]);
         if (!there && session.signal() == 0)
@@ -141,12 +143,12 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
     return {};
 }
 
-// Opens the device for so many channels at that rate, Hz, calls play(session, outcomes), ends, and prints the
-// report. Returns the exit status. play() returns the error that broke the run off, if any. \throws error:
-// first of all if the amplifier may be on.
+// Opens the device for so many channels at that rate, Hz, calls play(session, report.strokes), ends, and
+// prints the report. Returns the exit status. play() returns the error that broke the run off, if any.
+// \throws error: first of all if the amplifier may be on.
 template <class F>
 int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, const play_options& o,
-             std::vector<stroke_outcome> strokes, F play)
+             F play)
 {
     session::tell_of_no_device(s, e);
     const alsa_options device = session::device_options(s, s.stream, e, channels, rate);
@@ -160,7 +162,6 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
         say(stderr, "tactor: warning: {}\n", late);
     session::warn_of_server(server);
     play_report r;
-    r.strokes = std::move(strokes);
     const auto broken = play(session, r.strokes);
     static_cast<session::run_facts&>(r) = session.finish();
     if (o.json())
@@ -219,10 +220,11 @@ int play_live(settings& s, const play_options& o)
     l.timeout_s = live_timeout_s;
     l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
     return hold_run(
-        s, e, l.render.channels, l.render.rate, o, {{"live"}},
+        s, e, l.render.channels, l.render.rate, o,
         [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) -> std::optional<error> {
             live_lines lines(s.intensity_max.value_or(1.0));
-            stroke_outcome& out = outcomes.front();
+            outcomes.push_back({"live"});
+            stroke_outcome& out = outcomes.back();
             out.report = follow_lines(session, l, lines);
             out.length_frames = out.report->frames;
             session.log_end(out.name, *out.report);
@@ -248,10 +250,7 @@ int play(settings& s, const play_options& o)
     for (const std::string& argument : stroke_arguments(s))
         pieces.push_back(open_piece(s, e, faces, argument));
     const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
-    std::vector<stroke_outcome> strokes;
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-        strokes.push_back({pieces[i].name, scores[i].frames()});
-    return hold_run(s, e, scores.front().channels(), scores.front().rate(), o, std::move(strokes),
+    return hold_run(s, e, scores.front().channels(), scores.front().rate(), o,
                     [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
                         return play_all(session, o.json(), e.tactors, pieces, scores, outcomes);
                     });

@@ -300,8 +300,12 @@ int serve(settings& s, const serve_options& o)
     return status_ok;
 }
 
-void add_serve_options(CLI::App& c, serve_options& o)
+} // namespace
+
+int run_serve(command_line& line)
 {
+    serve_options o;
+    CLI::App& c = line.app;
     c.add_option("--socket", o.socket,
                  "Unix socket (default: tactor.sock in RUNTIME_DIRECTORY, else in XDG_RUNTIME_DIR)")
         ->type_name("PATH");
@@ -314,20 +318,12 @@ void add_serve_options(CLI::App& c, serve_options& o)
              [&o](const std::string& t) {
                  o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
              });
-}
-
-} // namespace
-
-int run_serve(command_line& line)
-{
-    serve_options o;
-    add_serve_options(line.app, o);
     settings& s = add_options(line, options::on_serve);
-    add_format_option(line.app, o.format, {"text", "json"},
+    add_format_option(c, o.format, {"text", "json"},
                       "format of the lines that say where it listens (default text)");
-    line.app.footer("tactor serve --http 4003 -D null\n"
-                    "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
-                    "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
+    c.footer("tactor serve --http 4003 -D null\n"
+             "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
+             "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
     line.parse();
     return serve(s, o);
 }
