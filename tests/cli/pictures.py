@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Readers of the tool's pictures: SVG by its groups and their scales, PNG pixel by pixel."""
-import math
 import struct
 import xml.etree.ElementTree as ET
 import zlib
@@ -62,10 +61,6 @@ def overlap(a, b):
     return min(a[2], b[2]) - max(a[0], b[0]) > 0.01 and min(a[3], b[3]) - max(a[1], b[1]) > 0.01
 
 
-def distance(b, x, y):
-    return math.hypot(max(b[0] - x, x - b[2], 0), max(b[1] - y, y - b[3], 0))
-
-
 class Png:
     """A decoded PNG with 8-bit RGB."""
 
@@ -104,9 +99,6 @@ class Png:
 
     def pixel(self, x, y):
         return tuple(self.rows[y][3 * x:3 * x + 3])
-
-    def grey(self):
-        return [(r[i] * 2 + r[i + 1] * 7 + r[i + 2]) / 10 for r in self.rows for i in range(0, len(r), 3)]
 
 
 class PlotTest(ToolTest):

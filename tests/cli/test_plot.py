@@ -45,14 +45,6 @@ class Array(PlotTest):
                     self.near(got, want)
                 self.near(float(line.get("data-amplitude")), drive["amplitude"], 1e-5)
 
-    def test_bursts_are_where_the_plan_puts_them_joined_by_lines_as_wide_as_amplitudes(self):
-        for options in ([], ["--phantom", "gaussian"], BRUSH):
-            plan, svg = self.plan("park2016-3", *options), self.svg("park2016-3", *options, "--view", "array")
-            self.check_bursts(svg, plan, list(enumerate(plan["bursts"])))
-            if not options:
-                ratios = [number(l, "stroke-width") / float(l.get("data-amplitude")) for l in svg.all("join")]
-                self.assertLess(max(ratios) / min(ratios), 1.01)
-
     def test_tactors_and_the_scale_bar_are_to_scale(self):
         for name in ("palm-3x3", *(ROOT / "examples/arrays").glob("*.toml")):
             options = ["--path", "M 5 0 L 15 0", "--array", name, "--outside", "clamp"]
@@ -72,24 +64,6 @@ class Array(PlotTest):
             bar, mm = svg.all("bar", "scale-bar")[0], float(svg.id("scale-bar").get("data-mm"))
             self.near(number(bar, "x2") - number(bar, "x1"), mm * float(svg.id("array").get("data-mm-scale")))
             self.assertIn(f"{mm:g} mm", svg.texts())
-
-    def test_the_path_its_ends_and_its_direction_are_marked(self):
-        svg = self.svg("park2016-4")
-        start, end, (cx, cy) = svg.all("start")[0], svg.all("end")[0], svg.place(20, 20)
-        for got, want in zip((number(start, "cx"), number(start, "cy")), svg.place(36, 20)):
-            self.near(got, want)
-        for got, want in zip((number(end, "x") + number(end, "width") / 2, number(end, "y") + number(end, "height") / 2), svg.place(20, 36)):
-            self.near(got, want)
-        self.assertTrue({"start", "end"} <= set(svg.texts()))
-        self.assertGreaterEqual(len(svg.all("direction")), 2)
-        for a in svg.all("direction"):  # the stroke runs against the clock: tips lie that way
-            tip, left, right = [tuple(map(float, p.split(","))) for p in a.get("points").split()]
-            back = ((left[0] + right[0]) / 2, (left[1] + right[1]) / 2)
-            self.assertLess((back[0] - cx) * (tip[1] - cy) - (back[1] - cy) * (tip[0] - cx), 0)
-        points = [tuple(map(float, p.split(","))) for p in svg.all("path")[0].get("points").split()]
-        self.assertGreater(len(points), 20)
-        for point in points:
-            self.near(math.dist(point, (cx, cy)), 16 * float(svg.id("array").get("data-mm-scale")), 0.06)
 
     def test_several_strokes_share_one_time_and_one_array(self):
         plans, svg = self.plan(SEVERAL)["plans"], self.svg(SEVERAL)
@@ -124,29 +98,6 @@ class Array(PlotTest):
 
 
 class Timing(PlotTest):
-    def check_bars(self, *options):
-        plan, svg = self.plan(*options), self.svg(*options, "--view", "timing")
-        g = svg.id("timing")
-        top, row, full = (float(g.get(k)) for k in ("data-top", "data-row-height", "data-bar-height"))
-        playing = sorted({d["tactor"] for b in plan["bursts"] for d in b["drives"]})
-        channels = {t["tactor"]: t["channel"] for t in plan["array"]["tactors"]}
-        same = all(t == c for t, c in channels.items())
-        self.assertEqual([t.text for t in svg.all("row-label")], [f"{t}" if same else f"{t} ({channels[t]})" for t in playing])
-        bars = {(int(b.get("data-burst")), int(b.get("data-tactor"))): b for b in svg.all("bar", "sound")}
-        wanted = {(i, d["tactor"]): (b, d) for i, b in enumerate(plan["bursts"]) for d in b["drives"]}
-        self.assertEqual(sorted(bars), sorted(wanted))
-        for key, bar in bars.items():
-            b, d = wanted[key]
-            self.near(number(bar, "x"), svg.time(b["onset_s"]))
-            self.near(number(bar, "x") + number(bar, "width"), svg.time(b["onset_s"] + b["duration_s"]))
-            self.near(number(bar, "height"), full * d["amplitude"])
-            self.near(number(bar, "y") + number(bar, "height"), top + row * (playing.index(d["tactor"]) + 1))
-        return plan, svg
-
-    def test_each_tactor_of_each_burst_has_a_bar(self):
-        self.check_bars("park2016-3")
-        self.check_bars("park2016-3", "--duration", "0.3", "--array", ROOT / "examples/arrays/palm-measured.toml")
-
     def test_no_line_strikes_through_a_number(self):
         for speed in ("60", "400"):
             svg = self.svg("park2016-1", "--speed", speed)
@@ -162,56 +113,18 @@ class Timing(PlotTest):
             svg = self.svg("s.toml", "--view", view)
             self.assertTrue(view != "both" or svg.all("bar", "sound") == [])
 
-    def test_continuous_is_drawn_as_curves_and_so_are_bars_that_are_too_dense(self):
-        options = ["park2016-3", "--algorithm", "continuous", "--phantom", "barycentric"]
-        svg, points = self.svg(*options), self.plan(*options)["continuous"]["points"]
-        g = svg.id("timing")
-        top, row, full, scale = (float(g.get(k)) for k in ("data-top", "data-row-height", "data-bar-height", "data-x-scale"))
-        playing = sorted({d["tactor"] for p in points for d in p["drives"]})
-        self.assertGreater(len(svg.all("envelope")), 4)
-        for curve in svg.all("envelope"):
-            r = int(curve.get("data-row"))
-            for x, y in [tuple(map(float, p.split(","))) for p in curve.get("points").split()][2:-2]:
-                at = min(max(round((x - svg.time(0)) / scale / 0.001), 0), len(points) - 1)
-                near = [d["amplitude"] for p in points[max(at - 5, 0):at + 6] for d in p["drives"] if d["tactor"] == playing[r]]
-                self.assertTrue(not near or min(near) - 0.02 < (top + row * (r + 1) - y) / full < max(near) + 0.02)
-        self.assertGreater(len(svg.all("burst")), 10)
+    def test_bars_that_are_too_dense_are_drawn_as_curves(self):
         dense = self.svg("park2016-1", "--duration", "120")
         self.assertEqual(dense.id("timing").get("data-drawn"), "columns")
-        for each in (svg, dense):
-            self.assertEqual(each.all("bar", "sound"), [])
+        self.assertEqual(dense.all("bar", "sound"), [])
         self.assertGreater(len(dense.all("envelope")), 4)
 
-    def test_the_wave_is_as_high_as_the_samples_and_a_short_stroke_shows_its_carrier(self):
-        svg = self.svg("park2016-3", "--view", "wave", "--level-dbfs", "-6")
-        loudest = {}
-        for b in self.plan("park2016-3")["bursts"]:
-            for d in b["drives"]:
-                loudest[d["tactor"]] = max(loudest.get(d["tactor"], 0.0), d["amplitude"])
-        self.assertEqual([e.text for e in svg.all("peak")], [f"{-6 + 20 * math.log10(loudest[t]):.1f}" for t in sorted(loudest)])
-        heights = []
-        for g in svg.all("channel"):
-            ys = [float(p.split(",")[1]) for e in g if e.get("class") == "envelope" for p in e.get("points").split()]
-            heights.append(max(ys) - min(ys))
-        for h, t in zip(heights, sorted(loudest), strict=True):
-            self.near(h / max(heights), loudest[t] / max(loudest.values()), 0.01)
+    def test_a_short_wave_shows_its_carrier(self):
         svg = self.svg("park2016-3", "--duration", "0.14", "--view", "wave")
         ys = [float(p.split(",")[1]) for p in svg.all("envelope")[0].get("points").split()]
         self.assertGreater(sum((b - a) * (c - b) < 0 for a, b, c in zip(ys, ys[1:], ys[2:])), 20)
 
-    def test_tactors_light_up_while_they_play_and_the_target_moves(self):
-        svg, plan = self.svg("park2016-1", "--animate"), self.plan("park2016-1")
-        want = [(d["tactor"], b["onset_s"], b["onset_s"] + b["duration_s"]) for b in plan["bursts"] for d in b["drives"]]
-        loop_s = max(to for _, _, to in want) + 0.8
-        for disc, (tactor, start, stop) in zip(svg.all("plays"), want, strict=True):
-            change = next(a for a in disc.iter(NS + "animate") if a.get("attributeName") == "opacity")
-            self.assertEqual((disc.get("opacity"), change.get("calcMode"), change.get("repeatCount")), ("0", "discrete", "indefinite"))
-            times, shown = ([float(v) for v in change.get(name).split(";")] for name in ("keyTimes", "values"))
-            self.assertEqual((times[0], shown), (0.0, [1.0, 0.0] if len(times) == 2 else [0.0, 1.0, 0.0]))
-            for got, wanted in zip((float(change.get("dur").removesuffix("s")), times[-2] * loop_s, times[-1] * loop_s), (loop_s, start, stop)):
-                self.near(got, wanted, 1e-4)
-            place = plan["array"]["tactors"][tactor]
-            self.assertLess(math.dist((number(disc, "cx"), number(disc, "cy")), svg.place(place["x_mm"], place["y_mm"])), 0.02)
+    def test_a_continuous_stroke_moves_its_target(self):
         svg = self.svg("wave-2x4", "--array", "palm-2x4", "--animate", "--algorithm", "continuous")
         self.assertEqual((len(svg.all("target")), len(svg.all("now"))), (1, 1))
         move = next(a for a in svg.all("target")[0].iter(NS + "animate") if a.get("attributeName") == "cx")
