@@ -18,7 +18,7 @@ namespace {
 void add_one(CLI::App& command, settings& into, const options::option& o)
 {
     const std::string name =
-        fmt::format("{}{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), option_name(o));
+        fmt::format("{}--{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), options::dashed(o));
     const std::string help(o.help); // in marks: only the help spells them
     CLI::Option* added = nullptr;
     if (o.what == options::kind::flag)
@@ -65,8 +65,9 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
                        const std::string& help)
 {
     into = names.front();
-    add_text(command, "--format", fmt::format("{}", fmt::join(names, "|")), help,
-             [&into, names](const std::string& t) { into = names[choose("--format", t, names)]; });
+    command.add_option("--format", into, help)
+        ->type_name(fmt::format("{}", fmt::join(names, "|")))
+        ->check(CLI::IsMember(names).description(""));
 }
 
 CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,

@@ -252,6 +252,15 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
             fmt::format("say {} {}; {}", name, o->get_type_name(), help_command(app, command))};
 }
 
+// A value that is none of those that the option lists.
+error unlisted(const CLI::App& command, const std::string& said)
+{
+    const std::string name = said.substr(0, said.find(':'));
+    const CLI::Option& o = *command.get_option(name);
+    return {error_kind::bad_input, name, fmt::format("\"{}\" is not known", o.results().front()),
+            fmt::format("one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
+}
+
 // An option without another one that it needs, or beside one that it excludes: both are in what the parser
 // says.
 error unpaired(const CLI::App& app, const CLI::App& command, const std::string& said)
@@ -296,6 +305,8 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
         return missing(app, command);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
         return miscounted(app, command, e.what());
+    if (dynamic_cast<const CLI::ValidationError*>(&e) != nullptr)
+        return unlisted(command, e.what());
     if (dynamic_cast<const CLI::RequiresError*>(&e) != nullptr ||
         dynamic_cast<const CLI::ExcludesError*>(&e) != nullptr)
         return unpaired(app, command, e.what());
