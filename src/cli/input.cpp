@@ -95,10 +95,10 @@ std::vector<std::string> stroke_arguments(const settings& s)
 {
     const std::string option = s.path_data ? "--path" : s.shape ? "--shape " + *s.shape : "";
     if (s.path_data && s.shape)
-        throw error(error_kind::bad_input, option, "there is also --shape " + *s.shape, "give one of them");
+        refuse_option(option, "there is also --shape " + *s.shape, "give one of them");
     if (!option.empty() && !s.strokes.empty())
-        throw error(error_kind::bad_input, option,
-                    fmt::format("there is also the stroke \"{}\"", s.strokes[0]), "give one of them");
+        refuse_option(option, fmt::format("there is also the stroke \"{}\"", s.strokes[0]),
+                      "give one of them");
     if (!option.empty())
         return {option};
     if (s.strokes.empty())

@@ -154,9 +154,8 @@ fs::path checked_output(const std::string& name)
     fs::path file = name == "-" ? standard_output : name;
     if (file == standard_output) {
         if (isatty(STDOUT_FILENO) != 0)
-            throw error(error_kind::bad_input, "-o",
-                        "standard output is a terminal, which samples would garble",
-                        "name a file, or pipe it into another program");
+            refuse_option("-o", "standard output is a terminal, which samples would garble",
+                          "name a file, or pipe it into another program");
         return file;
     }
     std::error_code none;

@@ -272,14 +272,12 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
 void check_usage(const settings& s, const check_options& o)
 {
     if (!o.walk && (o.no_questions || !o.output.empty()))
-        throw error(error_kind::bad_input, o.no_questions ? "--auto" : "--output", "only a walk has it",
-                    "add --walk");
+        refuse_option(o.no_questions ? "--auto" : "--output", "only a walk has it", "add --walk");
     if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
-        throw error(error_kind::bad_input, s.stream.verbose ? "--verbose" : "--log",
-                    "without a walk nothing is played", "add --walk");
+        refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing is played",
+                      "add --walk");
     if (o.no_questions && !o.output.empty())
-        throw error(error_kind::bad_input, "--output", "without answers there is no map",
-                    "leave out --auto or --output");
+        refuse_option("--output", "without answers there is no map", "leave out --auto or --output");
     if (!o.output.empty())
         study::check_new_output(o.output);
 }

@@ -44,11 +44,10 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
     for (const std::string_view name : detail::split(text, ',')) {
         const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
         if (v == known.end())
-            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", name),
-                        "one or more of " + join_names<Enum>());
+            refuse_option(option, fmt::format("\"{}\" is not known", name),
+                          "one or more of " + join_names<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())
-            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is there twice", name),
-                        "name each once");
+            refuse_option(option, fmt::format("\"{}\" is there twice", name), "name each once");
         list.push_back(*v);
     }
     return list;
@@ -235,8 +234,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     const layout faces(e.tactors);
     const piece p = read_piece(s, e, faces, stroke_arguments(s).front());
     if (!asked.picture.file.empty() && p.strokes.size() > 1)
-        throw error(error_kind::bad_input, "-o", fmt::format("there are {} strokes", p.strokes.size()),
-                    "a picture shows one");
+        refuse_option("-o", fmt::format("there are {} strokes", p.strokes.size()), "a picture shows one");
     if (!asked.picture.file.empty())
         plot::check_output(asked.picture.file, asked.picture.force);
     const std::vector<comparison> all = compare_all(p, e, faces, s.plan, std::move(choice));

@@ -193,15 +193,14 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
-        throw error(error_kind::bad_input, "--live", "it takes its points from standard input",
-                    "give - as the only STROKE: tactor play --live -");
+        refuse_option("--live", "it takes its points from standard input",
+                      "give - as the only STROKE: tactor play --live -");
     for (const options::option& o : options::all())
         if ((o.where & options::planning) != 0 && (o.where & options::live) == 0 && s.gives(o))
-            throw error(error_kind::bad_input, option_name(o), "a live stroke does not know it",
-                        "its points say when it is where");
+            refuse_option(option_name(o), "a live stroke does not know it",
+                          "its points say when it is where");
     if (s.stream.arm)
-        throw error(error_kind::bad_input, "--arm", "a live stroke starts with its first point",
-                    "leave it out");
+        refuse_option("--arm", "a live stroke starts with its first point", "leave it out");
 }
 
 // Plays until standard input ends.
@@ -238,8 +237,8 @@ int play(settings& s, const play_options& o)
     if (s.stream.live)
         check_live(s);
     else if (s.stream.smooth_s)
-        throw error(error_kind::bad_input, "--smooth", "only points that come one by one are smoothed",
-                    "use it with --live, or leave it out");
+        refuse_option("--smooth", "only points that come one by one are smoothed",
+                      "use it with --live, or leave it out");
     if (o.socket)
         return play_remote(s, o);
     if (s.stream.live)

@@ -82,7 +82,7 @@ options::serve_settings settle_serve(const serve_options& o, options::serve_sett
 server::endpoint_options settle_endpoints(const options::serve_settings& s)
 {
     if (s.socket && s.socket->empty())
-        throw error(error_kind::bad_input, "--socket", "the name is empty", "name a path");
+        refuse_option("--socket", "the name is empty", "name a path");
     server::endpoint_options e;
     e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
         return given ? *given : default_socket(others);

@@ -38,8 +38,8 @@ void refuse_owners(const settings& s)
 {
     for (const options::option& o : options::all())
         if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
-            throw error(error_kind::bad_input, option_name(o), "it is not for strokes that a server plays",
-                        "leave it out with --socket");
+            refuse_option(option_name(o), "it is not for strokes that a server plays",
+                          "leave it out with --socket");
 }
 
 // Names the stroke that was sent, and the place in it, where an error of the server is about its parameter.
@@ -125,7 +125,7 @@ public:
         flush_output();
         for (const auto& [name, params] : pieces)
             report_.strokes.push_back({name});
-        for (std::size_t i = 0; i < pieces.size() && signal_ == 0 && !broken_; ++i)
+        for (std::size_t i = 0; i < pieces.size() && server_.signal() == 0 && !broken_; ++i)
             play_one(report_.strokes[i], pieces[i].second, i + 1 == pieces.size());
         return finish();
     }
@@ -143,7 +143,7 @@ public:
         // After a throw the server ends the stroke as it ends those of a client that goes away.
         for (bool end_sent = false; !ended(n, out);) {
             wait(lines.descriptor());
-            if (signal_ != 0 && !std::exchange(cancelled_, true))
+            if (server_.signal() != 0 && !std::exchange(cancelled_, true))
                 server_.tell("cancel", {{"stroke", n}});
             if (!cancelled_)
                 draw(n, lines);
@@ -200,7 +200,6 @@ private:
         } catch (const error& e) {
             throw name_argument(e, shown_name(out.name));
         }
-        signal_ = server_.signal(); // the end may have come with the reply
         say_warnings(r["warnings"].get<std::vector<std::string>>());
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
@@ -210,7 +209,7 @@ private:
         for (const net::json& n : r["strokes"])
             while (!ended(n, out)) {
                 wait(-1);
-                if (signal_ != 0 && !std::exchange(cancelled_, true))
+                if (server_.signal() != 0 && !std::exchange(cancelled_, true))
                     for (const net::json& k : r["strokes"])
                         cancel(k);
             }
@@ -266,12 +265,11 @@ private:
     {
         if (server_.signal() == 0 || cancelled_)
             server_.wait(also);
-        signal_ = server_.signal();
     }
 
     void judge(const stroke_outcome& out, bool last)
     {
-        if (signal_ != 0 || out.report->state == state_kind::finished)
+        if (server_.signal() != 0 || out.report->state == state_kind::finished)
             return;
         const bool cancelled = out.report->state == state_kind::cancelled;
         const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
@@ -290,14 +288,14 @@ private:
             report_.stats.xruns = s.value("xruns", std::uint64_t{0}) - xruns_;
             report_.stats.realtime = s.value("realtime", false);
         } catch (const error& e) {
-            if (signal_ == 0 && !broken_)
+            if (server_.signal() == 0 && !broken_)
                 broken_.emplace(e);
         }
         if (options_.json())
             print_json(stdout, report_);
         else if (report_.stats.xruns != 0)
             say(stdout, "xruns           {}\n", report_.stats.xruns);
-        return judge_run(report_, signal_, broken_);
+        return judge_run(report_, server_.signal(), broken_);
     }
 
     const play_options& options_;
@@ -311,7 +309,6 @@ private:
     std::uint64_t xruns_ = 0;
     bool cancelled_ = false;
     bool is_loud_ = false; ///< a point was above intensity 1
-    int signal_ = 0;
 };
 
 } // namespace

@@ -83,7 +83,7 @@ error make_error(const net::json& e)
 rpc_client::rpc_client(const std::optional<std::string>& socket, session::interrupt& stop) : stop_(stop)
 {
     if (socket && socket->empty())
-        throw error(error_kind::bad_input, "--socket", "the name is empty", "name a socket");
+        refuse_option("--socket", "the name is empty", "name a socket");
     const auto places = candidates(socket);
     int code = ENOENT;
     for (const std::string& p : places) {
