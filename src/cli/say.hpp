@@ -18,14 +18,12 @@ namespace tactor::cli {
 
 using session::fit_lines;
 using session::flush_output;
-using session::line_width;
 using session::output_error;
 using session::say;
 using session::say_error;
 using session::say_text;
 using session::show;
 using session::shown;
-using session::wrap_lines;
 using session::wrapped;
 
 /// Prints warnings. Of those that differ only in numbers and quoted names it prints the first, and how many

@@ -72,7 +72,6 @@ public:
     }
     unsigned starts() const { return look(starts_); }
     unsigned prepares() const { return look(prepares_); }
-    unsigned drops() const { return look(drops_); }
     bool closed() const { return look(closed_); }
     bool running() const { return look(running_); }
 
@@ -133,7 +132,6 @@ private:
     int fail_start_ = 0;
     unsigned starts_ = 0;
     unsigned prepares_ = 0;
-    unsigned drops_ = 0;
     bool hides_descriptors_ = false;
     unsigned asked_in_vain_ = 0;
 };
