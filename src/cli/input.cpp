@@ -18,19 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<stroke> read_one(const settings& s, const environment& e, const std::string& argument)
-{
-    if (e.plans.contains(argument))
-        throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
-                    "give the stroke, which is planned here");
-    if (const auto preset = find_preset(argument))
-        return {*preset};
-    if (argument == "-")
-        return e.standard_input;
-    session::check_readable(argument);
-    return load_strokes(argument, s.intensity_max.value_or(1.0));
-}
-
 // Fits the strokes that a file fits: the margin is the file's, not an option.
 void fit_by_file(const std::string& file, piece& p, const layout& faces)
 {
@@ -159,25 +146,25 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
 
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
-    const auto planned = e.plans.find(argument);
-    if (planned == e.plans.end())
-        return read_piece(s, e, faces, argument);
-    const files::plan_file& f = planned->second;
-    files::check_same_array(argument, f.tactors, e.tactors);
-    piece p = f.made;
-    p.name = argument;
-    return p;
-}
-
-piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
-{
     piece p{argument};
+    if (const auto planned = e.plans.find(argument); planned != e.plans.end()) {
+        files::check_same_array(argument, planned->second.tactors, e.tactors);
+        p = planned->second.made;
+        p.name = argument;
+        return p;
+    }
     if (s.path_data)
         p.strokes = session::read_strokes("path", *s.path_data, argument, s);
     else if (s.shape)
         p.strokes = session::read_strokes("stroke", *s.shape, argument, s);
-    else
-        p.strokes = read_one(s, e, argument);
+    else if (const auto preset = find_preset(argument))
+        p.strokes = {*preset};
+    else if (argument == "-")
+        p.strokes = e.standard_input;
+    else {
+        session::check_readable(argument);
+        p.strokes = load_strokes(argument, s.intensity_max.value_or(1.0));
+    }
     fit_by_file(shown_name(argument), p, faces);
     session::place_strokes(p, faces, s);
     return p;

@@ -38,9 +38,6 @@ error of_stroke(const error& x, const piece& p, std::size_t i);
 /// `faces` is what --fit puts strokes on. \throws error.
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
 
-/// Does the same for an argument that may be no plan. \throws error.
-piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
-
 /// Reads and plans where only one STROKE is taken. \throws error, also for a stroke that does not begin in
 /// the piece.
 piece plan_one_piece(const settings& s, const environment& e);

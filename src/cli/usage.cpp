@@ -501,8 +501,8 @@ void command_line::parse() const
     throw CLI::Success();
 }
 
-option_help::option_help(const std::string& given)
-    : given_(given), name_(bare_name(given)), row_(options::find(name_))
+option_help::option_help(const std::string& word)
+    : word_(word), name_(bare_name(word)), row_(options::find(name_))
 {
     if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
         row_ = nullptr;
@@ -528,7 +528,7 @@ std::string option_help::text(const CLI::App& app) const
     if (!text_.empty())
         return text_;
     if (similar_.empty() || name_.empty())
-        throw no_such_command(app, given_);
+        throw no_such_command(app, word_);
     std::string text =
         fmt::format("Options with \"{}\" in their names; tactor help OPTION explains one:\n", name_);
     for (const auto& [name, line] : similar_)

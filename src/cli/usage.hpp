@@ -35,8 +35,8 @@ std::string first_steps();
 /// in their names.
 class option_help {
 public:
-    /// `given` may begin with dashes.
-    explicit option_help(const std::string& given);
+    /// `word`: the name, which may begin with dashes.
+    explicit option_help(const std::string& word);
 
     /// Adds the options of a command.
     void add(const CLI::App& command);
@@ -44,7 +44,7 @@ public:
     std::string text(const CLI::App& app) const;
 
 private:
-    std::string given_;
+    std::string word_;
     std::string name_;
     const options::option* row_;
     std::string text_;

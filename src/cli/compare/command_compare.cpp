@@ -232,7 +232,11 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
     static_cast<void>(burst_duration_s(s.plan));
     const layout faces(e.tactors);
-    const piece p = read_piece(s, e, faces, stroke_arguments(s).front());
+    const std::string argument = stroke_arguments(s).front();
+    if (e.plans.contains(argument))
+        throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
+                    "give the stroke, which is planned here");
+    const piece p = open_piece(s, e, faces, argument);
     if (!asked.picture.file.empty() && p.strokes.size() > 1)
         refuse_option("-o", fmt::format("there are {} strokes", p.strokes.size()), "a picture shows one");
     if (!asked.picture.file.empty())
