@@ -157,7 +157,7 @@ void offer_values(const std::string& type, const std::string& typed, const std::
     else if (type == "STROKE")
         offer_all(stroke_presets());
     else if (type == "EXPERIMENT")
-        offer_all(study::shipped_experiments());
+        offer_all(lines{study::shipped_experiment});
     else if (!type.starts_with("FILE"))
         offer_all(detail::split(type, type.find('|') == std::string::npos ? ',' : '|'));
     if (means("FILE") || means("DIR") || means("PATH") || means("STROKE") || means("EXPERIMENT"))

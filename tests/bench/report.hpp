@@ -30,18 +30,4 @@ std::vector<synth_row>& table();
 /// Registers the benchmarks of synthesis.
 void add_synth();
 
-/// Time and memory of the tool as a process.
-struct tool_row {
-    std::string what;
-    double cpu_ms = 0.0;
-    double peak_mb = 0.0;
-};
-
-/// Call first, while this process is small: the system counts its memory at the start of a child as the
-/// child's.
-std::vector<tool_row> measure_tool();
-
-/// Runs the registered benchmarks and prints the tables. Returns the exit status.
-int run(int argc, char** argv, const std::vector<tool_row>& tool);
-
 } // namespace bench

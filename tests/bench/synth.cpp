@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The audio thread's mixer over blocks of 10 ms that stay in the cache, against its bounds: the same bytes
-// set and copied, and a first draft of a mixer.
+// set and copied, and a first draft of a mixer. Whole scores as `render` makes them, with other waves than a
+// sine and with a carrier for each stroke.
+#include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -157,18 +160,18 @@ void add_piece(bench::synth_row row)
     }
 }
 
-/// Renders a plan like `render`, from the first frame to the last and again.
+/// Renders a score like `render`, from the first frame to the last and again.
 void whole(benchmark::State& state, const score& s)
 {
     std::vector<std::byte> out(bench::block * s.channels() * sizeof(float));
-    auto r = std::make_unique<renderer>(s, format_kind::float32);
+    renderer r(s, format_kind::float32);
     for (auto _ : state) {
-        if (r->position() >= s.frames()) {
+        if (r.position() >= s.frames()) {
             state.PauseTiming();
-            r = std::make_unique<renderer>(s, format_kind::float32);
+            r = renderer(s, format_kind::float32);
             state.ResumeTiming();
         }
-        r->process(out);
+        r.process(out);
         benchmark::DoNotOptimize(out.data());
         benchmark::ClobberMemory();
     }
@@ -223,6 +226,60 @@ void add_renderer_ways()
     }
 }
 
+/// Makes a burst of three tactors, each a frame later than that before it.
+placed_plan one_burst(unsigned number, bool own_carrier)
+{
+    plan p;
+    p.carrier_hz = own_carrier ? 100.0 + 0.25 * number : 250.0;
+    p.total_s = p.stroke_duration_s = 2.0;
+    burst b;
+    b.duration_s = p.total_s;
+    for (unsigned i = 0; i < 3; ++i)
+        b.drives.push_back({(number + i) % 7 + i, 1.0});
+    p.bursts = {b};
+    return {p, number / 48000.0};
+}
+
+/// Plays many strokes at once, with one carrier or with one each.
+void carriers(benchmark::State& state)
+{
+    std::vector<placed_plan> plans;
+    for (unsigned i = 0; i < 1024; ++i)
+        plans.push_back(one_burst(i, state.range(0) > 1));
+    whole(state, score(preset_array("palm-3x3"), plans, {.level_dbfs = -70.0}));
+}
+BENCHMARK(carriers)->Name("1024 strokes at once/carriers")->Arg(1)->Arg(1024)->Unit(benchmark::kMicrosecond);
+
+waveform recorded(texture_kind texture)
+{
+    recording r{"bench", 8000.0, std::vector<float>(4000)};
+    for (std::size_t i = 0; i < r.samples.size(); ++i)
+        r.samples[i] = static_cast<float>(std::sin(1e-4 * static_cast<double>(i * i)));
+    return {.kind = waveform_kind::recording,
+            .recorded = std::make_shared<const recording>(std::move(r)),
+            .texture = texture};
+}
+
+/// Plays 16 strokes at once on 64 channels, each with its own wave.
+void add_wave(const std::string& name, const waveform& w, const modulation& m = {})
+{
+    const auto play = [w, m](benchmark::State& state) {
+        const array a = bench::square(64);
+        std::vector<placed_plan> plans;
+        for (plan& p : bench::strokes(a, 16, algorithm_kind::continuous)) {
+            p.wave = w;
+            p.am = m;
+            plans.push_back({std::move(p), 0.0});
+        }
+        whole(state, score(a, plans, bench::levels(16)));
+        // A block lasts 10 ms: 5 % of a core are 500 us.
+        state.counters["core"] = benchmark::Counter(0.01, benchmark::Counter::kIsIterationInvariantRate |
+                                                              benchmark::Counter::kInvert);
+    };
+    benchmark::RegisterBenchmark(("16 strokes of 64 channels/" + name).c_str(), play)
+        ->Unit(benchmark::kMicrosecond);
+}
+
 } // namespace
 
 void bench::add_synth()
@@ -230,6 +287,12 @@ void bench::add_synth()
     add_renderer(algorithm_kind::park2016);
     add_renderer(algorithm_kind::continuous);
     add_renderer_ways();
+    add_wave("sine", {});
+    add_wave("square", {.kind = waveform_kind::square});
+    add_wave("noise", {.kind = waveform_kind::noise});
+    add_wave("recording, cycle", recorded(texture_kind::cycle));
+    add_wave("recording, time", recorded(texture_kind::time));
+    add_wave("sine, modulated", {}, {30.0, 1.0});
     for (const unsigned channels : {9U, 16U, 64U}) {
         add_bounds(channels, 2);
         add_bounds(channels, 4);
