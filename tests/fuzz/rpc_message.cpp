@@ -4,10 +4,14 @@
 // behind. One service serves all inputs: in each of them, "stroke":1 is the first stroke of that input. An
 // empty line waits for all answers and then lets some periods of the device pass.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,12 +19,14 @@
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
+#include <poll.h>
 
 #include <tactor/array.hpp>
+#include <tactor/sink.hpp>
 
 #include "holds.hpp"
+#include "rt/event_fd.hpp"
 #include "server/service.hpp"
-#include "stepped_sink.hpp"
 
 using namespace tactor;
 using net::json;
@@ -42,6 +48,90 @@ server::service_limits small_limits()
     l.max_nesting = 16;
     return l;
 }
+
+/// The clock of a DAC without a device. It begins at 1000 s, and goes on only when the fuzzer moves it.
+struct stepped_clock {
+    /// Plays one period, and blocks until the audio thread has written the next one and reported.
+    void step()
+    {
+        const std::uint64_t next = due.load() + setup.period_frames;
+        due.store(next, std::memory_order_release);
+        moved.signal();
+        for (std::uint64_t now = seen.load(); now < next; now = seen.load())
+            seen.wait(now);
+    }
+    std::int64_t time_ns(std::uint64_t frames) const noexcept
+    {
+        constexpr std::int64_t begin_ns = 1'000'000'000'000;
+        return begin_ns + static_cast<std::int64_t>(1'000'000'000 * frames / setup.rate);
+    }
+    /// Returns the time that the sink's positions have, ns. Any thread may call it.
+    std::int64_t now_ns() const noexcept { return time_ns(due.load(std::memory_order_acquire)); }
+
+    stream_setup setup;
+    std::atomic<std::uint64_t> due{0};  ///< frames that the DAC may have played
+    std::atomic<std::uint64_t> seen{0}; ///< `due` as the audio thread last handled it
+    rt::event_fd moved = {};
+};
+
+/// The DAC, which plays by a clock.
+class stepped_sink final : public sink {
+public:
+    explicit stepped_sink(stepped_clock& c) : clock_(c) {}
+
+    const stream_setup& setup() const noexcept override { return clock_.setup; }
+    io_kind prepare() noexcept override
+    {
+        from_ = looked_;
+        written_ = 0;
+        return io_kind::ok;
+    }
+    io_kind start() noexcept override { return io_kind::ok; }
+    io_kind resume() noexcept override { return io_kind::ok; }
+
+    std::size_t max_descriptors() const noexcept override { return 1; }
+    std::size_t descriptors(std::span<pollfd> fds) noexcept override
+    {
+        // The audio thread has published everything of its last wake-up.
+        clock_.seen.store(looked_, std::memory_order_release);
+        clock_.seen.notify_one();
+        fds[0] = {.fd = clock_.moved.fd(), .events = POLLIN, .revents = 0};
+        return 1;
+    }
+    io_kind ready(std::span<pollfd>) noexcept override
+    {
+        clock_.moved.consume();
+        return room() >= clock_.setup.period_frames ? io_kind::ok : io_kind::again;
+    }
+
+    io_result available() noexcept override { return {io_kind::ok, static_cast<std::size_t>(room()), 0}; }
+    io_result write(std::span<const std::byte> frames) noexcept override
+    {
+        const std::size_t n = std::min<std::size_t>(frames.size() / clock_.setup.frame_bytes(),
+                                                    static_cast<std::size_t>(room()));
+        written_ += n;
+        return {n == 0 ? io_kind::again : io_kind::ok, n, 0};
+    }
+    stream_position position() noexcept override
+    {
+        looked_ = clock_.due.load(std::memory_order_acquire);
+        return {written_, played(looked_), clock_.time_ns(looked_), true};
+    }
+    void drop() noexcept override {}
+
+private:
+    // A DAC without frames waits for more, so there are no xruns.
+    std::uint64_t played(std::uint64_t due) const noexcept { return std::min(due - from_, written_); }
+    std::uint64_t room() const noexcept
+    {
+        return clock_.setup.buffer_frames - (written_ - played(clock_.due.load(std::memory_order_acquire)));
+    }
+
+    stepped_clock& clock_;
+    std::uint64_t from_ = 0;    ///< `due` at the epoch's start
+    std::uint64_t looked_ = 0;  ///< `due` of the last position
+    std::uint64_t written_ = 0; ///< in this epoch
+};
 
 // Checks the messages to a client against the protocol.
 class listener final : public server::client_link {
@@ -156,7 +246,7 @@ public:
         s.player.limits.window_s = 3600.0;
         s.wished.channels = channels;
         s.wished.rate = rate;
-        s.open = [this] { return clock_.make_sink(); };
+        s.open = [this] { return std::make_unique<stepped_sink>(clock_); };
         all_ = std::make_unique<server::service>(io_, std::move(o), std::move(s));
         all_->start();
         bool ready = false;
@@ -249,11 +339,11 @@ private:
         HOLDS(now["stream"]["state"] == "running");
     }
 
-    fuzz::stepped_clock clock_{{.name = "nobody",
-                                .channels = channels,
-                                .rate = rate,
-                                .period_frames = period_frames,
-                                .buffer_frames = 2 * period_frames}};
+    stepped_clock clock_{{.name = "nobody",
+                          .channels = channels,
+                          .rate = rate,
+                          .period_frames = period_frames,
+                          .buffer_frames = 2 * period_frames}};
     boost::asio::io_context io_;
     boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
     std::shared_ptr<listener> seen_ = std::make_shared<listener>(); ///< messages to the watcher
