@@ -3,18 +3,13 @@
 import json
 import pathlib
 
-from rig import Card, GpioSim, RigTest, wait_for
-
-LINE = 2
+from rig import AmplifierTest, Card, wait_for
 
 
-class Unplug(RigTest):
+class Unplug(AmplifierTest):
     def setUp(self):
         super().setUp()
-        self.gpio = GpioSim()
-        self.addCleanup(self.gpio.close)
         self.addCleanup(Card.plug_in)
-        self.array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{self.gpio.label}", offset = {LINE} }}\n')
 
     def sounding(self):
         """Waits until a second of the stream has been played: the stroke has begun."""
@@ -23,10 +18,10 @@ class Unplug(RigTest):
 
     def test_the_stroke_is_interrupted_and_the_amplifier_off(self):
         p = self.start("play", "--path", "M 0 10 L 40 30", "--duration", "60", "--array", self.array, "--format", "json")
-        wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
+        wait_for(self.on, "the amplifier is on")
         wait_for(self.sounding, "the stroke has begun")
         pull = Card.pull_out()
-        wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
+        wait_for(lambda: not self.on(), "the amplifier is off", 2)
         out, said = p.communicate(timeout=30)
         pull.wait(20)
         self.assertEqual(p.returncode, 1, said)
@@ -37,14 +32,14 @@ class Unplug(RigTest):
     def test_playing_goes_on_when_the_card_comes_back(self):
         p = self.start("play", "park2016-1", "park2016-2", "--duration", "5", "--array", self.array, "--reopen-s", "60",
                        "--format", "json")
-        wait_for(lambda: self.gpio.value(LINE) == 1, "the amplifier is on")
+        wait_for(self.on, "the amplifier is on")
         wait_for(self.sounding, "the stroke has begun")
         pull = Card.pull_out()
-        wait_for(lambda: self.gpio.value(LINE) == 0, "the amplifier is off", 2)
+        wait_for(lambda: not self.on(), "the amplifier is off", 2)
         pull.wait(20)
         Card.plug_in()
-        wait_for(lambda: self.gpio.value(LINE) == 1 or p.poll() is not None, "the amplifier is on again", 30)
+        wait_for(lambda: self.on() or p.poll() is not None, "the amplifier is on again", 30)
         out, said = p.communicate(timeout=60)
         states = [s["state"] for s in json.loads(out)["strokes"]]
         self.assertEqual(states, ["interrupted", "finished"], said)
-        self.assertEqual(self.gpio.value(LINE), 0)
+        self.assertFalse(self.on())
