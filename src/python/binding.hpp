@@ -4,9 +4,13 @@
 /// interpreter's lock is given back and taken here, also while the program ends.
 #pragma once
 
+#include <concepts>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,9 +22,86 @@
 
 #include <tactor/tactor.hpp>
 
+#include "options/option.hpp"
+#include "session/piece.hpp"
+
+namespace pybind11::detail {
+
+template <class Kind>
+concept named_kind = std::is_enum_v<Kind> && requires(Kind k)
+{
+    {
+        tactor::to_string(k)
+        } -> std::same_as<std::string_view>;
+};
+
+/// A value of a closed set is its name in Python. \throws tactor::error (bad_input) that lists the names.
+template <class Kind>
+struct type_caster<Kind, enable_if_t<named_kind<Kind>>> {
+    PYBIND11_TYPE_CASTER(Kind, const_name("str"));
+
+    bool load(handle from, bool convert)
+    {
+        make_caster<std::string> text;
+        if (!text.load(from, convert))
+            return false;
+        value = tactor::from_string<Kind>(cast_op<std::string&>(text));
+        return true;
+    }
+    static handle cast(Kind k, return_value_policy, handle)
+    {
+        return pybind11::cast(tactor::to_string(k)).release();
+    }
+};
+
+/// A struct of two members is a tuple in Python.
+template <class T, class A, class B, A T::*First, B T::*Second>
+struct pair_caster {
+    PYBIND11_TYPE_CASTER(T, const_name("tuple"));
+
+    bool load(handle from, bool convert)
+    {
+        make_caster<std::pair<A, B>> both;
+        if (!both.load(from, convert))
+            return false;
+        std::tie(value.*First, value.*Second) = cast_op<std::pair<A, B>>(both);
+        return true;
+    }
+    static handle cast(const T& v, return_value_policy, handle)
+    {
+        return make_tuple(v.*First, v.*Second).release();
+    }
+};
+
+template <>
+struct type_caster<tactor::point>
+    : pair_caster<tactor::point, double, double, &tactor::point::x_mm, &tactor::point::y_mm> {
+};
+template <>
+struct type_caster<tactor::drive>
+    : pair_caster<tactor::drive, unsigned, double, &tactor::drive::tactor, &tactor::drive::amplitude> {
+};
+template <>
+struct type_caster<tactor::meeting>
+    : pair_caster<tactor::meeting, double, tactor::point, &tactor::meeting::t_s, &tactor::meeting::position> {
+};
+template <>
+struct type_caster<tactor::profile_point>
+    : pair_caster<tactor::profile_point, double, double, &tactor::profile_point::part,
+                  &tactor::profile_point::value> {
+};
+template <>
+struct type_caster<tactor::threshold_point>
+    : pair_caster<tactor::threshold_point, double, double, &tactor::threshold_point::hz,
+                  &tactor::threshold_point::dbfs> {
+};
+
+} // namespace pybind11::detail
+
 namespace tactor::python {
 
 namespace py = pybind11;
+using options::wishes;
 
 /// Calls what may take the interpreter's lock, as all does that runs Python's code. `f` calls C alone and has
 /// no objects, which would be destroyed without the lock. Where a program ends while one of its daemon
@@ -104,17 +185,48 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
 /// Gives doubles to NumPy without a copy, in rows of `columns` (0: a plain row); they cannot be written.
 py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns = 0);
 
-/// Writes paths and strokes as bytes, for pickles and for comparing: the same bytes, the same value.
-std::string write_state(const path& p);
-std::string write_state(const stroke& s);
+/// Sets the options `given`; None sets nothing. For others the [defaults] of `file` count, and in a score its
+/// rate, channels and marker; options that `into.given` has already keep their values. `tactors`: number of
+/// tactors that a phantom model in Python may name. \throws error (bad_input) for impossible values, and for
+/// options that nothing uses.
+void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file = nullptr);
 
-/// Read what write_state() wrote. \throws error (bad_input) for other bytes.
-path read_path(std::string_view state);
-stroke read_stroke(std::string_view state);
+/// Takes the options of a player among `given`. \throws error (bad_input).
+void give_player_options(wishes& into, const py::dict& given);
+
+/// Returns the rows of the table, for src/options/write.py.
+py::list option_rows();
+
+/// Returns an error of the library with options as keyword arguments: "soa", timing="fit".
+error in_keywords(const error& e);
+
+/// A plan with what it was made of and for, so that it can be recorded, drawn and rendered.
+struct plan_handle {
+    std::shared_ptr<array_handle> on;
+    session::piece one;                          ///< of one stroke
+    render_options sound = {};                   ///< how it sounds where nobody says otherwise
+    std::vector<std::string> sound_options = {}; ///< names of those that were set
+
+    /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.
+    placed_plan at(std::optional<double> start_s) const
+    {
+        const placed_plan& p = placed();
+        return {p.plan, start_s, start_s == p.start_s ? p.anchor : start_anchor{}};
+    }
+    const stroke& drawn() const noexcept { return one.strokes.front(); }
+    const placed_plan& placed() const noexcept { return one.plans.front(); }
+    const tactor::plan& plan() const noexcept { return placed().plan; }
+};
+
+/// Returns a piece of one stroke, fitted and timed as its file and the options ask. \throws error (bad_input)
+/// where it is part of a group that is fitted as a single picture.
+session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w);
+
+/// Compares arrays. \throws error (bad_input) if the plan is for tactors elsewhere or on other channels.
+void check_same_array(const plan_handle& p, const array& in_use);
 
 void bind_values(py::module_& m);
 void bind_plan(py::module_& m);
-void bind_score(py::module_& m);
 void bind_tool(py::module_& m);
 void bind_player(py::module_& m);
 

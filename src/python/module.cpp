@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "python/binding.hpp"
-#include "python/options.hpp"
 
 #include <exception>
 #include <string_view>
@@ -68,7 +67,6 @@ PYBIND11_MODULE(_tactor, m)
     m.def("build_facts", &tactor::build_facts);
     bind_values(m);
     bind_plan(m);
-    bind_score(m);
     bind_tool(m);
     bind_player(m);
 }

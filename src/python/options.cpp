@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "python/options.hpp"
+#include "python/binding.hpp"
 
 #include <algorithm>
 #include <array>
@@ -146,12 +146,8 @@ public:
     void weights(point p, double a_v, std::vector<drive>& out) const override
     {
         const with_lock lock;
-        out.clear();
-        for (const py::handle one :
-             called(answer_, py::make_tuple(model_, name_, p.x_mm, p.y_mm, a_v, tactors_))) {
-            const auto [tactor, amplitude] = one.cast<std::pair<unsigned, double>>();
-            out.push_back({tactor, amplitude});
-        }
+        out = called(answer_, py::make_tuple(model_, name_, p.x_mm, p.y_mm, a_v, tactors_))
+                  .cast<std::vector<drive>>();
     }
 
 private:

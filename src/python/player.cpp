@@ -15,7 +15,7 @@
 
 #include <unistd.h>
 
-#include "python/options.hpp"
+#include "python/binding.hpp"
 #include "session/device.hpp"
 #include "session/lines.hpp"
 #include "session/live_remarks.hpp"
@@ -254,8 +254,8 @@ py::tuple report_tuple(const stroke_report& r)
         r.delay
             ? py::object(py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s))
             : py::object(py::none());
-    return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.why, r.frames, started, r.late_s,
-                          delay, r.held_points, r.outside_points);
+    return py::make_tuple(r.id.number, r.state, r.why, r.frames, started, r.late_s, delay, r.held_points,
+                          r.outside_points);
 }
 
 py::object next_event(player_handle& h)
@@ -270,7 +270,7 @@ py::object next_event(player_handle& h)
     if (const auto* r = std::get_if<stroke_report>(&*e))
         return report_tuple(*r);
     const auto& l = std::get<log_line>(*e);
-    return py::make_tuple(std::string(to_string(l.kind)), l.text);
+    return py::make_tuple(l.kind, l.text);
 }
 
 std::int64_t nanoseconds(double s)
@@ -310,7 +310,7 @@ py::dict setup_dict(const player_handle& h)
     const stream_setup& s = h.setup();
     return py::dict("name"_a = s.name, "channels"_a = s.channels,
                     "device_channels"_a = std::max(s.device_channels, s.channels), "rate"_a = s.rate,
-                    "format"_a = std::string(to_string(s.format)), "period_frames"_a = s.period_frames,
+                    "format"_a = s.format, "period_frames"_a = s.period_frames,
                     "buffer_frames"_a = s.buffer_frames, "batch"_a = s.batch, "has_clock"_a = s.has_clock);
 }
 

@@ -8,7 +8,7 @@
 #include "percept/compare.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
-#include "python/plan_handle.hpp"
+#include "python/binding.hpp"
 
 namespace tactor::python {
 namespace {
@@ -20,17 +20,8 @@ struct compared {
     detail::comparison result;
 };
 
-template <class Enum>
-std::vector<Enum> parse_kinds(const std::vector<std::string>& names, Enum only)
-{
-    std::vector<Enum> kinds;
-    for (const std::string& n : names)
-        kinds.push_back(from_string<Enum>(n));
-    return kinds.empty() ? std::vector{only} : kinds;
-}
-
 compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const py::dict& options,
-                 const std::vector<std::string>& algorithms, const std::vector<std::string>& phantoms,
+                 std::vector<algorithm_kind> algorithms, std::vector<phantom_kind> phantoms,
                  const setup* file)
 {
     wishes w;
@@ -43,12 +34,12 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     const stroke target = place_stroke(s, faces, w).strokes.front();
     const without_lock free;
     static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
-    const detail::comparison_choice choice{parse_kinds(algorithms, w.plan.algorithm),
-                                           parse_kinds(phantoms, w.plan.phantom),
-                                           {w.observer, w.low_speed},
-                                           w.compensate,
-                                           true,
-                                           w.spread};
+    if (algorithms.empty())
+        algorithms = {w.plan.algorithm};
+    if (phantoms.empty())
+        phantoms = {w.plan.phantom};
+    const detail::comparison_choice choice{
+        std::move(algorithms), std::move(phantoms), {w.observer, w.low_speed}, w.compensate, true, w.spread};
     compared c{on, detail::compare(target, on->value(), faces, w.plan, choice)};
     if (!c.result.playable())
         throw error(*c.result.rows.back().refused);

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: MIT
+// Arrays, paths and strokes; paths and strokes also as bytes, for pickles and for comparing: their members in
+// MessagePack, where numbers keep their last bit.
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "core/access.hpp"
+#include "core/path/impl.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
 #include "files/output_file.hpp"
@@ -15,35 +24,186 @@
 #include "files/text_file.hpp"
 #include "options/settle.hpp"
 #include "python/binding.hpp"
-#include "python/options.hpp"
+
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+    static void to_json(json& j, const std::optional<T>& v) { j = v ? json(*v) : json(); }
+    static void from_json(const json& j, std::optional<T>& v)
+    {
+        v = j.is_null() ? std::nullopt : std::optional(j.get<T>());
+    }
+};
+
+namespace tactor {
+inline namespace v0 {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(point, x_mm, y_mm)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(profile_point, part, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(rest, part, time_s, intensity)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(movement, easing, speed_mm_s, intensity, rests)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(recording, file, rate_hz, samples, sha256, missing)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(modulation, hz, depth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_part, part, hz)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_choices, algorithm, phantom, faces, soa_s, burst_s, level_db)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_fit, margin_mm, group)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(start_anchor, from, back)
+
+} // namespace v0
+
+namespace detail {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(cubic, p)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(elliptic, centre, u, v, from, sweep)
+
+inline void to_json(nlohmann::json& j, const shape& s)
+{
+    std::visit([&j](const auto& form) { j = form; }, s);
+}
+
+inline void from_json(const nlohmann::json& j, shape& s)
+{
+    s = j.contains("centre") ? shape(j.get<elliptic>()) : shape(j.get<cubic>());
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(outline::curve, segment, form)
+
+// Copies a list as it lies in memory: as JSON a million points take ten times as much.
+template <class T>
+nlohmann::json pack(const std::vector<T>& list)
+{
+    std::vector<std::uint8_t> bytes(list.size() * sizeof(T));
+    std::memcpy(bytes.data(), list.data(), bytes.size());
+    return nlohmann::json::binary(std::move(bytes));
+}
+
+template <class T>
+std::vector<T> unpack(const nlohmann::json& packed)
+{
+    const auto& bytes = packed.get_binary();
+    std::vector<T> list(bytes.size() / sizeof(T));
+    std::memcpy(list.data(), bytes.data(), list.size() * sizeof(T));
+    return list;
+}
+
+} // namespace detail
+} // namespace tactor
+
+template <>
+struct nlohmann::adl_serializer<std::shared_ptr<const tactor::recording>> {
+    using pointer = std::shared_ptr<const tactor::recording>;
+
+    static void to_json(json& j, const pointer& p) { j = p != nullptr ? json(*p) : json(); }
+    static void from_json(const json& j, pointer& p)
+    {
+        p = j.is_null() ? nullptr : std::make_shared<const tactor::recording>(j.get<tactor::recording>());
+    }
+};
+
+template <>
+struct nlohmann::adl_serializer<tactor::path> {
+    static void to_json(json& j, const tactor::path& p)
+    {
+        const tactor::path::impl& i = tactor::detail::access::of(p);
+        std::vector<tactor::detail::outline::curve> curves;
+        for (const auto& c : i.curves)
+            curves.push_back({c.segment, c.form});
+        j = {{"vertices", tactor::detail::pack(i.vertices)}, {"curves", curves}};
+    }
+    static tactor::path from_json(const json& j)
+    {
+        tactor::detail::outline o{tactor::detail::unpack<tactor::point>(j.at("vertices")), {}};
+        j.at("curves").get_to(o.curves);
+        return tactor::detail::make_path(std::move(o), "pickle");
+    }
+};
+
+namespace tactor {
+inline namespace v0 {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(waveform, kind, low_hz, high_hz, seed, recorded, texture, texture_mm)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_sound, carrier_hz, carrier_profile, wave, am)
+
+inline void to_json(nlohmann::json& j, const trajectory& t)
+{
+    const trajectory::impl& i = detail::access::of(t);
+    j = {{"duration_s", i.duration_s}, {"gain", i.gain}};
+    if (const auto* timed = std::get_if<detail::timed_points>(&i.law)) {
+        j["points"] = detail::pack(*timed->points);
+        j["length_mm"] = timed->length_mm;
+        return;
+    }
+    const auto& drawn = std::get<detail::drawn_path>(i.law);
+    j["path"] = drawn.way;
+    j["intensity"] = drawn.intensity;
+    if (drawn.moves != nullptr) {
+        j["moves"] = drawn.moves->given();
+        j["moving_s"] = drawn.moves->moving_s();
+    }
+}
+
+inline decltype(trajectory::impl::law) read_law(const nlohmann::json& j)
+{
+    if (j.contains("points"))
+        return detail::timed_points{
+            std::make_shared<const std::vector<timed_point>>(detail::unpack<timed_point>(j.at("points"))),
+            j.at("length_mm").get<double>()};
+    detail::drawn_path drawn{j.at("path").get<path>(), j.at("intensity").get<double>()};
+    if (j.contains("moves"))
+        drawn.moves = std::make_shared<const detail::pace>(j.at("moves").get<movement>(),
+                                                           j.at("moving_s").get<double>());
+    return drawn;
+}
+
+inline void from_json(const nlohmann::json& j, trajectory& t)
+{
+    t = detail::access::make<trajectory>(std::make_shared<const trajectory::impl>(
+        trajectory::impl{read_law(j), j.at("duration_s").get<double>(), j.at("gain").get<double>()}));
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke, name, motion, start_s, anchor, speed_mm_s, usual_pace, fit, sound,
+                                   choices, note, warnings)
+
+} // namespace v0
+} // namespace tactor
 
 namespace tactor::python {
 namespace {
 
-using tactor_row =
-    std::tuple<double, double, unsigned, double, double, std::optional<double>, int, std::string,
-               std::vector<std::pair<double, double>>, std::optional<double>, std::optional<double>>;
+template <class T>
+py::bytes write_state(const T& value)
+{
+    std::string state;
+    nlohmann::json::to_msgpack(value, state);
+    return state;
+}
+
+// Reads what write_state() wrote. \throws error (bad_input) for other bytes.
+template <class T>
+T read_state(const py::bytes& state)
+try {
+    const std::string_view bytes = state;
+    return nlohmann::json::from_msgpack(bytes.begin(), bytes.end()).template get<T>();
+} catch (const nlohmann::json::exception&) {
+    throw error(error_kind::bad_input, "pickle", "its bytes are not those of a path or stroke",
+                "make it anew with this version of tactor");
+}
+
+// A tactor: the members of tactor_spec without its place in a file.
+using tactor_row = std::tuple<point, unsigned, double, double, std::optional<double>, int, actuator_kind,
+                              std::vector<threshold_point>, std::optional<double>, std::optional<double>>;
 
 // Place of an array on the body: site, up, place, turn_deg, body_mm.
-using worn_row = std::tuple<std::string, std::string, std::optional<std::pair<double, double>>,
-                            std::optional<double>, std::optional<double>>;
+using worn_row =
+    std::tuple<std::string, std::string, std::optional<point>, std::optional<double>, std::optional<double>>;
 
 array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows, const worn_row& worn)
 {
-    array a;
-    a.name = name;
-    std::optional<std::pair<double, double>> place;
-    std::tie(a.site, a.up, place, a.turn_deg, a.body_mm) = worn;
-    if (place)
-        a.place = point{place->first, place->second};
-    for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator, thresholds, rise_s, um] :
-         rows) {
-        a.tactors.push_back(
-            {{x, y}, channel, gain, most, threshold, polarity, from_string<actuator_kind>(actuator)});
-        for (const auto& [hz, dbfs] : thresholds)
-            a.tactors.back().thresholds.push_back({hz, dbfs});
-        a.tactors.back().rise_s = rise_s;
-        a.tactors.back().displacement_um_at_0dbfs = um;
+    array a{.name = name};
+    std::tie(a.site, a.up, a.place, a.turn_deg, a.body_mm) = worn;
+    for (const tactor_row& row : rows) {
+        tactor_spec& t = a.tactors.emplace_back();
+        std::tie(t.position, t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity, t.actuator,
+                 t.thresholds, t.rise_s, t.displacement_um_at_0dbfs) = row;
     }
     return array_handle(std::move(a));
 }
@@ -51,15 +211,17 @@ array_handle make_array(const std::string& name, const std::vector<tactor_row>& 
 std::vector<tactor_row> list_rows(const array_handle& h)
 {
     std::vector<tactor_row> rows;
-    for (const tactor_spec& t : h.value().tactors) {
-        std::vector<std::pair<double, double>> thresholds;
-        for (const threshold_point& p : t.thresholds)
-            thresholds.emplace_back(p.hz, p.dbfs);
-        rows.emplace_back(t.position.x_mm, t.position.y_mm, t.channel, t.gain_db, t.max_dbfs,
-                          t.threshold_dbfs, t.polarity, to_string(t.actuator), std::move(thresholds),
-                          t.rise_s, t.displacement_um_at_0dbfs);
-    }
+    for (const tactor_spec& t : h.value().tactors)
+        rows.emplace_back(t.position, t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity,
+                          t.actuator, t.thresholds, t.rise_s, t.displacement_um_at_0dbfs);
     return rows;
+}
+
+// Returns a property that reads a member of the array.
+template <class T>
+auto member(T array::*m)
+{
+    return [m](const array_handle& h) -> const T& { return h.value().*m; };
 }
 
 using numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -72,11 +234,6 @@ auto read_rows(const numbers& a, Make make)
     for (py::ssize_t i = 0; i < a.shape(0); ++i)
         rows.push_back(make(a.data(i)));
     return rows;
-}
-
-py::tuple pair(point p)
-{
-    return py::make_tuple(p.x_mm, p.y_mm);
 }
 
 // Returns the place that `find` gives for each number, as an (n, 2) array.
@@ -124,16 +281,12 @@ void bind_array(py::module_& m)
                     [](std::string name, unsigned rows, unsigned columns, double x, double y) {
                         return array_handle(make_grid(std::move(name), rows, columns, x, y));
                     })
-        .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
-        .def_property_readonly("site", [](const array_handle& h) { return h.value().site; })
-        .def_property_readonly("up", [](const array_handle& h) { return h.value().up; })
-        .def_property_readonly("place",
-                               [](const array_handle& h) {
-                                   const std::optional<point>& p = h.value().place;
-                                   return p ? py::object(pair(*p)) : py::object(py::none());
-                               })
-        .def_property_readonly("turn_deg", [](const array_handle& h) { return h.value().turn_deg; })
-        .def_property_readonly("body_mm", [](const array_handle& h) { return h.value().body_mm; })
+        .def_property_readonly("name", member(&array::name))
+        .def_property_readonly("site", member(&array::site))
+        .def_property_readonly("up", member(&array::up))
+        .def_property_readonly("place", member(&array::place))
+        .def_property_readonly("turn_deg", member(&array::turn_deg))
+        .def_property_readonly("body_mm", member(&array::body_mm))
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
         .def_property_readonly("rows", &list_rows)
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })
@@ -159,9 +312,9 @@ void bind_array(py::module_& m)
                  return h.faces().contains({x, y});
              })
         .def("nearest", [](const array_handle& h, double x, double y) {
-            return pair(h.faces().nearest({x, y}));
+            return h.faces().nearest({x, y});
         });
-    m.def("array_presets", [] { return array_presets(); });
+    m.def("array_presets", &array_presets);
 
     py::class_<setup>(m, "Setup")
         .def_static("load", [](const std::string& file) { return checked(load_setup(file)); })
@@ -179,7 +332,7 @@ void bind_array(py::module_& m)
 void bind_path(py::module_& m)
 {
     py::class_<path>(m, "Path")
-        .def_static("svg", [](const std::string& data) { return path::from_svg(data); })
+        .def_static("svg", &path::from_svg)
         .def_static(
             "polyline",
             [](const numbers& a) {
@@ -189,11 +342,11 @@ void bind_path(py::module_& m)
                     [](double x, double y, double radius, double from, double sweep) {
                         return path::arc({x, y}, radius, from, sweep);
                     })
-        .def_static("from_state", [](const py::bytes& b) { return read_path(std::string(b)); })
-        .def("state", [](const path& p) { return py::bytes(write_state(p)); })
+        .def_static("from_state", &read_state<path>)
+        .def("state", &write_state<path>)
         .def_property_readonly("data", &path::svg)
         .def_property_readonly("length_mm", &path::length_mm)
-        .def("at", [](const path& p, double s) { return pair(p.at(s)); })
+        .def("at", &path::at)
         .def("at_all",
              [](const path& p, const numbers& all) { return places(all, [&](double s) { return p.at(s); }); })
         .def("meets_x", &path::meets_x)
@@ -211,52 +364,41 @@ stroke timed(const std::string& name, const numbers& rows, double intensity_max)
     return {.name = name, .motion = motion, .warnings = recorded.warnings()};
 }
 
-stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
-             std::optional<double> speed_mm_s, double intensity)
-{
-    const double speed = speed_mm_s.value_or(default_speed_mm_s);
-    if (!duration_s && !(speed > 0.0 && std::isfinite(speed)))
-        throw error(error_kind::bad_input, "speed", "it is not above 0", "give mm/s");
-    stroke s{name, trajectory::along(p, duration_s.value_or(p.length_mm() / speed), intensity)};
-    if (!duration_s)
-        s.speed_mm_s = speed;
-    s.usual_pace = !duration_s && !speed_mm_s;
-    return s;
-}
-
 // Writes TOML; a preset by its name, which keeps its note.
 std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())
-        if (name == s.name && write_state(preset_stroke(name)) == write_state(s))
+        if (name == s.name && write_state(preset_stroke(name)).equal(write_state(s)))
             return "[stroke]\npreset = " + detail::toml_string(name) + "\n";
     return detail::stroke_text(s);
 }
 
-std::vector<profile_point> read_profile(const numbers& rows)
+// Without `speeds` and `intensities` both are even. `rests`: part, time, intensity.
+stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
+             std::optional<double> speed_mm_s, double intensity, easing_kind easing,
+             std::vector<profile_point> speeds, std::vector<profile_point> intensities,
+             const std::vector<std::tuple<double, double, double>>& rests)
 {
-    return read_rows(rows, [](const double* r) { return profile_point{r[0], r[1]}; });
-}
-
-// Tables of two columns, of the rests of three; those of speed and intensity without rows: even.
-stroke moving(const std::string& name, const path& p, std::optional<double> duration_s,
-              std::optional<double> speed_mm_s, double intensity, const std::string& easing,
-              const numbers& speeds, const numbers& intensities, const numbers& rests)
-{
-    movement m{duration_s, from_string<easing_kind>(easing), read_profile(speeds), read_profile(intensities),
-               read_rows(rests, [](const double* r) {
-                   return rest{r[0], r[1], r[2]};
-               })};
+    movement m{duration_s, easing, std::move(speeds), std::move(intensities)};
     double resting_s = 0.0;
-    for (const rest& r : m.rests)
-        resting_s += r.time_s;
-    const bool usual = !duration_s && !speed_mm_s && m.speed_mm_s.empty();
-    if (m.speed_mm_s.empty() && speed_mm_s)
+    for (const auto& [part, time_s, strength] : rests) {
+        m.rests.push_back({part, time_s, strength});
+        resting_s += time_s;
+    }
+    stroke s{.name = name, .usual_pace = !duration_s && !speed_mm_s && m.speed_mm_s.empty()};
+    const bool even =
+        easing == easing_kind::linear && m.speed_mm_s.empty() && m.intensity.empty() && m.rests.empty();
+    if (even && !duration_s) {
+        s.speed_mm_s = speed_mm_s.value_or(default_speed_mm_s);
+        if (!(*s.speed_mm_s > 0.0 && std::isfinite(*s.speed_mm_s)))
+            throw error(error_kind::bad_input, "speed", "it is not above 0", "give mm/s");
+        m.duration_s = p.length_mm() / *s.speed_mm_s;
+    } else if (speed_mm_s) {
         m.speed_mm_s = {{0.0, *speed_mm_s}};
-    stroke s{name, trajectory::along(p, m, intensity)};
-    if (!duration_s)
+    }
+    s.motion = trajectory::along(p, m, intensity);
+    if (!m.duration_s)
         s.speed_mm_s = p.length_mm() / (s.motion.duration_s() - resting_s);
-    s.usual_pace = usual;
     return s;
 }
 
@@ -264,16 +406,15 @@ stroke moving(const std::string& name, const path& p, std::optional<double> dura
 py::dict choices_dict(const stroke& s)
 {
     py::dict d;
-    if (s.choices.algorithm)
-        d["algorithm"] = std::string(to_string(*s.choices.algorithm));
-    if (s.choices.phantom)
-        d["phantom"] = std::string(to_string(*s.choices.phantom));
-    if (s.choices.faces)
-        d["faces"] = std::string(to_string(*s.choices.faces));
-    if (s.choices.soa_s)
-        d["soa"] = *s.choices.soa_s;
-    if (s.choices.burst_s)
-        d["burst"] = *s.choices.burst_s;
+    const auto add = [&d](const char* name, const auto& choice) {
+        if (choice)
+            d[name] = *choice;
+    };
+    add("algorithm", s.choices.algorithm);
+    add("phantom", s.choices.phantom);
+    add("faces", s.choices.faces);
+    add("soa", s.choices.soa_s);
+    add("burst", s.choices.burst_s);
     return d;
 }
 
@@ -281,16 +422,14 @@ void bind_stroke(py::module_& m)
 {
     py::class_<stroke>(m, "Stroke")
         .def_static("along", &along)
-        .def_static("moving", &moving)
         .def_static("timed", &timed)
-        .def_static("preset", [](const std::string& name) { return preset_stroke(name); })
-        .def_static("shape", [](const std::string& name) { return shape_stroke(name); })
+        .def_static("preset", &preset_stroke)
+        .def_static("shape", &shape_stroke)
         .def_static("load", [](const std::string& file,
                                double intensity_max) { return load_strokes(file, intensity_max); })
-        .def_static("parse", [](const std::string& text, const std::string& name,
-                                double intensity_max) { return parse_strokes(text, name, intensity_max); })
-        .def_static("from_state", [](const py::bytes& b) { return read_stroke(std::string(b)); })
-        .def("state", [](const stroke& s) { return py::bytes(write_state(s)); })
+        .def_static("parse", &parse_strokes)
+        .def_static("from_state", &read_state<stroke>)
+        .def("state", &write_state<stroke>)
         .def("same_as",
              [](stroke s, const std::string& name, std::optional<double> start_s,
                 std::optional<double> carrier_hz) {
@@ -326,17 +465,16 @@ void bind_stroke(py::module_& m)
              })
         .def_readonly("name", &stroke::name)
         .def_readonly("start_s", &stroke::start_s)
-        .def_property_readonly("start_from",
-                               [](const stroke& s) { return std::string(to_string(s.anchor.from)); })
+        .def_property_readonly("start_from", [](const stroke& s) { return s.anchor.from; })
         .def_property_readonly("choices", &choices_dict)
         .def_property_readonly("carrier_hz", [](const stroke& s) { return s.sound.carrier_hz; })
         .def_property_readonly("level_db", [](const stroke& s) { return s.choices.level_db; })
         .def_readonly("speed_mm_s", &stroke::speed_mm_s)
         .def_readonly("warnings", &stroke::warnings)
-        .def_property_readonly("note", [](const stroke& s) { return std::string(to_string(s.note)); })
+        .def_readonly("note", &stroke::note)
         .def_property_readonly("duration_s", [](const stroke& s) { return s.motion.duration_s(); })
         .def_property_readonly("length_mm", [](const stroke& s) { return s.motion.length_mm(); })
-        .def("position", [](const stroke& s, double t) { return pair(s.motion.position(t)); })
+        .def("position", [](const stroke& s, double t) { return s.motion.position(t); })
         .def("intensity", [](const stroke& s, double t) { return s.motion.intensity(t); })
         .def("positions",
              [](const stroke& s, const numbers& all) {
@@ -352,11 +490,11 @@ void bind_stroke(py::module_& m)
         .def("text", &stroke_toml)
         .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })
         .def("meets_y", [](const stroke& s, double y) { return s.motion.meets_y(y); });
-    m.def("stroke_presets", [] { return stroke_presets(); });
-    m.def("stroke_shapes", [] { return stroke_shapes(); });
+    m.def("stroke_presets", &stroke_presets);
+    m.def("stroke_shapes", &stroke_shapes);
     m.def("fit_strokes", [](const std::vector<stroke>& strokes, const array_handle& on, double margin_mm) {
         const fitted_strokes f = fit_strokes(strokes, on.faces(), margin_mm);
-        return py::make_tuple(f.strokes, pair(f.placed.from), pair(f.placed.to), f.placed.scale);
+        return py::make_tuple(f.strokes, f.placed.from, f.placed.to, f.placed.scale);
     });
     m.def("apply_fits", [](const std::vector<stroke>& strokes, const array_handle& on) {
         return apply_fits(strokes, on.faces());

@@ -123,8 +123,8 @@ class Array(_Value):
         self._origin = origin
         self._setup = None
         self._worn: _Worn = core.site, core.up, core.place, core.turn_deg, core.body_mm
-        self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s, um))
-                              for x, y, *rest, thresholds, rise_s, um in core.rows)
+        self._tactors = tuple(Tactor._make((Point(*at), *rest, tuple(thresholds), rise_s, um))
+                              for at, *rest, thresholds, rise_s, um in core.rows)
 
     @classmethod
     def _wrap(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
@@ -401,7 +401,7 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
         if isinstance(e, InputError):
             raise
         raise InputError("thresholds", f"{_shown(t.thresholds)} are none", "give [(Hz, dBFS), ...]", field="thresholds") from None
-    return (*_place("position", t.position), _whole("channel", t.channel, 0, 1023), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
+    return (_place("position", t.position), _whole("channel", t.channel, 0, 1023), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
             level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"),
             level("displacement_um_at_0dbfs"))
 

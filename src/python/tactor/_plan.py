@@ -308,7 +308,7 @@ class Plan(_Value):
     @property
     def dropped(self) -> list[Meeting]:
         """Crossings of the Tactile Brush that were left out."""
-        return self._keep("dropped", lambda: Frozen(Meeting(t, Point(x, y)) for t, x, y in self._core.dropped))  # type: ignore[no-any-return]
+        return self._keep("dropped", lambda: Frozen(Meeting(t, Point(*at)) for t, at in self._core.dropped))  # type: ignore[no-any-return]
 
     @property
     def bursts(self) -> list[Burst]:

@@ -79,23 +79,21 @@ class Path(_Stated):
 
 
 def _profile(name: str, points: _t.Any) -> _t.Any:
-    """Returns (part, value) as a table of two columns."""
+    """Returns (part, value) as rows of two numbers."""
     table = _floats(name, points)
-    if table.size == 0:
-        return table.reshape(-1, 2)
-    if table.ndim != 2 or table.shape[1] != 2:
+    if table.size != 0 and (table.ndim != 2 or table.shape[1] != 2):
         raise InputError(name, "it is no list of (part, value)", "parts from 0, the path's start, to 1, its end")
-    return table
+    return table.tolist() if table.size else []
 
 
 def _pauses(pauses: _t.Any) -> _t.Any:
-    """Returns (part, seconds) or (part, seconds, intensity) as a table of three columns."""
+    """Returns (part, seconds) or (part, seconds, intensity) as rows of three numbers."""
     rows = []
     for row in pauses:
         if not hasattr(row, "__len__") or len(row) not in (2, 3):
             raise InputError("pauses", f"one is {row!r}", "(part, seconds) or (part, seconds, intensity)", field="pauses")
         rows.append((*row, 1.0)[:3])
-    return _floats("pauses", rows).reshape(-1, 3)
+    return _floats("pauses", rows).tolist() if rows else rows
 
 
 def _is_one(value: _t.Any) -> bool:
@@ -166,12 +164,9 @@ class Stroke(_Stated):
             speed = _number("speed", speed)
         if one_intensity:
             intensity = _number("intensity", intensity)
-        if one_speed and one_intensity and easing == "linear" and len(pauses) == 0:
-            core = _tactor.Stroke.along(name, path._core, duration, speed, intensity)
-        else:
-            core = _tactor.Stroke.moving(
-                name, path._core, duration, speed if one_speed else None, intensity if one_intensity else 1.0, easing,
-                _profile("speed", () if one_speed else speed), _profile("intensity", () if one_intensity else intensity), _pauses(pauses))
+        core = _tactor.Stroke.along(
+            name, path._core, duration, speed if one_speed else None, intensity if one_intensity else 1.0, easing,
+            [] if one_speed else _profile("speed", speed), [] if one_intensity else _profile("intensity", intensity), _pauses(pauses))
         return cls._wrap(core.same_as(*placing))
 
     @classmethod
