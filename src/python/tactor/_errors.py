@@ -37,18 +37,14 @@ class Error(Exception):
     column: int | None
     field: str | None
     errno: int  # not OSError's, which would be the first argument
+    _plain: type[Error] | None = None  # of a class that is also one of the system's: the kind alone
 
     def __init__(self, what: str = "", why: str = "", hint: str = "", *, file: str | None = None, line: int | None = None,
                  column: int | None = None, field: str | None = None, errno: int = 0) -> None:
         super().__init__(what, why, hint)
         self.args = what, why, hint  # OSError takes the third for a file's name
-        self.what = what
-        self.why = why
-        self.hint = hint
-        self.line = line
-        self.column = column
-        self.field = field
-        self.errno = errno
+        self.what, self.why, self.hint = self.args
+        self.line, self.column, self.field, self.errno = line, column, field, errno
         self._name_file(file)
 
     def _name_file(self, file: str | None) -> None:
@@ -63,8 +59,8 @@ class Error(Exception):
         return f"{text} ({self.hint})" if self.hint else text
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        kind = _named_kind(self)
-        return _again, (kind, kind is not type(self), self.what, self.why, self.hint, self.file, self.line, self.column, self.field, self.errno)
+        return _again, (self._plain or type(self), self._plain is not None, self.args,
+                        {name: getattr(self, name) for name in ("file", "line", "column", "field", "errno")})
 
 
 class InputError(Error, ValueError):
@@ -87,24 +83,16 @@ def _system_kind(kind: type[Error], errno: int) -> type[Error]:
     base = type(OSError(errno, "")) if errno else kind
     if issubclass(kind, base):
         return kind
-    if (kind, base) not in _system_classes:
-        _system_classes[kind, base] = type(base.__name__, (kind, base), {"__doc__": kind.__doc__, "__module__": __name__})
-    return _system_classes[kind, base]
+    if (kind, base) not in _joined:
+        _joined[kind, base] = type(base.__name__, (kind, base), {"__doc__": kind.__doc__, "__module__": __name__, "_plain": kind})
+    return _joined[kind, base]
 
 
-_system_classes: dict[tuple[type, type], type[Error]] = {}
+_joined: dict[tuple[type, type], type[Error]] = {}
 
 
-def _named_kind(e: Error) -> type[Error]:
-    """Returns the named class of one that _system_kind() has made."""
-    kind = type(e)
-    return kind.__mro__[1] if kind in _system_classes.values() else kind
-
-
-def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, file: str | None, line: int | None, column: int | None,
-           field: str | None, errno: int) -> Error:
-    made = _system_kind(kind, errno) if of_system else kind
-    return made(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
+def _again(kind: type[Error], of_system: bool, texts: tuple[str, str, str], more: dict[str, _t.Any]) -> Error:
+    return (_system_kind(kind, more["errno"]) if of_system else kind)(*texts, **more)
 
 
 def make_error(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,

@@ -184,16 +184,13 @@ class Player(_Unique):
             at_s = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:
             at_s = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
-        core = self._fitting(score)
+        if score.channels < self.channels and score.rate == self.rate:
+            options: dict[str, _t.Any] = {**score._options, "channels": self.channels}
+            score = Score(score._array, score._plans, **options)
         with shared.lock:
-            number = shared.core.submit(core, at == "armed", at_s, frame)
+            number = shared.core.submit(score._core, at == "armed", at_s, frame)
             ticket = self._held.tickets[number] = Ticket(shared, number)
         return ticket
-
-    def _fitting(self, score: Score) -> _t.Any:
-        if score.channels < self.channels and score.rate == self.rate:
-            return Score._wrap(score._array, score._plans, {**score._options, "channels": self.channels})._core
-        return score._core
 
     def live(self, *, outside: _Outside | None = None, algorithm: _Algorithm | None = None,
              phantom: _t.Union[_Phantom, PhantomModel, None] = None, faces: _Faces | None = None, soa: float | None = None,

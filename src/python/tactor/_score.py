@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import collections.abc as _abc
+import functools
 import os
 import typing as _t
 
@@ -101,20 +102,11 @@ class Score(_Value):
         given = dict(locals())
         del given["self"], given["array"], given["plans"]
         _need(array, Array, "array")
-        self._take(array, tuple(placed(plans)), given)
-
-    def _take(self, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> None:
         self._array = array
-        self._plans = plans
-        self._options = options
+        self._plans = tuple(placed(plans))
+        self._options = given
         self._core, self._recipe = _tactor.make_score(
-            array._core, [(start, p._core, *p._place_on(array)) for start, p in plans], options)
-
-    @classmethod
-    def _wrap(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
-        made = cls.__new__(cls)
-        made._take(array, plans, options)
-        return made
+            array._core, [(start, p._core, *p._place_on(array)) for start, p in self._plans], given)
 
     @property
     def array(self) -> Array:
@@ -247,4 +239,4 @@ class Score(_Value):
                 f"{self.duration:.6g} s>")
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return Score._wrap, (self._array, self._plans, self._options)
+        return functools.partial(Score, **self._options), (self._array, self._plans)
