@@ -26,6 +26,33 @@ using namespace py::literals;
 
 constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
 
+std::string write_keyword(const option& o, std::string_view value)
+{
+    if (value.empty())
+        return std::string(o.name);
+    if (o.what == options::kind::flag)
+        return fmt::format("{}=True", o.name);
+    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
+    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
+}
+
+// Marks and fields of the library that no option stands for.
+constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
+                               options::own_word{"command:plan", "Plan.write()"},
+                               options::own_word{"array=none", "take plan.array"},
+                               options::own_word{"array=FILE", "Array.from_file(FILE)"},
+                               options::own_word{"array", "Array.preset(\"{}\")"},
+                               options::own_word{"force=true", "force=True"},
+                               options::own_word{"wider=true", "without channels= it"},
+                               options::own_word{"pitch_x_mm", "pitch_mm"},
+                               options::own_word{"pitch_y_mm", "pitch_mm"},
+                               options::own_word{"start_s", "start"},
+                               options::own_word{"timeout_s", "timeout"},
+                               options::own_word{"longest_s", "longest"},
+                               options::own_word{"at_ns", "at_s"}};
+
+constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
+
 std::string shown(py::handle v)
 {
     try {
@@ -35,25 +62,12 @@ std::string shown(py::handle v)
     }
 }
 
-// Returns false for complex numbers and times of NumPy's, which would lose a part.
-bool is_plain(py::handle v)
-{
-    return py::module_::import("tactor._checks").attr("_is_plain")(v).cast<bool>();
-}
-
 double number(const option& o, py::handle v)
 {
-    if (!is_plain(v))
-        throw refusal(o, fmt::format("{} is not a number", shown(v)), range_text(o));
-    double d = PyFloat_AsDouble(v.ptr());
-    bool is_one = !py::isinstance<py::bool_>(v);
-    if (PyErr_Occurred() != nullptr) {
-        is_one = PyErr_ExceptionMatches(PyExc_OverflowError) != 0; // a whole number that no double holds
-        PyErr_Clear();
-        d = HUGE_VAL;
-    }
-    if (!is_one)
-        throw refusal(o, fmt::format("{} is not a number", shown(v)), range_text(o));
+    const double d = py::module_::import("tactor._checks")
+                         .attr("_number")(o.name, v, "hint"_a = options::spell(range_text(o), by_python),
+                                          "finite"_a = false)
+                         .cast<double>();
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
     if (is_rounded || !o.allowed.holds(d))
         throw refusal(o, fmt::format("{} is out of range", shown(v)),
@@ -194,33 +208,6 @@ void apply_output(wishes& w, const setup& file)
     if (!w.gives("marker_s"))
         w.render.marker_s = file.sync->pulse_s;
 }
-
-std::string write_keyword(const option& o, std::string_view value)
-{
-    if (value.empty())
-        return std::string(o.name);
-    if (o.what == options::kind::flag)
-        return fmt::format("{}=True", o.name);
-    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
-    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
-}
-
-// Marks and fields of the library that no option stands for.
-constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
-                               options::own_word{"command:plan", "Plan.write()"},
-                               options::own_word{"array=none", "take plan.array"},
-                               options::own_word{"array=FILE", "Array.from_file(FILE)"},
-                               options::own_word{"array", "Array.preset(\"{}\")"},
-                               options::own_word{"force=true", "force=True"},
-                               options::own_word{"wider=true", "without channels= it"},
-                               options::own_word{"pitch_x_mm", "pitch_mm"},
-                               options::own_word{"pitch_y_mm", "pitch_mm"},
-                               options::own_word{"start_s", "start"},
-                               options::own_word{"timeout_s", "timeout"},
-                               options::own_word{"longest_s", "longest"},
-                               options::own_word{"at_ns", "at_s"}};
-
-constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
 
 // Settles rate, channels and limits of a score. A player has its limits with the stream.
 void settle_score(wishes& w)

@@ -168,11 +168,11 @@ public:
     /// Return the player's; once it is closed, those of its end. \throws error in a forked process.
     player_stats stats() const
     {
-        return use([](player& p) { return p.stats(); }, [this] { return open_->last.stats; });
+        return use([](player& p) { return p.stats(); }, [this] { return open_->last_stats; });
     }
     std::optional<std::string> ended() const
     {
-        return use(&end_reason, [this] { return open_->last.ended; });
+        return use(&end_reason, [this] { return open_->last_end; });
     }
 
     /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
@@ -194,8 +194,10 @@ public:
         {
             const std::unique_lock lock(open_->mutex);
             ended = std::move(open_->stream);
-            if (ended != nullptr)
-                open_->last = {ended->stats(), end_reason(*ended)};
+            if (ended != nullptr) {
+                open_->last_stats = ended->stats();
+                open_->last_end = end_reason(*ended);
+            }
         }
         ended.reset();
         {
@@ -206,11 +208,6 @@ public:
     }
 
 private:
-    /// Remains of a closed player.
-    struct last_words {
-        player_stats stats = {};
-        std::optional<std::string> ended = {};
-    };
     static std::optional<std::string> end_reason(const player& p)
     {
         const auto end = p.ended();
@@ -222,7 +219,8 @@ private:
         mutable std::shared_mutex mutex;
         session::lent_lines lines;
         std::unique_ptr<player> stream;
-        last_words last; ///< without a stream
+        player_stats last_stats; ///< without a stream, as the next
+        std::optional<std::string> last_end;
     };
 
     pid_t owner_ = ::getpid();
@@ -247,14 +245,13 @@ std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, con
 
 py::tuple report_tuple(const stroke_report& r)
 {
-    const py::object started = r.started_ns
-                                   ? py::object(py::float_(static_cast<double>(*r.started_ns) * 1e-9))
-                                   : py::object(py::none());
-    const py::object delay =
-        r.delay
-            ? py::object(py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s))
-            : py::object(py::none());
-    return py::make_tuple(r.id.number, r.state, r.why, r.frames, started, r.late_s, delay, r.held_points,
+    std::optional<double> started_s;
+    if (r.started_ns)
+        started_s = static_cast<double>(*r.started_ns) * 1e-9;
+    py::object delay = py::none();
+    if (r.delay)
+        delay = py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s);
+    return py::make_tuple(r.id.number, r.state, r.why, r.frames, started_s, r.late_s, delay, r.held_points,
                           r.outside_points);
 }
 
@@ -317,9 +314,11 @@ py::dict setup_dict(const player_handle& h)
 py::dict position_dict(const player_handle& h)
 {
     const player_position p = h.use([](player& q) { return q.position(); });
-    const py::object which = p.stroke ? py::object(py::int_(p.stroke->number)) : py::object(py::none());
-    return py::dict("running"_a = p.running, "played"_a = p.played, "stroke"_a = which,
-                    "stroke_frame"_a = p.stroke_frame);
+    py::dict d("running"_a = p.running, "played"_a = p.played, "stroke"_a = py::none(),
+               "stroke_frame"_a = p.stroke_frame);
+    if (p.stroke)
+        d["stroke"] = p.stroke->number;
+    return d;
 }
 
 // A live stroke with the player that it must not outlive in a forked process.
