@@ -4,7 +4,6 @@
 /// interpreter's lock is given back and taken here, also while the program ends.
 #pragma once
 
-#include <concepts>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,14 +24,60 @@
 #include "options/option.hpp"
 #include "session/piece.hpp"
 
+namespace tactor::python {
+
+/// Members of the structs that are tuples in Python.
+template <class T>
+inline constexpr auto tuple_members = std::tuple();
+template <>
+inline constexpr auto tuple_members<point> = std::tuple(&point::x_mm, &point::y_mm);
+template <>
+inline constexpr auto tuple_members<profile_point> = std::tuple(&profile_point::part, &profile_point::value);
+template <>
+inline constexpr auto tuple_members<rest> = std::tuple(&rest::part, &rest::time_s, &rest::intensity);
+template <>
+inline constexpr auto tuple_members<threshold_point> = std::tuple(&threshold_point::hz,
+                                                                  &threshold_point::dbfs);
+template <>
+inline constexpr auto tuple_members<tactor_spec> = std::tuple(&tactor_spec::position, &tactor_spec::channel,
+                                                              &tactor_spec::gain_db, &tactor_spec::max_dbfs,
+                                                              &tactor_spec::threshold_dbfs,
+                                                              &tactor_spec::polarity, &tactor_spec::actuator,
+                                                              &tactor_spec::thresholds, &tactor_spec::rise_s,
+                                                              &tactor_spec::displacement_um_at_0dbfs);
+template <>
+inline constexpr auto tuple_members<array> = std::tuple(&array::name, &array::tactors, &array::site,
+                                                        &array::up, &array::place, &array::turn_deg,
+                                                        &array::body_mm);
+template <>
+inline constexpr auto tuple_members<drive> = std::tuple(&drive::tactor, &drive::amplitude);
+template <>
+inline constexpr auto tuple_members<burst> = std::tuple(&burst::onset_s, &burst::duration_s, &burst::position,
+                                                        &burst::intensity, &burst::drives);
+template <>
+inline constexpr auto tuple_members<conflict> = std::tuple(&conflict::tactor, &conflict::from_s,
+                                                           &conflict::to_s);
+template <>
+inline constexpr auto tuple_members<meeting> = std::tuple(&meeting::t_s, &meeting::position);
+template <>
+inline constexpr auto tuple_members<drive_limits> = std::tuple(&drive_limits::power_dbfs,
+                                                               &drive_limits::max_drive_s,
+                                                               &drive_limits::window_s);
+template <>
+inline constexpr auto tuple_members<live_delay> = std::tuple(&live_delay::points, &live_delay::least_s,
+                                                             &live_delay::mean_s, &live_delay::most_s);
+
+template <class T>
+inline constexpr bool is_tuple = std::tuple_size_v<std::remove_cv_t<decltype(tuple_members<T>)>> != 0;
+
+} // namespace tactor::python
+
 namespace pybind11::detail {
 
 template <class Kind>
 concept named_kind = std::is_enum_v<Kind> && requires(Kind k)
 {
-    {
-        tactor::to_string(k)
-        } -> std::same_as<std::string_view>;
+    tactor::to_string(k);
 };
 
 /// A value of a closed set is its name in Python. \throws tactor::error (bad_input) that lists the names.
@@ -54,46 +99,28 @@ struct type_caster<Kind, enable_if_t<named_kind<Kind>>> {
     }
 };
 
-/// A struct of two members is a tuple in Python.
-template <class T, class A, class B, A T::*First, B T::*Second>
-struct pair_caster {
+/// A struct with tuple_members is a tuple of these in Python.
+template <class T>
+struct type_caster<T, enable_if_t<tactor::python::is_tuple<T>>> {
     PYBIND11_TYPE_CASTER(T, const_name("tuple"));
 
     bool load(handle from, bool convert)
     {
-        make_caster<std::pair<A, B>> both;
-        if (!both.load(from, convert))
-            return false;
-        std::tie(value.*First, value.*Second) = cast_op<std::pair<A, B>>(both);
-        return true;
+        const auto take = [&](auto... m) {
+            using members = std::tuple<std::remove_cvref_t<decltype(value.*m)>...>;
+            make_caster<members> all;
+            if (!all.load(from, convert))
+                return false;
+            std::tie(value.*m...) = cast_op<members>(all);
+            return true;
+        };
+        return std::apply(take, tactor::python::tuple_members<T>);
     }
     static handle cast(const T& v, return_value_policy, handle)
     {
-        return make_tuple(v.*First, v.*Second).release();
+        const auto give = [&](auto... m) { return pybind11::make_tuple(v.*m...).release(); };
+        return std::apply(give, tactor::python::tuple_members<T>);
     }
-};
-
-template <>
-struct type_caster<tactor::point>
-    : pair_caster<tactor::point, double, double, &tactor::point::x_mm, &tactor::point::y_mm> {
-};
-template <>
-struct type_caster<tactor::drive>
-    : pair_caster<tactor::drive, unsigned, double, &tactor::drive::tactor, &tactor::drive::amplitude> {
-};
-template <>
-struct type_caster<tactor::meeting>
-    : pair_caster<tactor::meeting, double, tactor::point, &tactor::meeting::t_s, &tactor::meeting::position> {
-};
-template <>
-struct type_caster<tactor::profile_point>
-    : pair_caster<tactor::profile_point, double, double, &tactor::profile_point::part,
-                  &tactor::profile_point::value> {
-};
-template <>
-struct type_caster<tactor::threshold_point>
-    : pair_caster<tactor::threshold_point, double, double, &tactor::threshold_point::hz,
-                  &tactor::threshold_point::dbfs> {
 };
 
 } // namespace pybind11::detail

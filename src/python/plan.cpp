@@ -92,14 +92,6 @@ py::array_t<double> taus(const plan_handle& p)
     return to_numpy(std::move(all));
 }
 
-py::list rows(const plan_handle& p)
-{
-    py::list all;
-    for (const burst& b : p.plan().bursts)
-        all.append(py::make_tuple(b.onset_s, b.duration_s, b.position, b.intensity, b.drives));
-    return all;
-}
-
 // Returns t, positions, intensities and amplitudes of all samples; None if there is no curve.
 py::object samples(const plan_handle& p)
 {
@@ -298,11 +290,8 @@ render_options joined(std::span<const render_options> sounds)
 // Collects everything but plans and array that changes samples.
 py::tuple recipe(const render_options& o)
 {
-    const py::object limits =
-        o.limits ? py::object(py::make_tuple(o.limits->power_dbfs, o.limits->max_drive_s, o.limits->window_s))
-                 : py::object(py::none());
     return py::make_tuple(o.rate, o.phase, o.ramp_s, envelope_text(o.envelope), o.envelope.attack_s,
-                          o.envelope.release_s, o.channels, o.marker_channel, o.marker_s, limits,
+                          o.envelope.release_s, o.channels, o.marker_channel, o.marker_s, o.limits,
                           o.sl_db.has_value());
 }
 
@@ -484,13 +473,7 @@ void bind_plan(py::module_& m)
         .def_property_readonly("soa_s", member(&tactor::plan::soa_s))
         .def_property_readonly("total_s", member(&tactor::plan::total_s))
         .def_property_readonly("warnings", member(&tactor::plan::warnings))
-        .def_property_readonly("conflicts",
-                               [](const plan_handle& p) {
-                                   std::vector<std::tuple<unsigned, double, double>> all;
-                                   for (const conflict& c : p.plan().conflicts)
-                                       all.emplace_back(c.tactor, c.from_s, c.to_s);
-                                   return all;
-                               })
+        .def_property_readonly("conflicts", member(&tactor::plan::conflicts))
         .def_property_readonly("dropped", member(&tactor::plan::dropped))
         .def_property_readonly("size", [](const plan_handle& p) { return p.plan().bursts.size(); })
         .def_readonly("sound_options", &plan_handle::sound_options)
@@ -501,7 +484,7 @@ void bind_plan(py::module_& m)
         .def_property_readonly("positions", &positions)
         .def("taus", &taus)
         .def("amplitudes", &amplitudes)
-        .def("rows", &rows)
+        .def("rows", member(&tactor::plan::bursts))
         .def("samples", &samples)
         .def("felt", &felt)
         .def("summary", &summary);

@@ -248,10 +248,7 @@ py::tuple report_tuple(const stroke_report& r)
     std::optional<double> started_s;
     if (r.started_ns)
         started_s = static_cast<double>(*r.started_ns) * 1e-9;
-    py::object delay = py::none();
-    if (r.delay)
-        delay = py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s);
-    return py::make_tuple(r.id.number, r.state, r.why, r.frames, started_s, r.late_s, delay, r.held_points,
+    return py::make_tuple(r.id.number, r.state, r.why, r.frames, started_s, r.late_s, r.delay, r.held_points,
                           r.outside_points);
 }
 

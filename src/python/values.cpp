@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -188,35 +187,6 @@ try {
                 "make it anew with this version of tactor");
 }
 
-// A tactor: the members of tactor_spec without its place in a file.
-using tactor_row = std::tuple<point, unsigned, double, double, std::optional<double>, int, actuator_kind,
-                              std::vector<threshold_point>, std::optional<double>, std::optional<double>>;
-
-// Place of an array on the body: site, up, place, turn_deg, body_mm.
-using worn_row =
-    std::tuple<std::string, std::string, std::optional<point>, std::optional<double>, std::optional<double>>;
-
-array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows, const worn_row& worn)
-{
-    array a{.name = name};
-    std::tie(a.site, a.up, a.place, a.turn_deg, a.body_mm) = worn;
-    for (const tactor_row& row : rows) {
-        tactor_spec& t = a.tactors.emplace_back();
-        std::tie(t.position, t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity, t.actuator,
-                 t.thresholds, t.rise_s, t.displacement_um_at_0dbfs) = row;
-    }
-    return array_handle(std::move(a));
-}
-
-std::vector<tactor_row> list_rows(const array_handle& h)
-{
-    std::vector<tactor_row> rows;
-    for (const tactor_spec& t : h.value().tactors)
-        rows.emplace_back(t.position, t.channel, t.gain_db, t.max_dbfs, t.threshold_dbfs, t.polarity,
-                          t.actuator, t.thresholds, t.rise_s, t.displacement_um_at_0dbfs);
-    return rows;
-}
-
 // Returns a property that reads a member of the array.
 template <class T>
 auto member(T array::*m)
@@ -275,7 +245,7 @@ void bind_array(py::module_& m)
     m.def("read_text", &read_text);
     m.def("write_text", &write_text);
     py::class_<array_handle, std::shared_ptr<array_handle>>(m, "Array")
-        .def(py::init(&make_array))
+        .def(py::init<array>())
         .def_static("preset", [](const std::string& name) { return array_handle(preset_array(name)); })
         .def_static("grid",
                     [](std::string name, unsigned rows, unsigned columns, double x, double y) {
@@ -288,7 +258,7 @@ void bind_array(py::module_& m)
         .def_property_readonly("turn_deg", member(&array::turn_deg))
         .def_property_readonly("body_mm", member(&array::body_mm))
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
-        .def_property_readonly("rows", &list_rows)
+        .def_property_readonly("rows", member(&array::tactors))
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })
         .def_property_readonly("positions",
                                [](const py::object& self) {
@@ -373,18 +343,13 @@ std::string stroke_toml(const stroke& s)
     return detail::stroke_text(s);
 }
 
-// Without `speeds` and `intensities` both are even. `rests`: part, time, intensity.
+// Without `speeds` and `intensities` both are even.
 stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
              std::optional<double> speed_mm_s, double intensity, easing_kind easing,
              std::vector<profile_point> speeds, std::vector<profile_point> intensities,
-             const std::vector<std::tuple<double, double, double>>& rests)
+             std::vector<rest> rests)
 {
-    movement m{duration_s, easing, std::move(speeds), std::move(intensities)};
-    double resting_s = 0.0;
-    for (const auto& [part, time_s, strength] : rests) {
-        m.rests.push_back({part, time_s, strength});
-        resting_s += time_s;
-    }
+    movement m{duration_s, easing, std::move(speeds), std::move(intensities), std::move(rests)};
     stroke s{.name = name, .usual_pace = !duration_s && !speed_mm_s && m.speed_mm_s.empty()};
     const bool even =
         easing == easing_kind::linear && m.speed_mm_s.empty() && m.intensity.empty() && m.rests.empty();
@@ -397,8 +362,12 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
         m.speed_mm_s = {{0.0, *speed_mm_s}};
     }
     s.motion = trajectory::along(p, m, intensity);
-    if (!m.duration_s)
+    if (!m.duration_s) {
+        double resting_s = 0.0;
+        for (const rest& r : m.rests)
+            resting_s += r.time_s;
         s.speed_mm_s = p.length_mm() / (s.motion.duration_s() - resting_s);
+    }
     return s;
 }
 

@@ -416,7 +416,7 @@ def _checked_tactors(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
 def _make_core(name: str, tactors: _t.Iterable[Tactor], worn: _Worn = ("", "", None, None, None)) -> _t.Any:
     tactors = _checked_tactors(tactors)
     _need(name, str, "name")
-    return _tactor.Array(name, [_row(t) for t in tactors], worn)
+    return _tactor.Array((name, [_row(t) for t in tactors], *worn))
 
 
 def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
