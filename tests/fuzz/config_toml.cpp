@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Configuration files: what each section says is in its bounds.
+// Configuration and array files: what each section says is in its bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +20,8 @@ void check_line(const gpio_line_name& l)
 
 void check_setup(const setup& s)
 {
+    if (s.array)
+        fuzz::check_array(*s.array);
     HOLDS(!s.output.rate || (*s.output.rate >= 8000 && *s.output.rate <= 768000));
     HOLDS(!s.output.periods || *s.output.periods >= 2);
     HOLDS(!s.output.period_frames || *s.output.period_frames >= 1);

@@ -11,8 +11,7 @@ import sys
 
 # Target: files that are seeds whole; tests whose string literals are.
 SOURCES = {
-    "array_toml": (["examples/arrays/*.toml"], ["files/test_setup_array.cpp", "files/test_setup.cpp"]),
-    "config_toml": (["examples/tactor.toml"], ["files/test_setup.cpp", "files/test_setup_array.cpp"]),
+    "config_toml": (["examples/tactor.toml", "examples/arrays/*.toml"], ["files/test_setup.cpp", "files/test_setup_array.cpp"]),
     "stroke_toml": (["examples/strokes/*.toml"], ["files/test_stroke_csv.cpp", "files/test_stroke_load.cpp", "files/test_stroke_order.cpp"]),
     "stroke_csv": (["examples/strokes/*.csv"], ["files/test_stroke_csv.cpp"]),
     "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp",

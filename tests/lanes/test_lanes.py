@@ -70,7 +70,7 @@ class Lanes(ToolTest):
         self.assertEqual(set(re.search(r"set -- ([a-z_ ]+)$", lane, re.M)[1].split()), names)
         said(sys.executable, str(FUZZ / "seeds.py"), str(ROOT), str(self.dir / "seeds"))
         self.assertEqual({f.name for f in (self.dir / "seeds").iterdir()}, names - {"planner"})
-        self.assertIn("左手".encode(), b"".join(f.read_bytes() for f in (self.dir / "seeds/array_toml").iterdir()))
+        self.assertIn("左手".encode(), b"".join(f.read_bytes() for f in (self.dir / "seeds/config_toml").iterdir()))
 
     def test_files_of_awkward_folders_are_not_compiled_as_one(self):
         for name in ("a&b", "a'b", "a;b", "a^b", 'a"b', "a*b", "a<b", "a?b", "a|b", "a\\b"):
