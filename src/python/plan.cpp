@@ -92,11 +92,9 @@ py::array_t<double> taus(const plan_handle& p)
     return to_numpy(std::move(all));
 }
 
-// Returns t, positions, intensities and amplitudes of all samples; None if there is no curve.
-py::object samples(const plan_handle& p)
+// Returns t, positions, intensities and amplitudes of all samples of a curve.
+py::tuple samples(const plan_handle& p)
 {
-    if (!p.plan().curve)
-        return py::none();
     const curve& c = *p.plan().curve;
     const std::size_t tactors = p.on->value().tactors.size();
     std::vector<double> t, places, intensities, all;
@@ -339,11 +337,7 @@ void check_signals()
 // Makes the next frames of a score, block by block.
 class block_renderer {
 public:
-    block_renderer(const score& s, const std::string& format)
-        : renderer_(s, from_string<format_kind>(format)),
-          frame_(s.channels() * sample_bytes(from_string<format_kind>(format)))
-    {
-    }
+    block_renderer(const score& s, format_kind f) : renderer_(s, f), frame_(s.channels() * sample_bytes(f)) {}
 
     /// Fills memory with frames, which it is a whole number of.
     void fill(std::span<std::byte> out)
@@ -402,7 +396,7 @@ void bind_score(py::module_& m)
         .def_property_readonly("starts", &score::starts)
         .def("write", &write);
     py::class_<block_renderer>(m, "Renderer")
-        .def(py::init<const score&, const std::string&>())
+        .def(py::init<const score&, format_kind>())
         .def("into", &block_renderer::into)
         .def("skip", &block_renderer::skip);
 }
