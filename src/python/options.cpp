@@ -55,11 +55,7 @@ constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
 
 std::string shown(py::handle v)
 {
-    try {
-        return py::module_::import("tactor._checks").attr("_shown")(v).cast<std::string>();
-    } catch (py::error_already_set&) { // its repr() failed
-        return "that";
-    }
+    return py::module_::import("tactor._checks").attr("_shown")(v).cast<std::string>();
 }
 
 double number(const option& o, py::handle v)

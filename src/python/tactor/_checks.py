@@ -90,7 +90,7 @@ def _place(what: str, value: _t.Any) -> tuple[float, float]:
 def _shown(value: object) -> str:
     try:
         text = repr(value)
-    except ValueError:  # a number of more digits than Python writes
+    except Exception:  # as for a number of more digits than Python writes
         return "that"
     return text if len(text) <= 80 else text[:80] + "..."
 
