@@ -145,7 +145,7 @@ decltype(auto) in_python(F&& f)
     }
 }
 
-/// While it lives, others may have the lock, which the caller has.
+/// Gives the interpreter's lock, which the caller has, to others while it lives.
 class without_lock {
 public:
     without_lock() : mine_(PyEval_SaveThread()) {}
@@ -160,7 +160,7 @@ private:
     PyThreadState* mine_;
 };
 
-/// While it lives, the caller has the lock; it may have had it before.
+/// Takes the interpreter's lock while it lives. The caller may have it already.
 class with_lock {
 public:
     with_lock() : before_(in_python([] { return PyGILState_Ensure(); })) {}
@@ -187,7 +187,7 @@ public:
     explicit array_handle(array a) : array_(std::move(a)) { validate(array_); }
 
     const array& value() const noexcept { return array_; }
-    /// With the interpreter's lock held, which is what makes one of it.
+    /// Returns the faces. The caller has the interpreter's lock, so that they are made once.
     const layout& faces() const
     {
         if (faces_ == nullptr)
@@ -231,7 +231,7 @@ error in_keywords(const error& e);
 struct plan_handle {
     std::shared_ptr<array_handle> on;
     session::piece one;                          ///< of one stroke
-    render_options sound = {};                   ///< how it sounds where nobody says otherwise
+    render_options sound = {};                   ///< usual sound
     std::vector<std::string> sound_options = {}; ///< names of those that were set
 
     /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.

@@ -96,7 +96,7 @@ def _shown(value: object) -> str:
 
 
 def _need(value: object, kind: type, what: str) -> None:
-    """Refuses an argument of another type by its name, which the extension does not know."""
+    """Refuses an argument of another type by its name."""
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise TypeError(f"{what}: {article} {kind.__name__} is wanted, not {type(value).__name__}")
@@ -192,7 +192,7 @@ _S = _t.TypeVar("_S", bound="_Stated")
 
 
 class _Stated(_Value):
-    """A value that the extension has and writes as bytes: equal where they are."""
+    """A value of the extension, which writes it as bytes. Values with the same bytes are equal."""
 
     __slots__ = ("_core",)
 
@@ -221,7 +221,7 @@ def _again(kind: type[_S], core: _t.Any, state: bytes) -> _S:
 
 
 class _Unique:
-    """A thing that is there once, as a device is: two of it would close each other."""
+    """An object that cannot be copied, such as a device: two would close each other."""
 
     __slots__ = ()
 

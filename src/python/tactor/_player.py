@@ -267,7 +267,7 @@ class Player(_Unique):
         """Stops, closes the device and leaves the amplifier off. All strokes have been reported then, and their callbacks called."""
         shared = self._get()
         held = self._held
-        shared.held = lambda: held  # collected, it is still told how its strokes ended
+        shared.held = lambda: held  # a player that is collected still gets the reports of its strokes
         with shared.closing:  # a second caller finds it closed
             shared.core.close()
         _open.discard(self)
@@ -305,7 +305,7 @@ _open: weakref.WeakSet[Player] = weakref.WeakSet()
 
 @atexit.register
 def _close_all() -> None:
-    """A forgotten player is closed, and its amplifier off, while Python can still say so."""
+    """Closes forgotten players, and switches their amplifiers off, while Python can still print."""
     for player in list(_open):
         if not player._shared.core.forked:
             _call(player.close)

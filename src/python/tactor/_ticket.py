@@ -19,7 +19,7 @@ if _t.TYPE_CHECKING:
     _State = _t.Literal["finished", "cancelled", "interrupted"]
     _LogKind = _t.Literal["debug", "info", "warning", "error"]
 
-_LOOK_S = 0.1  # so late Ctrl-C may be noticed
+_LOOK_S = 0.1  # longest time until Ctrl-C is noticed
 _T = _t.TypeVar("_T")
 
 
@@ -92,7 +92,7 @@ class _Awaited(_Unique, _t.Generic[_T]):
         if not self._done and threading.current_thread() is thread:
             raise RuntimeError(f"a callback cannot wait for {what}")
         until = None if timeout is None else time.monotonic() + timeout
-        # Looks for itself now and then: a signal that the kernel gives to another thread wakes none that waits.
+        # Wakes now and then: a signal that the kernel gives to another thread does not end this wait.
         while not self._gate.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
             if until is not None and time.monotonic() >= until:
                 raise TimeoutError(f"{what} has not ended after {timeout:g} s")
@@ -128,7 +128,7 @@ class _Awaited(_Unique, _t.Generic[_T]):
         return self._answer()
 
     def _forsake(self) -> None:
-        """Whoever awaited it was cancelled."""
+        """Cancels what it stands for, because the task that awaits it was cancelled."""
 
     def _answer(self) -> _T:
         if self._error is not None:
@@ -300,7 +300,7 @@ class LiveStroke(Ticket):
 
 
 class _Gate:
-    """Is opened once. Those who wait may be interrupted by a signal's handler that waits, too, which threading.Event does not allow."""
+    """A gate that opens once. A signal's handler may wait at it while it interrupts another wait, which threading.Event does not allow."""
 
     def __init__(self) -> None:
         self._open = False
@@ -312,7 +312,7 @@ class _Gate:
         self._lock.release()
 
     def wait(self, timeout: float) -> bool:
-        if self._open:  # whom the handler interrupts may have the lock
+        if self._open:  # a wait that the handler interrupts may have the lock
             return True
         there = self._lock.acquire(timeout=timeout)
         if there:
@@ -372,15 +372,15 @@ class _Shared:
                     _call(held.log, *event)
                 continue
             number, state, reason, frames, started_s, late_s, delay, *points = event
-            with self.lock:  # whoever submitted it has its ticket in there first
+            with self.lock:  # submit() holds it until the ticket is in there
                 ticket = held.tickets.pop(number, None)
             if ticket is not None:
                 ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay), *points))
 
 
 def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:
-    """A callback's exception is shown, as other threads' are; the player goes on."""
+    """Calls a callback, and shows its exception as that of another thread; the player goes on."""
     try:
         function(*arguments)
-    except BaseException:  # sys.exit(), too, which would end the player's thread and leave all who wait
+    except BaseException:  # sys.exit(), too: it would end the player's thread, for which others wait
         sys.excepthook(*sys.exc_info())
