@@ -8,7 +8,6 @@ import pickle
 import pytest
 
 import tactor
-from tactor import _errors
 
 
 def test_they_have_families():
@@ -69,13 +68,6 @@ def test_they_are_pickled(kind):
     assert (again.what, again.why, again.hint, again.file, again.line, again.column) == ("what", "why", "hint", "f", 1, 2)
     assert (again.field, again.errno) == ("x_mm", 5)
     assert e.args == ("what", "why", "hint") and "hint" in repr(e)
-
-
-def test_each_kind_of_the_library_has_its_class():
-    assert type(_errors.make_error("bad-input", "soa", "no", "yes")) is tactor.InputError
-    assert type(_errors.make_error("not-available", "pcm", "no", "")) is tactor.DeviceError
-    assert _errors.make_error("not-available", "pcm", "why", "hint", errno=19).args == ("pcm", "why", "hint")
-    assert type(_errors.make_error("runtime", "stream", "no", "")) is tactor.StreamError
 
 
 @pytest.mark.parametrize("call,hint", [

@@ -126,12 +126,6 @@ def test_pieces_of_several_plans(tool, tmp_path, root, palm):
     assert not shifted.render()[:24000].any()
 
 
-def test_a_score_keeps_its_plan_s_options(palm, stroke):
-    loud = tactor.plan(palm, stroke, level_dbfs=-6, rate=44100)
-    assert tactor.Score(palm, loud).rate == 44100 and tactor.Score(palm, loud, rate=48000).rate == 48000
-    assert np.array_equal(tactor.Score(palm, loud).render(), tactor.Score(palm, tactor.plan(palm, stroke), level_dbfs=-6, rate=44100).render())
-
-
 def test_markers_and_limits(palm, stroke):
     plan = tactor.plan(palm, stroke)
     marked = tactor.Score(palm, plan, marker_channel=9, marker_s=0.01)

@@ -73,17 +73,6 @@ def test_the_place_on_the_body_is_kept(tmp_path):
     assert tactor.Array.preset("palm-3x3").site == ""
 
 
-def test_a_pickled_array_is_as_loud_as_that_of_its_file(tmp_path, stroke):
-    file = tmp_path / "measured.toml"
-    file.write_text('[array]\nname = "measured"\npreset = "palm-3x3"\n' + "".join(
-        f"[[tactor]]\ntactor = {i}\nrise_ms = 20\nthreshold_dbfs = [[100, -20], [250, -41]]\n" for i in range(9)))
-    array = tactor.Array.from_file(file)
-    assert array[0].thresholds == ((100.0, -20.0), (250.0, -41.0)) and array[0].rise_s == 0.02
-    again = pickle.loads(pickle.dumps(array))
-    samples = [tactor.Score(a, [tactor.plan(a, stroke, carrier=150)], sl=7).to_numpy() for a in (array, again)]
-    assert np.abs(samples[0]).max() > 0.01 and (samples[0] == samples[1]).all()
-
-
 def test_a_recording_is_read_as_a_csv_file_is(tmp_path):
     rows = [(7, 0, 0, 51), (7, 5, 5, 255), (7.5, float("nan"), 20, 9), (8, 40, 40, 0)]
     csv = "t_s,x_mm,y_mm,intensity\n" + "".join(f"{t},{x},{y},{i}\n" for t, x, y, i in rows)
