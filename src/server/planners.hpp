@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <list>
 #include <optional>
@@ -18,6 +17,7 @@ using client_number = std::uint64_t;
 
 /// Work for a planner. Its functions may share what they work on.
 struct planner_job {
+    client_number client = 0;
     std::function<void()> work; ///< runs on a planner's thread; must not throw
     std::function<void()> done; ///< follows it in the context's thread
     /// Replaces `done`, and `work` if it has not begun, when the server ends, its client has gone or a newer
@@ -37,7 +37,7 @@ public:
     planners(const planners&) = delete;
     planners& operator=(const planners&) = delete;
 
-    void add(client_number of, planner_job j);
+    void add(planner_job j);
     /// Drops what waits for a client that has gone, but for what outlives it.
     void forget(client_number of);
     /// Drops all jobs: the server ends.
@@ -46,28 +46,15 @@ public:
     void aside(std::function<void()> f);
 
 private:
-    struct client_jobs {
-        client_number number;
-        std::deque<planner_job> quick = {};
-        std::deque<planner_job> others = {};
-    };
-    struct running {
-        planner_job job;
-        bool dropped = false;
-    };
-
-    client_jobs& find_jobs(client_number of);
-    bool outdate(client_jobs& own, planner_job& j);
     void next();
-    bool run_next(std::deque<planner_job> client_jobs::*jobs);
-    void run(planner_job j);
-    void finished(std::list<running>::iterator r);
+    bool run_next(bool quick);
+    void finished(std::list<planner_job>::iterator j);
 
     static constexpr unsigned threads = 2;
 
     boost::asio::io_context& io_;
-    std::list<client_jobs> turns_; ///< clients that have jobs; the first is next
-    std::list<running> running_;
+    std::list<planner_job> waiting_; ///< in the order of their clients' turns
+    std::list<planner_job> running_; ///< without `drop` once they are dropped
     boost::asio::thread_pool pool_{threads};
 };
 

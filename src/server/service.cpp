@@ -228,18 +228,19 @@ void service::receive_large(client_number number, std::string text, std::functio
     const auto l = std::make_shared<message_aside>(message_aside{std::move(text)});
     ++c->unanswered;
     planners_.add(
-        number, {.work = [this, l] { l->message = within_memory([&] { return l->parse(options_.limits); }); },
-                 .done =
-                     [this, number, l, done = std::move(done), asked = mark(*c)] {
-                         if (client* then = find(number))
-                             --then->unanswered;
-                         const bool go_on = receive(number, l->message, l->bytes, asked);
-                         planners_.aside([l] {}); // which frees it
-                         give_memory_back_when_quiet();
-                         done(go_on);
-                     },
-                 .drop = [](bool) {},
-                 .quick = true});
+        {.client = number,
+         .work = [this, l] { l->message = within_memory([&] { return l->parse(options_.limits); }); },
+         .done =
+             [this, number, l, done = std::move(done), asked = mark(*c)] {
+                 if (client* then = find(number))
+                     --then->unanswered;
+                 const bool go_on = receive(number, l->message, l->bytes, asked);
+                 planners_.aside([l] {}); // which frees it
+                 give_memory_back_when_quiet();
+                 done(go_on);
+             },
+         .drop = [](bool) {},
+         .quick = true});
 }
 
 // Returns the small blocks of large messages to the system. Trimming blocks the heap for all threads, so this

@@ -81,8 +81,8 @@ void service::admit_job(client& c, plan_job j, std::optional<double> draft)
     ++c.coming;
     ++jobs_;
     const auto job = std::make_shared<plan_job>(std::move(j));
-    planners_.add(c.number,
-                  {.work = [this, job] { work_on(*job); },
+    planners_.add({.client = c.number,
+                   .work = [this, job] { work_on(*job); },
                    .done = [this, job] { job_done(job); },
                    .drop = [this, job](bool old) { refuse(*job, old ? outdated() : server_ends()); },
                    .draft = draft,
