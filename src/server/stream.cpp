@@ -2,6 +2,9 @@
 #include "server/stream.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
 
 #include <boost/asio/post.hpp>
 #include <fcntl.h>
@@ -23,7 +26,83 @@ try {
     return false;
 }
 
+float magnitude(const std::byte* p, format_kind f) noexcept
+{
+    const std::size_t bytes = f == format_kind::s24_4 ? 3 : sample_bytes(f);
+    std::uint32_t bits = 0; // the sample in the highest ones
+    for (std::size_t i = 0; i < bytes; ++i)
+        bits |= static_cast<std::uint32_t>(p[i]) << 8U * (4 - bytes + i);
+    if (f == format_kind::float32)
+        return std::abs(std::bit_cast<float>(bits));
+    return std::abs(static_cast<float>(static_cast<std::int32_t>(bits))) / 2147483648.0F;
+}
+
+class meter_sink final : public sink {
+public:
+    meter_sink(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks)
+        : inner_(std::move(s)), peaks_(std::move(peaks))
+    {
+    }
+
+    const stream_setup& setup() const noexcept override { return inner_->setup(); }
+    io_kind prepare() noexcept override { return inner_->prepare(); }
+    io_kind start() noexcept override { return inner_->start(); }
+    io_kind resume() noexcept override { return inner_->resume(); }
+    std::int64_t xrun_ns() noexcept override { return inner_->xrun_ns(); }
+    std::size_t max_descriptors() const noexcept override { return inner_->max_descriptors(); }
+    std::size_t descriptors(std::span<pollfd> f) noexcept override { return inner_->descriptors(f); }
+    io_kind ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
+    io_result available() noexcept override { return inner_->available(); }
+    stream_position position() noexcept override { return inner_->position(); }
+    void drop() noexcept override { inner_->drop(); }
+
+    io_result write(std::span<const std::byte> frames) noexcept override
+    {
+        const io_result r = inner_->write(frames);
+        if (peaks_->listens())
+            look(frames.data(), r.frames);
+        return r;
+    }
+
+private:
+    void look(const std::byte* data, std::size_t frames) noexcept
+    {
+        const stream_setup& s = inner_->setup();
+        const std::size_t step = sample_bytes(s.format);
+        const std::size_t channels = std::min<std::size_t>(s.channels, peaks_->size());
+        for (std::size_t c = 0; c < channels; ++c) {
+            float most = 0.0F;
+            for (std::size_t f = 0; f < frames; ++f)
+                most = std::max(most, magnitude(data + (f * s.channels + c) * step, s.format));
+            if (most > 0.0F)
+                peaks_->raise(c, most);
+        }
+    }
+
+    std::unique_ptr<sink> inner_;
+    std::shared_ptr<level_peaks> peaks_;
+};
+
 } // namespace
+
+void level_peaks::raise(std::size_t channel, float peak) noexcept
+{
+    std::atomic<float>& p = peaks_[channel];
+    float seen = p.load(std::memory_order_relaxed);
+    // The other side only ever takes it to 0: a second try is enough.
+    while (peak > seen && !p.compare_exchange_weak(seen, peak, std::memory_order_relaxed)) {
+    }
+}
+
+float level_peaks::take(std::size_t channel) noexcept
+{
+    return peaks_[channel].exchange(0.0F, std::memory_order_relaxed);
+}
+
+std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks)
+{
+    return std::make_unique<meter_sink>(std::move(s), std::move(peaks));
+}
 
 stream::stream(boost::asio::io_context& io, stream_options o)
     : device_stream(make_parts(*this, static_cast<const session::stream_parts&>(o))),

@@ -3,6 +3,9 @@
 /// The service's stream: a worker opens and closes the device, one timer does the rest.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <functional>
@@ -10,18 +13,43 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
-#include "server/level_meter.hpp"
+#include <tactor/sink.hpp>
+
 #include "session/device_stream.hpp"
 
 namespace tactor::server {
 
 using session::stream_state;
+
+/// Peaks by channel, between the audio thread, which writes them, and the thread that asks.
+class level_peaks {
+public:
+    explicit level_peaks(std::size_t channels) : peaks_(channels) {}
+
+    /// Switches the meter on or off: it costs time only while a client asks.
+    void listen(bool on) noexcept { on_.store(on, std::memory_order_relaxed); }
+    bool listens() const noexcept { return on_.load(std::memory_order_relaxed); }
+    std::size_t size() const noexcept { return peaks_.size(); }
+
+    /// Notes the magnitude of a sample, full scale 1. The audio thread calls it.
+    void raise(std::size_t channel, float peak) noexcept;
+    /// Returns the largest magnitude since the last call; 0 after silence.
+    float take(std::size_t channel) noexcept;
+
+private:
+    std::vector<std::atomic<float>> peaks_;
+    std::atomic<bool> on_{false};
+};
+
+/// Returns a sink in front of the device that measures samples as they were written: after all limits.
+std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks);
 
 struct stream_options : session::stream_parts {
     std::function<void(stream_state, const std::string& reason)> changed = {};

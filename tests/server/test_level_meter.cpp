@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Levels of what is written, in every sample format.
-#include "server/level_meter.hpp"
+#include "server/stream.hpp"
 
 #include <cstring>
 #include <memory>
