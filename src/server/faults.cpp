@@ -42,6 +42,14 @@ void limit_reached(std::string what, std::string why, std::string hint)
     throw fault_error({net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)});
 }
 
+void too_many_strokes(std::size_t strokes, std::size_t most)
+{
+    limit_reached(
+        "max_strokes",
+        fmt::format("{} strokes are more than the {} that a client may have at once", strokes, most),
+        "send fewer");
+}
+
 void no_such_stroke(std::uint32_t number, std::string why)
 {
     throw fault_error({net::code_no_stroke, "no-stroke", "stroke", fmt::format("{}: {}", number, why), ""});

@@ -30,9 +30,10 @@
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
 #include "server/planners.hpp"
+#include "server/request.hpp"
 #include "server/stream.hpp"
-#include "server/stroke_source.hpp"
 #include "server/tool_line.hpp"
+#include "server/view.hpp"
 
 namespace tactor::server {
 

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "core/bounds.hpp"
+#include "core/start_times.hpp"
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
@@ -25,7 +26,6 @@
 #include "plot/paint/output.hpp"
 #include "server/faults.hpp"
 #include "server/service_impl.hpp"
-#include "server/stroke_source.hpp"
 #include "server/tool_line.hpp"
 #include "session/piece.hpp"
 #include "sink/wav/wav.hpp"
@@ -102,6 +102,34 @@ read_file read_bytes(std::string bytes, const std::string& name, double intensit
     if (format != "toml" || intensity_max != 1.0)
         bytes.clear(); // others would read other intensities
     return {std::move(strokes), std::move(bytes)};
+}
+
+// Returns the start of each stroke, s, as if each lasted as long as its path.
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
+{
+    detail::start_times times;
+    for (const stroke& k : strokes) {
+        times.start(k.start_s, k.anchor);
+        times.lasts(k.motion.duration_s());
+    }
+    return std::move(times).all();
+}
+
+// Returns true for a stroke whose start counts from that of a group, which a stroke file written anew has
+// not.
+bool counts_from_group(const stroke& k) noexcept
+{
+    return k.anchor.back != 1;
+}
+
+// Gives such strokes their starts, s from that of the piece.
+void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& starts_s)
+{
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        if (counts_from_group(strokes[i])) {
+            strokes[i].start_s = starts_s[i];
+            strokes[i].anchor = {};
+        }
 }
 
 std::string toml_text(std::vector<stroke> strokes, const std::vector<double>& starts)

@@ -8,8 +8,6 @@
 
 #include "core/words.hpp"
 #include "server/service_impl.hpp"
-#include "server/stroke_options.hpp"
-#include "server/view.hpp"
 
 namespace tactor::server {
 namespace {
@@ -205,10 +203,7 @@ void service::submit_all(const plan_job& job)
     if (const client* c = find(number);
         c != nullptr && scores.size() > 1 &&
         c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
-        limit_reached("max_strokes",
-                      fmt::format("{} strokes are more than the {} that a client may have at once",
-                                  scores.size(), options_.limits.max_strokes),
-                      "send fewer");
+        too_many_strokes(scores.size(), options_.limits.max_strokes);
     const auto numbers =
         submit(number, job.start, p, scores, stop_reason_since(job.to), job.gain_db, job.rounds == 0);
     auto warnings = p.warnings();

@@ -17,7 +17,6 @@
 
 #include "core/words.hpp"
 #include "server/service_impl.hpp"
-#include "server/stroke_options.hpp"
 
 namespace tactor::server {
 namespace {

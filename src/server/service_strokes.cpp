@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "server/service_impl.hpp"
-#include "server/stroke_options.hpp"
 #include "session/log.hpp"
 
 namespace tactor::server {

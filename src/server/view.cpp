@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,11 +20,18 @@
 
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
+#include "server/faults.hpp"
 
 namespace tactor::server {
 namespace {
 
+using net::json;
 using net::reply_json;
+
+constexpr std::pair<std::string_view, view_kind> views[] = {{"full", view_kind::full},
+                                                            {"bursts", view_kind::bursts},
+                                                            {"percept", view_kind::percept},
+                                                            {"peaks", view_kind::peaks}};
 
 // Parts of a second, of a millimetre, and of the level asked for, to which numbers are rounded.
 constexpr double time_parts = 1e5;
@@ -73,6 +81,10 @@ private:
     std::size_t rows_ = 0;
 };
 
+// Most rows of samples, and of felt places, in a view of all strokes together; least time from one to the
+// next of a stroke, s.
+constexpr double most_view_rows = 2000.0;
+constexpr double view_step_s = 0.002;
 constexpr double time_edge = 1e-6; // of a step: a duration so little above is none
 
 // Returns the rows that a curve, or the felt places, of a stroke can have.
@@ -333,6 +345,27 @@ std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, 
 }
 
 } // namespace
+
+view_choice read_view(const json& params)
+{
+    constexpr double most_bins = 4000.0;
+    view_choice v;
+    if (const json* name = member(params, "view")) {
+        const std::string said = text(*name, "view");
+        const auto* found = std::find_if(std::begin(views), std::end(views),
+                                         [&](const auto& one) { return one.first == said; });
+        if (found == std::end(views))
+            bad_param("view", fmt::format("\"{}\" is not known", said),
+                      "one of full, bursts, percept, peaks");
+        v.kind = found->second;
+    }
+    if (const json* bins = member(params, "bins")) {
+        if (v.kind != view_kind::peaks)
+            bad_param("bins", "only the view peaks has them", R"(add "view":"peaks")");
+        v.bins = static_cast<std::size_t>(whole(*bins, "bins", {1.0, most_bins}));
+    }
+    return v;
+}
 
 std::string view_text(const planned& p, const array& a, const view_choice& v, std::size_t most_bytes)
 {

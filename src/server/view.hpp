@@ -8,10 +8,21 @@
 
 #include <tactor/array.hpp>
 
-#include "server/stroke_options.hpp"
-#include "server/stroke_source.hpp"
+#include "net/rpc.hpp"
+#include "server/request.hpp"
 
 namespace tactor::server {
+
+/// Part of a plan that is asked for: all, or one for a picture.
+enum class view_kind { full, bursts, percept, peaks };
+
+struct view_choice {
+    view_kind kind = view_kind::full;
+    std::size_t bins = 400; ///< of peaks
+};
+
+/// Reads `view` and `bins`. \throws fault_error naming the parameter.
+view_choice read_view(const net::json& params);
 
 /// Returns a view as a JSON object on one line. `v` is not `full`. \throws std::bad_alloc beyond so many
 /// bytes.

@@ -13,7 +13,6 @@
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
 #include "server/faults.hpp"
-#include "server/stroke_source.hpp"
 #include "server/view.hpp"
 #include "service_rig.hpp"
 

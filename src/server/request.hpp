@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// From the parameters of `play` and `plan` to plans and scores. Pure; runs off the thread of the sockets.
+/// Parameters of requests: options, a start, and strokes, of which they make plans and scores.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +17,49 @@
 #include <tactor/stroke.hpp>
 
 #include "net/rpc.hpp"
+#include "options/option.hpp"
 #include "percept/compare.hpp"
-#include "server/stroke_options.hpp"
 #include "session/piece.hpp"
 
 namespace tactor::server {
+
+/// Converts a time, ns, to the seconds that messages have.
+inline double seconds(std::int64_t ns) noexcept
+{
+    return static_cast<double>(ns) * 1e-9;
+}
+
+/// Returns the time of day, ns since 1970.
+inline std::int64_t unix_ns() noexcept
+{
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
+
+/// Strokes that are planned ahead know more options than live ones.
+enum class options_for { planned, live };
+
+/// Returns the owner's options with those of a client over them. \throws fault_error, or error with the
+/// option as its field.
+options::wishes with_options(options::wishes w, const net::json& given, options_for which);
+
+/// Returns the answer to the method `options`: a row for each option that a client may give, with the owner's
+/// value.
+net::reply_json option_rows(const options::wishes& owner);
+
+/// Returns the owner's options with the request's `options` and `observer` over them. \throws what
+/// with_options() throws.
+options::wishes settle_options(options::wishes owner, const net::json& params);
+
+/// Start of a stroke: now, at a time, or armed, which waits for fire.
+struct start_time {
+    bool armed = false;
+    std::optional<std::int64_t> at_ns = {}; ///< CLOCK_MONOTONIC
+};
+
+/// Reads a start; null: now. \throws fault_error naming it.
+start_time read_start(const net::json* start, std::int64_t now_ns);
 
 /// Settings that all plans share.
 struct planning {
@@ -54,15 +94,6 @@ std::vector<stroke> read_strokes(const std::string& source, const net::json& v, 
 /// them together. \throws fault_error if there are too many or if they last too long; error.
 std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
                                    options::wishes s, bool fit);
-
-/// Returns the start of each stroke, s, as if each lasted as long as its path.
-std::vector<double> path_starts_s(const std::vector<stroke>& strokes);
-
-/// Returns true for a stroke whose start counts from that of a group, which a stroke file written anew has
-/// not.
-bool counts_from_group(const stroke& k) noexcept;
-/// Gives such strokes their starts, s from that of the piece.
-void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& starts_s);
 
 /// Returns the one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or
 /// "svg". \throws fault_error for none or several.

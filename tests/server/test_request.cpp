@@ -9,10 +9,9 @@
 
 #include "options/option.hpp"
 #include "server/faults.hpp"
-#include "server/stroke_options.hpp"
-#include "server/stroke_source.hpp"
+#include "server/request.hpp"
 
-namespace stroke_options_test {
+namespace request_test {
 
 using namespace tactor;
 using namespace tactor::server;
@@ -369,4 +368,4 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     CHECK(plays(half("sl"))); // -23 dBFS
 }
 
-} // namespace stroke_options_test
+} // namespace request_test
