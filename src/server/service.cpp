@@ -309,12 +309,8 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     };
     if (!c.admitted && r.method != "hello")
         throw fault_error(no_hello());
-    if (r.method == "play" || r.method == "plan")
-        return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
-    if (r.method == "import")
-        return import_file(c, std::move(r.params), to, bytes);
-    if (r.method == "export")
-        return export_file(c, std::move(r.params), to, bytes);
+    if (r.method == "play" || r.method == "plan" || r.method == "import" || r.method == "export")
+        return add_job(c, r, to, bytes);
     for (const auto& [name, handle] : handlers)
         if (name == r.method)
             return (this->*handle)(c, r.params, to);

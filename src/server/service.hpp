@@ -29,18 +29,15 @@
 #include "net/connection.hpp"
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
+#include "server/files.hpp"
 #include "server/planners.hpp"
 #include "server/request.hpp"
 #include "server/stream.hpp"
-#include "server/tool_line.hpp"
 #include "server/view.hpp"
 
 namespace tactor::server {
 
 using service_limits = options::serve_limits;
-
-/// Most bytes of an exported file, and of the result of an import.
-inline constexpr std::size_t most_file_bytes = 64U << 20;
 
 /// Number of things that may be done at once. It comes back within a second.
 struct allowance {
@@ -152,21 +149,23 @@ private:
 
     struct plan_job {
         answer to;
+        std::string method; ///< "play", "plan", "import" or "export"
+        std::size_t bytes = 0;
         net::json params = {}; ///< freed when they are planned or made
         net::json start = "now";
-        std::size_t bytes = 0;
-        bool play = false;
         double gain_db = 0.0;     ///< of all its strokes
         std::uint64_t rounds = 1; ///< 0: until they are cancelled
         view_choice view = {};
-        /// Makes the result of import or export, in place of a plan.
-        std::function<std::string(const net::json& params, const go_on_check& go_on)> make_text = {};
+        std::optional<double> draft = {};
 
         // Results.
         std::shared_ptr<planned> made = {};
         std::vector<score> scores = {};
         std::string text = {};
         std::optional<net::rpc_fault> fault = {};
+
+        bool plays() const { return method == "play"; }
+        bool is_file() const { return method == "import" || method == "export"; }
     };
 
     // service.cpp
@@ -203,20 +202,17 @@ private:
     void tell_stop(client_number by);
 
     // service_jobs.cpp
-    void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
-    void admit_job(client& c, plan_job j, std::optional<double> draft = {});
+    void add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
+    static void read_job(plan_job& j, std::int64_t now_ns);
     void work_on(plan_job& j);
-    void plan(plan_job& j, const go_on_check& go_on);
+    std::string make_text(const plan_job& j, const go_on_check& go_on);
+    void make_scores(plan_job& j, const go_on_check& go_on);
     void job_done(const std::shared_ptr<plan_job>& j);
     void refuse(const plan_job& j, const net::rpc_fault& f);
     void forget(const plan_job& j);
     void uncount(const plan_job& j);
     void submit_all(const plan_job& job);
     std::uint64_t count_rounds(const plan_job& job, const planned& p) const;
-
-    // service_files.cpp
-    void import_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
-    void export_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
 
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);

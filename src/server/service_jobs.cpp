@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// play and plan: requests that planners work on, and their results.
+// play, plan, import and export: requests that planners work on, and their results.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -39,52 +39,54 @@ net::rpc_fault outdated()
 
 } // namespace
 
-void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
+void service::add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
 {
-    if (play)
-        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
-                            "repeat"});
-    else
-        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
-                            "draft", "bins", "observer"});
-    static_cast<void>(find_source(params));
-    const json* start = member(params, "start");
-    static_cast<void>(read_start(start, options_.now_ns()));
-    static_cast<void>(settle_options(options_.plans.owner, params));
-    std::optional<double> draft;
-    if (const json* given = member(params, "draft"))
-        draft = whole(*given, "draft", {0.0, 0x1p53});
-    plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play};
-    job.view = read_view(params);
-    if (const json* gain = member(params, "gain_db"))
-        job.gain_db = number(*gain, "gain_db", {player::least_level_db, 0.0});
-    if (const json* repeat = member(params, "repeat"))
-        job.rounds =
-            *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
-    job.params = std::move(params);
-    admit_job(c, std::move(job), draft);
-}
-
-void service::admit_job(client& c, plan_job j, std::optional<double> draft)
-{
+    plan_job made{to, r.method, bytes, std::move(r.params)};
+    read_job(made, options_.now_ns());
     if (ending_)
         no_stream("the server ends");
     check_free_place(c);
-    if (j.play && stream_.is_out())
+    if (made.plays() && stream_.is_out())
         no_stream(stream_.reason());
-    if (c.bytes + j.bytes > 2 * options_.limits.max_message_bytes)
+    if (c.bytes + bytes > 2 * options_.limits.max_message_bytes)
         limit_reached("max_message_bytes", "too much of yours waits to be planned",
                       "try again when one is answered");
-    c.bytes += j.bytes;
+    c.bytes += bytes;
     ++c.coming;
     ++jobs_;
-    const auto job = std::make_shared<plan_job>(std::move(j));
+    const auto job = std::make_shared<plan_job>(std::move(made));
     planners_.add({.client = c.number,
                    .work = [this, job] { work_on(*job); },
                    .done = [this, job] { job_done(job); },
                    .drop = [this, job](bool old) { refuse(*job, old ? outdated() : server_ends()); },
-                   .draft = draft,
-                   .outlives = job->play});
+                   .draft = job->draft,
+                   .outlives = job->plays()});
+}
+
+// Reads the parameters beside the strokes. The planner reads those, and the parameters of files.
+void service::read_job(plan_job& j, std::int64_t now_ns)
+{
+    const json& params = j.params;
+    if (j.plays())
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
+                            "repeat"});
+    else if (!j.is_file())
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
+                            "draft", "bins", "observer"});
+    else
+        return;
+    if (const json* start = member(params, "start")) {
+        static_cast<void>(read_start(start, now_ns));
+        j.start = *start;
+    }
+    if (const json* draft = member(params, "draft"))
+        j.draft = whole(*draft, "draft", {0.0, 0x1p53});
+    j.view = read_view(params);
+    if (const json* gain = member(params, "gain_db"))
+        j.gain_db = number(*gain, "gain_db", {player::least_level_db, 0.0});
+    if (const json* repeat = member(params, "repeat"))
+        j.rounds =
+            *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
 }
 
 // Makes the result. Runs on a planner's thread.
@@ -96,12 +98,10 @@ void service::work_on(plan_job& j)
     };
     try {
         go_on();
-        if (j.make_text)
-            j.text = j.make_text(j.params, go_on);
+        if (j.plays())
+            make_scores(j, go_on);
         else
-            plan(j, go_on);
-        if (!j.play)
-            j.text = j.to.write_reply(j.text);
+            j.text = j.to.write_reply(make_text(j, go_on));
     } catch (const std::bad_alloc&) {
         j.fault = too_large_to_send();
     } catch (...) {
@@ -110,21 +110,26 @@ void service::work_on(plan_job& j)
     j.params = nullptr;
 }
 
-void service::plan(plan_job& j, const go_on_check& go_on)
+void service::make_scores(plan_job& j, const go_on_check& go_on)
 {
-    const std::size_t most = options_.limits.max_unread_bytes / 2;
-    const auto p = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, go_on));
-    if (!j.play) {
-        j.text = j.view.kind == view_kind::full ? on_one_line(options_.plan_text(*p, most))
-                                                : view_text(*p, options_.plans.tactors, j.view, most);
-        return;
-    }
-    p->rounds = count_rounds(j, *p);
-    for (std::size_t i = 0; i < p->plans.size(); ++i) {
+    j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, go_on));
+    j.made->rounds = count_rounds(j, *j.made);
+    for (std::size_t i = 0; i < j.made->plans.size(); ++i) {
         go_on();
-        j.scores.push_back(p->make_score(options_.plans.tactors, i));
+        j.scores.push_back(j.made->make_score(options_.plans.tactors, i));
     }
-    j.made = p;
+}
+
+std::string service::make_text(const plan_job& j, const go_on_check& go_on)
+{
+    if (j.method == "import")
+        return import_strokes(options_.plans, faces_, j.params);
+    if (j.method == "export")
+        return export_strokes(options_, faces_, j.params, go_on);
+    const std::size_t most = options_.limits.max_unread_bytes / 2;
+    const planned p = make_planned(options_.plans, faces_, j.params, go_on);
+    return j.view.kind == view_kind::full ? on_one_line(options_.plan_text(p, most))
+                                          : view_text(p, options_.plans.tactors, j.view, most);
 }
 
 void service::job_done(const std::shared_ptr<plan_job>& j)
@@ -132,14 +137,14 @@ void service::job_done(const std::shared_ptr<plan_job>& j)
     const client* c = find(j->to.all->to);
     if (ending_ && !j->fault)
         j->fault = server_ends();
-    if (!j->fault && j->make_text && c != nullptr && c->link->has_file())
+    if (!j->fault && j->is_file() && c != nullptr && c->link->has_file())
         j->fault = net::rpc_fault{net::code_limit, "limit", "max_unread_bytes",
                                   "an earlier file waits to be read", "try again when it is"};
     if (j->fault)
         return refuse(*j, *j->fault);
-    if (!j->play) {
+    if (!j->plays()) {
         uncount(*j);
-        return j->to.whole_reply(std::move(j->text), j->make_text != nullptr);
+        return j->to.whole_reply(std::move(j->text), j->is_file());
     }
     forget(*j);
     // The stream may have to be started first.

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "net/rpc.hpp"
-#include "server/tool_line.hpp"
+#include "server/files.hpp"
 #include "service_rig.hpp"
 
 namespace service_files_test {
@@ -102,17 +102,14 @@ TEST_CASE("the end of the server refuses files that wait")
 
 TEST_CASE("names of files are letters, digits, blanks, - and _")
 {
-    using server::is_file_name;
     using server::make_file_name;
-    for (const char* name : {"a", "a b_c-1", "Kr\u00e4ftig \u7dda", "0"}) {
-        CHECK(is_file_name(name));
+    for (const char* name : {"a", "a b_c-1", "Kr\u00e4ftig \u7dda", "0"})
         CHECK(make_file_name(name) == name);
-    }
     for (const char* name :
          {"", "-a", " a", "a ", "a/b", "..", "a.b", "a\nb", "a\x7f", "a\u0085", "a\u202egpj"}) {
         CAPTURE(name);
-        CHECK_FALSE(is_file_name(name));
-        CHECK(is_file_name(make_file_name(name)));
+        CHECK(make_file_name(name) != name);
+        CHECK(make_file_name(make_file_name(name)) == make_file_name(name));
     }
     CHECK(make_file_name("../../etc/passwd") == "______etc_passwd");
     CHECK(make_file_name("") == "stroke");

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// import and export: planners make them.
+#include "server/files.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <new>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,11 +24,11 @@
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
 #include "net/rpc.hpp"
+#include "options/option.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "server/faults.hpp"
-#include "server/service_impl.hpp"
-#include "server/tool_line.hpp"
+#include "server/service.hpp"
 #include "session/piece.hpp"
 #include "sink/wav/wav.hpp"
 
@@ -34,8 +36,7 @@ namespace tactor::server {
 namespace {
 
 using net::json;
-
-constexpr std::size_t longest_name = 255;
+using options::option;
 
 // Strokes as they were read, and the text if it is TOML that says the same.
 struct read_file {
@@ -43,19 +44,14 @@ struct read_file {
     std::string toml = {};
 };
 
-// Returns the parameter that has the strokes.
-const char* find_content(const json& params)
+std::string read_name(const json& params)
 {
-    const char* found = find_one(params, {"stroke", "text", "base64"});
-    if (found == nullptr)
-        bad_param("text", "nothing says what to read", "one of text, base64, stroke");
-    return found;
-}
-
-std::string file_name(const json& params)
-{
-    const json* name = member(params, "name");
-    return name == nullptr ? "stroke" : text(*name, "name");
+    constexpr std::size_t longest_name = 255;
+    const json* said = member(params, "name");
+    const std::string name = said == nullptr ? "stroke" : text(*said, "name");
+    if (name.size() > longest_name)
+        bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
+    return name;
 }
 
 std::string content(const std::string& source, const json& v)
@@ -67,12 +63,6 @@ std::string content(const std::string& source, const json& v)
     if (!bytes)
         bad_param(source, "it is no base64", "four characters for three bytes, = at the end");
     return *std::move(bytes);
-}
-
-double intensity_max(const json& params)
-{
-    const json* said = member(params, "intensity_max");
-    return said == nullptr ? 1.0 : number(*said, "intensity_max", detail::bounds_of::intensity_max);
 }
 
 bool is_plan(std::string_view bytes, const std::string& name)
@@ -171,35 +161,91 @@ std::string result_text(const read_file& f)
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
 }
 
-// Checks the parameters as far as no text must be read. \throws fault_error.
-void check_import(const json& params)
+bool is_recording(const options::wishes& s)
 {
-    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
-    static_cast<void>(text(params[find_content(params)], find_content(params)));
-    static_cast<void>(flag(params, "fit"));
-    static_cast<void>(intensity_max(params));
-    if (file_name(params).size() > longest_name)
-        bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
+    return s.plan.wave.kind == waveform_kind::recording;
 }
 
-// Returns the result as JSON on one line. Opens no file. Runs off the thread of the sockets. \throws
-// fault_error.
-std::string import_strokes(const planning& with, const layout& faces, const json& params)
+// Returns true for what put_options() says. The texts of strokes may name no recording.
+bool is_in_file(const option& o, const options::wishes& s)
 {
-    const std::string source = find_content(params);
-    const std::string name = source == "stroke" ? source : file_name(params);
-    const bool fit = flag(params, "fit");
-    try {
-        read_file f = source == "stroke"
-                          ? read_file{read_strokes(source, params[source], with.owner)}
-                          : read_bytes(content(source, params[source]), name, intensity_max(params));
-        if (fit)
-            f.toml.clear();
-        f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
-        return result_text(f);
-    } catch (...) {
-        throw fault_error(current_fault(source, name));
+    constexpr std::uint64_t kept = options::in_stroke | options::live; // others are in the strokes' times
+    const bool is_recorded = o.name == "waveform" || o.name.starts_with("texture");
+    return ((o.where & kept) == kept && !(is_recorded && is_recording(s))) || o.name == "am";
+}
+
+// Returns the options as a command has them: the strokes have their times, and the array has a name.
+options::wishes for_command(options::wishes s, const array& a, const tool_files& files)
+{
+    constexpr unsigned usual_rate = 48000;
+    const auto value_if = [](bool is_set, auto v) { return is_set ? std::optional(v) : std::nullopt; };
+    s.array_name = value_if(!files.array.empty(), files.array);
+    s.config_file = value_if(!files.config.empty(), files.config);
+    s.duration_s.reset();
+    s.speed_mm_s.reset();
+    s.intensity_max.reset();
+    s.rate = value_if(s.render.rate != usual_rate, s.render.rate);
+    s.channels = value_if(s.render.channels > a.channels(), s.render.channels);
+    return s;
+}
+
+std::string value_text(const options::value& v)
+{
+    if (const auto* number = std::get_if<double>(&v))
+        return fmt::format(" {}", *number);
+    if (const auto* text = std::get_if<std::string>(&v))
+        return " " + quote_word(*text);
+    return {}; // a flag
+}
+
+// Returns true for a value that the command must say. It always has the level, which a configuration on the
+// way may set otherwise.
+bool is_needed(const option& o, const options::wishes& s, const options::value& v)
+{
+    static const options::wishes usual;
+    const bool is_off = std::holds_alternative<std::monostate>(v) || v == options::value(false);
+    const bool is_used = o.used == nullptr || o.used(s);
+    if (o.name == "level_dbfs")
+        return !s.render.sl_db;
+    const bool was_given = s.gives(o) && (o.where & options::by_client) != 0;
+    return !is_off && is_used && (was_given || v != o.to.get(usual));
+}
+
+// Gives a stroke the options that differ from the built-in ones or that a client gave, as far as a stroke
+// file has keys for them and the stroke does not say them itself.
+void put_options(stroke& k, const options::wishes& s)
+{
+    const plan_options& p = s.plan;
+    const plan_options usual;
+    const auto put = [&s](auto& own, std::string_view option, const auto& asked, const auto& built_in) {
+        if (!own && (s.gives(option) || asked != built_in))
+            own = asked;
+    };
+    put(k.choices.algorithm, "algorithm", p.algorithm, usual.algorithm);
+    put(k.choices.phantom, "phantom", p.phantom, usual.phantom);
+    put(k.choices.faces, "faces", p.faces, usual.faces);
+    put(k.choices.soa_s, "soa", p.soa_s, usual.soa_s);
+    put(k.choices.burst_s, "burst", p.burst_s, usual.burst_s);
+    if (k.sound.carrier_profile.empty())
+        put(k.sound.carrier_hz, "carrier", p.carrier_hz, usual.carrier_hz);
+    if (!is_recording(s))
+        put(k.sound.wave, "waveform", p.wave, usual.wave);
+    put(k.sound.am, "am", p.am, usual.am);
+}
+
+// Returns " --array palm-3x3 --level-dbfs -15": what a command of the tool needs to do the same as these
+// options. `file_says`: put_options() has said what it can.
+std::string option_words(const options::wishes& s, options::place command, const array& a,
+                         const tool_files& files, bool file_says)
+{
+    const options::wishes w = for_command(s, a, files);
+    std::string words;
+    for (const option& o : options::all()) {
+        const options::value v = o.to.get(w);
+        if ((o.where & command) != 0 && !(file_says && is_in_file(o, w)) && is_needed(o, w, v))
+            words += fmt::format(" --{}{}", options::dashed(o), value_text(v));
     }
+    return words;
 }
 
 // A kind of file, and the command of the tool that makes it, or plays it.
@@ -248,9 +294,13 @@ const file_kind& find_kind(const json& params)
 
 std::string choose_name(const json& params, const std::vector<stroke>& strokes)
 {
-    if (const json* name = member(params, "name"))
-        return text(*name, "name");
-    return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
+    const json* said = member(params, "name");
+    if (said == nullptr)
+        return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
+    const std::string& name = text(*said, "name");
+    if (make_file_name(name) != name)
+        bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
+    return name;
 }
 
 // Gives strokes that count from a group a start in seconds, which takes their plans: a plan may last longer
@@ -350,24 +400,37 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
     return file_bytes(o, kind, p, s);
 }
 
-// Checks the parameters as far as no text must be read. \throws fault_error, and what settle_options()
-// throws.
-void check_export(const planning& with, const json& params)
+} // namespace
+
+std::string import_strokes(const planning& with, const layout& faces, const json& params)
 {
-    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
-    static_cast<void>(find_source(params));
-    static_cast<void>(find_kind(params));
-    static_cast<void>(settle_options(with.owner, params));
-    static_cast<void>(flag(params, "fit"));
-    if (const json* name = member(params, "name"); name != nullptr && !is_file_name(text(*name, "name")))
-        bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
+    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
+    const char* found = find_one(params, {"stroke", "text", "base64"});
+    if (found == nullptr)
+        bad_param("text", "nothing says what to read", "one of text, base64, stroke");
+    const std::string source = found;
+    const std::string named = read_name(params);
+    const std::string name = source == "stroke" ? source : named;
+    const json* scale = member(params, "intensity_max");
+    const double intensity_max =
+        scale == nullptr ? 1.0 : number(*scale, "intensity_max", detail::bounds_of::intensity_max);
+    const bool fit = flag(params, "fit");
+    try {
+        read_file f = source == "stroke" ? read_file{read_strokes(source, params[source], with.owner)}
+                                         : read_bytes(content(source, params[source]), name, intensity_max);
+        if (fit)
+            f.toml.clear();
+        f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
+        return result_text(f);
+    } catch (...) {
+        throw fault_error(current_fault(source, name));
+    }
 }
 
-// Returns the result as JSON on one line. Runs off the thread of the sockets. \throws fault_error, and what
-// settle_options() and `go_on` throw.
 std::string export_strokes(const service_options& o, const layout& faces, const json& params,
                            const go_on_check& go_on)
 {
+    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
     const options::wishes s = settle_options(o.plans.owner, params);
@@ -384,28 +447,34 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     }
 }
 
-} // namespace
-
-void service::import_file(client& c, json&& params, const answer& to, std::size_t bytes)
+std::string quote_word(std::string_view word)
 {
-    check_import(params);
-    plan_job job{.to = to, .bytes = bytes};
-    job.make_text = [this](const json& p, const go_on_check&) {
-        return import_strokes(options_.plans, faces_, p);
-    };
-    job.params = std::move(params);
-    admit_job(c, std::move(job));
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,+=@%";
+    if (!word.empty() && word.find_first_not_of(plain) == word.npos)
+        return std::string(word);
+    std::string quoted = "'";
+    for (const char c : word)
+        quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
 }
 
-void service::export_file(client& c, json&& params, const answer& to, std::size_t bytes)
+std::string make_file_name(std::string_view name)
 {
-    check_export(options_.plans, params);
-    plan_job job{.to = to, .bytes = bytes};
-    job.make_text = [this](const json& p, const go_on_check& go_on) {
-        return export_strokes(options_, faces_, p, go_on);
-    };
-    job.params = std::move(params);
-    admit_job(c, std::move(job));
+    constexpr std::size_t longest = 100;
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_";
+    const auto is_beyond_ascii = [](char c) { return static_cast<unsigned char>(c) >= 0x80; };
+    std::string made(first_characters(name, longest));
+    for (char& c : made)
+        if (!is_beyond_ascii(c) && plain.find(c) == plain.npos)
+            c = '_';
+    if (has_controls(made)) // escapes and turned lines in a terminal
+        std::replace_if(made.begin(), made.end(), is_beyond_ascii, '_');
+    if (made.starts_with('-') || made.starts_with(' '))
+        made.front() = '_';
+    while (made.ends_with(' '))
+        made.pop_back();
+    return made.empty() ? "stroke" : made;
 }
 
 } // namespace tactor::server
