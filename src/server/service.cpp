@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "server/service_impl.hpp"
+#include "server/faults.hpp"
 
 namespace tactor::server {
 

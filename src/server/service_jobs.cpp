@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // play, plan, import and export: requests that planners work on, and their results.
+#include "server/service.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "server/service_impl.hpp"
+#include "server/faults.hpp"
 
 namespace tactor::server {
 namespace {

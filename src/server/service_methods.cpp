@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // hello, status, options, qr, subscribe, and notifications of levels, touches and stops.
+#include "server/service.hpp"
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -16,7 +18,7 @@
 #include <tactor/stroke.hpp>
 
 #include "core/words.hpp"
-#include "server/service_impl.hpp"
+#include "server/faults.hpp"
 
 namespace tactor::server {
 namespace {

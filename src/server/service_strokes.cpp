@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Strokes: submission, live ones, level, cancel, stop and fire; their starts and ends, and the notifications:
 // each number has exactly one end.
+#include "server/service.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "server/service_impl.hpp"
+#include "server/faults.hpp"
 #include "session/log.hpp"
 
 namespace tactor::server {
