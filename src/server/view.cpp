@@ -113,42 +113,30 @@ std::size_t count_felt(const plan& p, observer_kind by)
                : 2 + static_cast<std::size_t>(p.stroke_duration_s / percept_step_s);
 }
 
-// Felt places of one stroke, thinned out evenly to so many rows.
-class felt_rows {
-public:
-    felt_rows(number_list& to, double start_s, std::size_t places, std::size_t rows)
-        : to_(to), start_s_(start_s), stride_(rows == 0 ? 1 : (places + rows - 1) / rows)
-    {
-    }
-
-    // In silence the last place stays, with intensity 0.
-    void add(double t_s, const std::optional<point>& felt, double intensity)
-    {
-        if (felt)
-            last_ = felt;
-        if (last_ && count_ % stride_ == 0)
-            to_.add_row(start_s_ + t_s, *last_, intensity);
-        ++count_;
-    }
-
-private:
-    number_list& to_;
-    double start_s_;
-    std::size_t stride_;
-    std::size_t count_ = 0;
-    std::optional<point> last_ = {};
-};
-
-detail::prediction predict(felt_rows to, const planned& p, const array& a, std::size_t i)
+// Adds the felt places of a stroke, thinned out evenly to so many rows. Returns its prediction.
+detail::prediction add_felt(number_list& felt, const planned& p, const array& a, std::size_t i,
+                            std::size_t rows)
 {
     const plan& one = p.plans[i].plan;
-    detail::prediction r = detail::predict(a, p.strokes[i], one, p.observer, [&to](const percept_sample& x) {
-        to.add(x.t_s, x.felt, x.intensity);
+    const double start_s = p.starts_s()[i];
+    const std::size_t stride = rows == 0 ? 1 : (count_felt(one, p.observer.kind) + rows - 1) / rows;
+    std::size_t count = 0;
+    std::optional<point> last;
+    // In silence the last place stays, with intensity 0.
+    const auto add = [&](double t_s, const std::optional<point>& place, double intensity) {
+        if (place)
+            last = place;
+        if (last && count % stride == 0)
+            felt.add_row(start_s + t_s, *last, intensity);
+        ++count;
+    };
+    detail::prediction r = detail::predict(a, p.strokes[i], one, p.observer, [&add](const percept_sample& x) {
+        add(x.t_s, x.felt, x.intensity);
     });
     auto b = one.bursts.begin();
     for (const tap& t : r.taps) { // one a burst that is not silent
         b = std::find_if(b, one.bursts.end(), [](const burst& x) { return !x.drives.empty(); });
-        to.add(t.onset_s, t.felt, b++->intensity);
+        add(t.onset_s, t.felt, b++->intensity);
     }
     return r;
 }
@@ -157,20 +145,16 @@ detail::prediction predict(felt_rows to, const planned& p, const array& a, std::
 // it.
 std::string add_percept(reply_json& head, const planned& p, const array& a)
 {
-    std::vector<std::size_t> places;
     std::vector<std::size_t> needed;
-    for (const placed_plan& one : p.plans) {
-        places.push_back(count_felt(one.plan, p.observer.kind));
-        needed.push_back(std::min(places.back(), 1 + count_steps(one.plan)));
-    }
+    for (const placed_plan& one : p.plans)
+        needed.push_back(std::min(count_felt(one.plan, p.observer.kind), 1 + count_steps(one.plan)));
     const std::vector<std::size_t> rows = share_rows(needed);
-    const std::vector<double> starts = p.starts_s();
     number_list felt("felt");
     head["observer"] = to_string(p.observer.kind);
     double largest = -1.0;
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         const std::size_t first = felt.rows();
-        const detail::prediction r = predict({felt, starts[i], places[i], rows[i]}, p, a, i);
+        const detail::prediction r = add_felt(felt, p, a, i, rows[i]);
         reply_json& stroke = head["strokes"][i];
         stroke["felt_first"] = first;
         stroke["felt_count"] = felt.rows() - first;
@@ -183,165 +167,108 @@ std::string add_percept(reply_json& head, const planned& p, const array& a)
     return felt.end();
 }
 
-constexpr double edge = 1e-9; // of a bin: nearer is at its edge
-
-// Largest amplitude of each tactor in each of some equal parts of the time.
-class peak_bins {
-public:
-    peak_bins(std::size_t tactors, std::size_t bins, double total_s)
-        : tactors_(tactors), bins_(bins), step_s_(total_s / static_cast<double>(bins)), peaks_(tactors * bins)
-    {
-    }
-
-    void add(const burst& b, double onset_s)
-    {
-        raise(b.drives, std::floor(onset_s / step_s_ + edge),
-              std::ceil((onset_s + b.duration_s) / step_s_ - edge) - 1.0);
-    }
-    // Adds the samples of a curve, and its values at the edges of bins.
-    void add(const curve& c, double start_s)
-    {
-        burst b;
-        for (std::uint64_t k = 0; k < c.size(); ++k) {
-            c.sample(k, b);
-            add_point(b, start_s + c.time_s(k));
-        }
-        for (auto bin = static_cast<std::size_t>(start_s / step_s_); bin < bins_; ++bin) {
-            const double t_s = static_cast<double>(bin) * step_s_ - start_s;
-            if (t_s > c.duration_s())
-                break;
-            if (t_s < 0.0)
-                continue;
-            c.at(t_s, b);
-            add_point(b, start_s + t_s);
-        }
-    }
-    double step_s() const noexcept { return step_s_; }
-    const std::vector<double>& peaks() const noexcept { return peaks_; }
-
-private:
-    // Adds values at one time. At the edge of two bins they belong to both.
-    void add_point(const burst& b, double t_s)
-    {
-        raise(b.drives, std::ceil(t_s / step_s_ - edge) - 1.0, std::floor(t_s / step_s_ + edge));
-    }
-    void raise(const std::vector<drive>& drives, double first, double last)
-    {
-        const auto end = static_cast<std::size_t>(std::clamp(last + 1.0, 0.0, static_cast<double>(bins_)));
-        for (auto bin = static_cast<std::size_t>(std::max(0.0, first)); bin < end; ++bin)
-            for (const drive& d : drives) {
-                double& peak = peaks_[bin * tactors_ + d.tactor];
-                peak = std::max(peak, d.amplitude);
-            }
-    }
-
-    std::size_t tactors_;
-    std::size_t bins_;
-    double step_s_;
-    std::vector<double> peaks_; // a row for each bin
-};
-
-// Adds the width of the bins to `head`. Returns the largest amplitudes: a member with a comma before it.
+// Adds the width of the bins to `head`. Returns the largest amplitude of each tactor in each of some equal
+// parts of the time: a member with a comma before it.
 std::string add_peaks(reply_json& head, const planned& p, std::size_t tactors, std::size_t bins)
 {
-    peak_bins all(tactors, bins, p.total_s());
+    constexpr double edge = 1e-9; // of a bin: nearer is at its edge
+    const double step_s = p.total_s() / static_cast<double>(bins);
+    std::vector<double> most(tactors * bins); // a row for each bin
+    const auto raise = [&](const burst& b, double first, double last) {
+        const auto end = static_cast<std::size_t>(std::clamp(last + 1.0, 0.0, static_cast<double>(bins)));
+        for (auto bin = static_cast<std::size_t>(std::max(0.0, first)); bin < end; ++bin)
+            for (const drive& d : b.drives)
+                most[bin * tactors + d.tactor] = std::max(most[bin * tactors + d.tactor], d.amplitude);
+    };
+    // At the edge of two bins a value belongs to both.
+    const auto raise_at = [&](const burst& b, double t_s) {
+        raise(b, std::ceil(t_s / step_s - edge) - 1.0, std::floor(t_s / step_s + edge));
+    };
     const std::vector<double> starts = p.starts_s();
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         const plan& one = p.plans[i].plan;
         for (const burst& b : one.bursts)
-            all.add(b, starts[i] + b.onset_s);
-        if (one.curve)
-            all.add(*one.curve, starts[i]);
+            raise(b, std::floor((starts[i] + b.onset_s) / step_s + edge),
+                  std::ceil((starts[i] + b.onset_s + b.duration_s) / step_s - edge) - 1.0);
+        if (!one.curve)
+            continue;
+        burst b;
+        for (std::uint64_t k = 0; k < one.curve->size(); ++k) {
+            one.curve->sample(k, b);
+            raise_at(b, starts[i] + one.curve->time_s(k));
+        }
+        for (std::size_t bin = 0; bin < bins; ++bin) { // the values at the edges of bins
+            const double t_s = static_cast<double>(bin) * step_s - starts[i];
+            if (t_s < 0.0 || t_s > one.curve->duration_s())
+                continue;
+            one.curve->at(t_s, b);
+            raise_at(b, starts[i] + t_s);
+        }
     }
-    head["step_s"] = all.step_s();
+    head["step_s"] = step_s;
     number_list peaks("peaks");
-    for (const double v : all.peaks())
+    for (const double v : most)
         peaks.add(v, amplitude_parts);
     return peaks.end();
 }
 
-constexpr double number_bytes = 2.0; // least size of a number with the comma after it
-constexpr double level_parts = 100.0;
-
-// Bursts of all strokes, list by list.
-class burst_lists {
-public:
-    burst_lists(std::size_t tactors, std::size_t most_bytes)
-        : amplitude_(tactors), most_(static_cast<double>(most_bytes) / number_bytes)
-    {
-    }
-
-    // Throws std::bad_alloc for too many.
-    void add(const burst& b, double onset_s, double duration_s)
-    {
-        ++count_;
-        if (static_cast<double>(count_ * amplitude_.size()) > most_)
-            throw std::bad_alloc();
-        onsets_.add(onset_s, time_parts);
-        durations_.add(duration_s, time_parts);
-        positions_.add(b.position.x_mm, mm_parts);
-        positions_.add(b.position.y_mm, mm_parts);
-        intensities_.add(b.intensity, amplitude_parts);
-        std::fill(amplitude_.begin(), amplitude_.end(), 0.0);
-        for (const drive& d : b.drives)
-            amplitude_[d.tactor] = d.amplitude;
-        for (const double a : amplitude_)
-            amplitudes_.add(a, amplitude_parts);
-    }
-    // Adds a curve as rows at equal distances.
-    void add(const curve& c, double start_s, std::size_t rows)
-    {
-        const double step_s = c.duration_s() / static_cast<double>(rows);
-        burst b;
-        for (std::size_t k = 0; k < rows; ++k) {
-            const double t_s = static_cast<double>(k) * step_s;
-            c.at(t_s, b);
-            add(b, start_s + t_s, step_s);
-        }
-    }
-    std::size_t count() const noexcept { return count_; }
-    std::string end()
-    {
-        return onsets_.end() + durations_.end() + positions_.end() + intensities_.end() + amplitudes_.end();
-    }
-
-private:
-    number_list onsets_{"onsets"}, durations_{"durations"}, positions_{"positions"},
-        intensities_{"intensities"}, amplitudes_{"amplitudes"};
-    std::vector<double> amplitude_; // of one burst, by tactor
-    double most_;
-    std::size_t count_ = 0;
-};
-
+// Adds the strokes to `head`. Returns the bursts of all, list by list, and curves as rows at equal distances.
+// Throws std::bad_alloc for too many.
 std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, std::size_t most_bytes)
 {
+    constexpr std::size_t number_bytes = 2; // least size of a number with the comma after it
     std::vector<std::size_t> needed;
     for (const placed_plan& one : p.plans)
         needed.push_back(one.plan.curve ? count_steps(one.plan) : 0);
     const std::vector<std::size_t> rows = share_rows(needed);
     const std::vector<double> starts = p.starts_s();
-    burst_lists lists(tactors, most_bytes);
+    number_list onsets("onsets");
+    number_list durations("durations");
+    number_list positions("positions");
+    number_list intensities("intensities");
+    number_list amplitudes("amplitudes");
+    std::vector<double> row; // amplitudes of one burst, by tactor
+    std::size_t count = 0;
+    const auto add_row = [&](const burst& b, double onset_s, double duration_s) {
+        if (++count * tactors * number_bytes > most_bytes)
+            throw std::bad_alloc();
+        onsets.add(onset_s, time_parts);
+        durations.add(duration_s, time_parts);
+        positions.add(b.position.x_mm, mm_parts);
+        positions.add(b.position.y_mm, mm_parts);
+        intensities.add(b.intensity, amplitude_parts);
+        row.assign(tactors, 0.0);
+        for (const drive& d : b.drives)
+            row[d.tactor] = d.amplitude;
+        for (const double a : row)
+            amplitudes.add(a, amplitude_parts);
+    };
     head["continuous"] = false;
     head["strokes"] = reply_json::array();
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         const plan& one = p.plans[i].plan;
-        const std::size_t first = lists.count();
+        const std::size_t first = count;
         for (const burst& b : one.bursts)
-            lists.add(b, starts[i] + b.onset_s, b.duration_s);
-        if (one.curve) {
-            head["continuous"] = true;
-            lists.add(*one.curve, starts[i], rows[i]);
+            add_row(b, starts[i] + b.onset_s, b.duration_s);
+        burst b;
+        for (std::size_t k = 0; k < rows[i]; ++k) {
+            const double step_s = one.curve->duration_s() / static_cast<double>(rows[i]);
+            const double t_s = static_cast<double>(k) * step_s;
+            one.curve->at(t_s, b);
+            add_row(b, starts[i] + t_s, step_s);
         }
+        if (one.curve)
+            head["continuous"] = true;
         head["strokes"].push_back({{"name", net::cut_echo(p.strokes[i].name)},
                                    {"start_s", rounded(starts[i], time_parts)},
                                    {"total_s", rounded(one.total_s, time_parts)},
                                    {"duration_s", rounded(one.stroke_duration_s, time_parts)},
                                    {"first", first},
-                                   {"count", lists.count() - first},
+                                   {"count", count - first},
                                    {"algorithm", one.algorithm},
                                    {"continuous", one.curve.has_value()}});
     }
-    return lists.end();
+    return onsets.end() + durations.end() + positions.end() + intensities.end() + amplitudes.end();
 }
 
 } // namespace
@@ -371,10 +298,10 @@ std::string view_text(const planned& p, const array& a, const view_choice& v, st
 {
     const std::size_t tactors = a.tactors.size();
     reply_json head{{"tactors", tactors}, {"total_s", rounded(p.total_s(), time_parts)}};
-    std::vector<std::string> warnings = p.warnings();
-    for (std::string& w : warnings)
-        w = net::cut_echo(w);
-    head["warnings"] = warnings;
+    head["warnings"] = reply_json::array();
+    for (const std::string& w : p.warnings())
+        head["warnings"].push_back(net::cut_echo(w));
+    constexpr double level_parts = 100.0;
     if (const double over_db = rounded(p.over_db, level_parts); over_db > 0.0)
         head["warnings"].push_back({{"kind", "level"}, {"over_db", over_db}});
     std::string lists;
