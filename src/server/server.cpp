@@ -107,14 +107,13 @@ udp find_protocol(int fd)
 class osc_endpoint {
 public:
     /// Uses `fd`, a bound socket, which stays its owner's. Accepts only `peers` of other machines.
-    osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers,
-                 std::size_t most_bytes)
+    osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers)
         : socket_(io, find_protocol(fd), fd),
           due_(io),
           peers_(std::move(peers)),
           clients_(io, s,
                    {[this](const udp::endpoint& to, const std::string& packet) { send(to, packet); },
-                    rt::monotonic_ns, unix_ns, std::min(most_bytes, packet_.size())})
+                    rt::monotonic_ns, unix_ns})
     {
         socket_.non_blocking(true);
     }
@@ -213,7 +212,7 @@ public:
                 std::make_unique<listener>(io, at.http.get(), net::no_descriptors_for_browsers(),
                                            [this](socket_type c) { take_browser(std::move(c)); }));
         if (at.osc)
-            osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers), limits_.max_message_bytes);
+            osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers));
         service_.on_all_sent([this](client_number n) { finish(n); });
     }
 

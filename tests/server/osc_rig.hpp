@@ -120,7 +120,7 @@ public:
                                  sent.emplace_back(to, words(packet));
                              },
                              [this] { return own_clock() + passed_ns - jitter_ns * (++reads % 7); },
-                             [this] { return unix_ns(); }, 65536}};
+                             [this] { return unix_ns(); }}};
 
 private:
     // Stands still but for pass(), at the time when the test began.

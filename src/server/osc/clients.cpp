@@ -44,20 +44,15 @@ constexpr std::size_t most_words = 1000; // of an error, in bytes
 /// The way from the service to a sender.
 class osc_clients::sender_link final : public client_link {
 public:
-    sender_link(osc_clients& all, endpoint to) : all_(&all), to_(std::move(to)), alive_(all.alive_) {}
-    void send(std::string message) override
-    {
-        if (!alive_.expired())
-            all_->deliver(to_, message);
-    }
+    sender_link(osc_clients& all, endpoint to) : all_(all), to_(std::move(to)) {}
+    void send(std::string message) override { all_.deliver(to_, message); }
     // A datagram is sent, or lost.
     std::size_t waiting() const override { return 0; }
     void finish() override {}
 
 private:
-    osc_clients* all_;
+    osc_clients& all_;
     endpoint to_;
-    std::weak_ptr<const int> alive_;
 };
 
 osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
@@ -77,9 +72,6 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
 {
     read_clocks();
     try {
-        if (packet.size() > outside_.most_bytes)
-            throw error(error_kind::bad_input, "packet", fmt::format("it has {} bytes", packet.size()),
-                        fmt::format("at most {}", outside_.most_bytes));
         for (const osc_message& m : net::parse_osc(packet))
             take(m, from);
     } catch (const error& e) {
@@ -106,7 +98,7 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
         else if (!r.method.empty())
             draw(std::move(r), due_ns(m), from);
     } catch (...) {
-        refuse(from, m.address, current_fault("values"));
+        refuse(from, m.address, net::fault_text(current_fault("values")));
     }
 }
 
@@ -146,7 +138,7 @@ std::int64_t osc_clients::lead_ns()
 void osc_clients::stop(const endpoint& from)
 {
     if (sender* s = find(from))
-        return ask(*s, {.address = std::string(osc_stop), .method = "stop"});
+        return ask(*s, {.method = "stop"});
     const client_number n =
         service_.connect(std::make_shared<sender_link>(*this, from), client_kind::datagram);
     service_.receive(n, R"({"jsonrpc":"2.0","method":"stop"})");
@@ -162,7 +154,7 @@ void osc_clients::subscribe(const osc_request& r, const endpoint& from)
     ask(s, r);
     if (r.params["events"].empty())
         return;
-    osc_request end{.address = r.address, .method = r.method};
+    osc_request end{.method = r.method};
     end.params["events"] = net::json::array();
     s.unsubscribes = held_.emplace(outside_.now_ns() + std::llround(subscription_s * 1e9), held{from, end});
 }
@@ -178,7 +170,7 @@ void osc_clients::move(osc_request r, const endpoint& from)
     drawn& d = found->second;
     if (const double asked = r.params.value("intensity", 0.0);
         asked > d.intensity_max && !std::exchange(d.is_loud, true))
-        refuse(from, r.address,
+        refuse(from, "/tactor/to",
                fmt::format("stroke {}: {}", r.number, session::held_text(asked, d.intensity_max)));
     if (d.held && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
@@ -195,23 +187,18 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
     if (r.number != 0 && s.drawn_as.contains(r.number))
         bad_param("number", fmt::format("stroke {} goes on", r.number), "choose another, or cancel it first");
     const bool waits = at_ns && r.method == "begin";
-    if (waits)
-        hold(s, *at_ns - lead_ns(), {from, r});
+    if (waits && s.held >= most_held)
+        limit_reached("strokes", "too many wait for their time", "send them later");
     if (r.number != 0)
         s.drawn_as[r.number] = {.held = waits, .intensity_max = find_intensity_max(r.params)};
-    if (waits)
+    if (waits) {
+        ++s.held;
+        held_.emplace(*at_ns - lead_ns(), held{from, std::move(r)});
         return;
+    }
     if (at_ns)
         r.params["start"] = {{"monotonic_s", seconds(*at_ns)}};
     ask(s, r);
-}
-
-void osc_clients::hold(sender& s, std::int64_t due_ns, held h)
-{
-    if (s.held >= most_held)
-        limit_reached("strokes", "too many wait for their time", "send them later");
-    ++s.held;
-    held_.emplace(due_ns, std::move(h));
 }
 
 std::optional<std::int64_t> osc_clients::next_ns() const
@@ -225,25 +212,16 @@ void osc_clients::act()
 {
     while (!held_.empty() && held_.begin()->first <= outside_.now_ns()) {
         const held h = std::move(held_.extract(held_.begin()).mapped());
-        try {
-            do_held(h);
-        } catch (...) {
-            refuse(h.from, h.request.address, current_fault("values"));
+        sender& s = *senders_.at(h.from);
+        if (h.request.method == "subscribe") {
+            s.unsubscribes.reset();
+        } else {
+            --s.held;
+            s.drawn_as.at(h.request.number).held = false;
         }
+        ask(s, h.request);
         check_later(h.from);
     }
-}
-
-void osc_clients::do_held(const held& h)
-{
-    sender& s = *senders_.at(h.from);
-    if (h.request.method == "subscribe") {
-        s.unsubscribes.reset();
-    } else {
-        --s.held;
-        s.drawn_as.at(h.request.number).held = false;
-    }
-    ask(s, h.request);
 }
 
 void osc_clients::drop_held()
@@ -290,15 +268,15 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
     if (!service_.has_place(client_kind::datagram))
         limit_reached("max_clients", "there is no place for one more");
     auto s = std::make_unique<sender>();
-    s->link = std::make_shared<sender_link>(*this, from);
-    s->client = service_.connect(s->link, client_kind::datagram, net::plain(from.address()).to_string());
+    s->client = service_.connect(std::make_shared<sender_link>(*this, from), client_kind::datagram,
+                                 net::plain(from.address()).to_string());
     return *senders_.emplace(from, std::move(s)).first->second;
 }
 
 void osc_clients::ask(sender& s, const osc_request& r)
 {
     const std::uint64_t id = ++s.last_id;
-    s.asked[id] = {r.address, r.method, r.number};
+    s.asked[id] = {r.method, r.number};
     service_.receive(
         s.client,
         net::json_line(
@@ -354,7 +332,7 @@ void osc_clients::deliver_answer(sender& s, const endpoint& to, const net::json&
     const bool draws = a.method == "play" || a.method == "begin" || a.method == "drive";
     if (m.contains("error")) {
         const auto& why = m["error"]["message"].get_ref<const std::string&>();
-        refuse(to, a.address, a.number == 0 ? why : fmt::format("stroke {}: {}", a.number, why));
+        refuse(to, "/tactor/" + a.method, a.number == 0 ? why : fmt::format("stroke {}: {}", a.number, why));
         if (draws)
             s.drawn_as.erase(a.number);
     } else if (draws) {
@@ -414,11 +392,6 @@ void osc_clients::refuse(const endpoint& to, const std::string& address, const s
         return;
     errors_ns_.push_back(now);
     outside_.send(to, net::osc_packet("/tactor/error", {address, why.substr(0, most_words)}));
-}
-
-void osc_clients::refuse(const endpoint& to, const std::string& address, const net::rpc_fault& f)
-{
-    refuse(to, address, net::fault_text(f));
 }
 
 void osc_clients::check_later(const endpoint& e)

@@ -33,7 +33,6 @@ public:
         std::function<void(const endpoint& to, const std::string& packet)> send;
         std::function<std::int64_t()> now_ns;  ///< CLOCK_MONOTONIC
         std::function<std::int64_t()> unix_ns; ///< the system's clock, which time tags go by
-        std::size_t most_bytes = 65536;        ///< of a packet
     };
 
     /// Most live strokes of a sender that wait for their time.
@@ -76,9 +75,7 @@ private:
     void subscribe(const osc_request& r, const endpoint& from);
     void move(osc_request r, const endpoint& from);
     void draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
-    void hold(sender& s, std::int64_t due_ns, held h);
     void drop_held(const std::function<bool(const held&)>& which);
-    void do_held(const held& h);
     void read_clocks();
     std::optional<std::int64_t> due_ns(const net::osc_message& m) const;
     std::int64_t lead_ns();
@@ -92,7 +89,6 @@ private:
     void flush(const endpoint& from, std::int32_t number);
     void send_stroke(const endpoint& to, std::int32_t number, const std::string& state);
     void refuse(const endpoint& to, const std::string& address, const std::string& why);
-    void refuse(const endpoint& to, const std::string& address, const net::rpc_fault& f);
     void check_later(const endpoint& e);
     void forget_idle();
     template <typename F>
@@ -112,7 +108,6 @@ private:
 
 /// A request to the service that is not answered yet.
 struct osc_clients::asked_for {
-    std::string address;
     std::string method;
     std::int32_t number = 0;
 };
@@ -135,7 +130,6 @@ struct osc_clients::sender {
     std::size_t held = 0;
     std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
     std::uint16_t port = 0;                                   ///< destination of the subscription
-    std::shared_ptr<client_link> link = {};
 
     bool idle() const
     {

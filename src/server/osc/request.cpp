@@ -234,7 +234,7 @@ osc_request read_osc(const osc_message& m)
         throw fault_error(
             {net::code_no_method, "bad-input", "address", "it is not known",
              "/tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
-    osc_request r{.address = m.address, .method = m.address.substr(osc_root.size())};
+    osc_request r{.method = m.address.substr(osc_root.size())};
     value_list v(m);
     found->read(v, r);
     v.end();

@@ -13,7 +13,6 @@
 namespace tactor::server {
 
 struct osc_request {
-    std::string address;
     std::string method; ///< method of the protocol; empty: a button's release, which asks for nothing
     net::json params = net::json::object();
     std::int32_t number = 0; ///< the sender's number for its stroke; 0: none
