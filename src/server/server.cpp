@@ -188,31 +188,27 @@ private:
 
 class server {
 public:
-    server(asio::io_context& io, const endpoints& at, service_options o, stream_options s, network_options w)
+    server(asio::io_context& io, const endpoints& at, service_options o, stream_options s)
         : io_(io),
           limits_(o.limits),
           message_limits_{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
-          allow_hosts_(std::move(w.allow_hosts)),
+          allow_hosts_(at.allow_hosts),
           service_(io, std::move(o), std::move(s)),
           farewell_(io),
           watchdog_(io)
     {
-        if (at.socket)
-            listeners_.push_back(
-                std::make_unique<listener>(io, at.socket.get(), no_descriptors(), [this](socket_type c) {
-                    take(std::move(c), client_kind::local);
-                }));
-        if (at.tcp)
-            listeners_.push_back(
-                std::make_unique<listener>(io, at.tcp.get(), no_descriptors(), [this](socket_type c) {
-                    take(std::move(c), client_kind::network);
-                }));
+        for (const auto& [fd, kind] :
+             {std::pair(&at.socket, client_kind::local), {&at.tcp, client_kind::network}})
+            if (*fd)
+                listeners_.push_back(std::make_unique<listener>(
+                    io, fd->get(), no_descriptors(),
+                    [this, kind = kind](socket_type c) { take(std::move(c), kind); }));
         if (at.http)
             listeners_.push_back(
                 std::make_unique<listener>(io, at.http.get(), net::no_descriptors_for_browsers(),
                                            [this](socket_type c) { take_browser(std::move(c)); }));
         if (at.osc)
-            osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers));
+            osc_.emplace(io, at.osc.get(), service_, at.osc_peers);
         service_.on_all_sent([this](client_number n) { finish(n); });
     }
 
@@ -432,7 +428,7 @@ std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) noexcept
 
 } // namespace
 
-void serve(const endpoints& at, service_options o, stream_options s, network_options w, int signals,
+void serve(const endpoints& at, service_options o, stream_options s, int signals,
            const std::function<void()>& listening)
 {
     asio::io_context io(1);
@@ -443,7 +439,7 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
         refused = std::move(e);
         io.stop();
     };
-    server all(io, at, std::move(o), std::move(s), std::move(w));
+    server all(io, at, std::move(o), std::move(s));
     // If allowed, this thread gets the processor before its clients and before the threads that plan. Linux
     // sets the priority of this thread only.
     constexpr int before_others = -10;
@@ -461,14 +457,6 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
     io.run();
     if (refused != nullptr)
         std::rethrow_exception(refused);
-}
-
-network_options settle_network(const options::serve_settings& s)
-{
-    network_options n{.allow_hosts = s.allow_hosts};
-    for (const std::string& p : s.osc_peers)
-        n.osc_peers.push_back(net::parse_prefix(p, "osc_peers under [serve]"));
-    return n;
 }
 
 std::string read_token(const options::serve_settings& s)
@@ -498,6 +486,9 @@ std::string read_token(const options::serve_settings& s)
 endpoints open_endpoints(const endpoint_options& o)
 {
     endpoints e;
+    e.allow_hosts = o.allow_hosts;
+    for (const std::string& p : o.osc_peers)
+        e.osc_peers.push_back(net::parse_prefix(p, "osc_peers under [serve]"));
     for (auto& [name, fd] : net::inherited_sockets()) {
         const auto k =
             std::find_if(known.begin(), known.end(), [&n = name](const auto& x) { return x.name == n; });

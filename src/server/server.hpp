@@ -25,9 +25,11 @@ struct endpoint_options {
     std::optional<net::host_and_port> tcp = {};
     std::optional<net::host_and_port> http = {};
     std::optional<net::host_and_port> osc = {};
+    std::vector<std::string> allow_hosts = {};
+    std::vector<std::string> osc_peers = {}; ///< prefixes
 };
 
-/// Listening sockets and their addresses.
+/// Listening sockets, their addresses, and the peers that they accept.
 struct endpoints {
     net::owned_fd socket;
     std::string socket_path;
@@ -39,24 +41,17 @@ struct endpoints {
     std::string http_address; ///< empty: off
     net::owned_fd osc;
     std::string osc_address; ///< empty: off
-};
-
-/// Peers that the endpoints of the network accept.
-struct network_options {
-    std::vector<std::string> allow_hosts =
-        {}; ///< HTTP: other names of this server, and pages that may use it
+    /// HTTP: other names of this server, and pages that may use it.
+    std::vector<std::string> allow_hosts = {};
     std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines whose packets are accepted
 };
-
-/// Returns the accepted peers. \throws error (bad_input) for a text that is no prefix.
-network_options settle_network(const options::serve_settings& s);
 
 /// Returns the text of token_file without its line end; empty for none. \throws error (bad_input) for a file
 /// that others may read, and for an empty one.
 std::string read_token(const options::serve_settings& s);
 
 /// Binds sockets, or takes inherited ones. \throws error: see net/listen.hpp; bad_input for inherited sockets
-/// that are not what their names say.
+/// that are not what their names say, and for a text that is no prefix.
 endpoints open_endpoints(const endpoint_options& o);
 
 /// Removes the socket that was bound here.
@@ -64,7 +59,7 @@ void remove_socket(const endpoints& at) noexcept;
 
 /// Serves until `signals` is readable; then fades out and notifies all clients. Calls `listening` once, when
 /// all sockets accept.
-void serve(const endpoints& at, service_options o, stream_options s, network_options w, int signals,
+void serve(const endpoints& at, service_options o, stream_options s, int signals,
            const std::function<void()>& listening);
 
 } // namespace tactor::server

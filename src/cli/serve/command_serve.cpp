@@ -84,6 +84,8 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
     if (s.socket && s.socket->empty())
         refuse_option("--socket", "the name is empty", "name a path");
     server::endpoint_options e;
+    e.allow_hosts = s.allow_hosts;
+    e.osc_peers = s.osc_peers;
     e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
         return given ? *given : default_socket(others);
     };
@@ -162,8 +164,9 @@ server::planning make_planning(const settings& s, const environment& e, const op
     return p;
 }
 
-void warn_of_access(const server::endpoints& at, const std::string& token, bool has_peers)
+void warn_of_access(const server::endpoints& at, const std::string& token)
 {
+    const bool has_peers = !at.osc_peers.empty();
     if (!at.osc_address.empty() && !has_peers && !net::is_loopback(at.osc.get()))
         throw error(error_kind::bad_input, "osc " + at.osc_address,
                     "it is reached from other machines, and nothing says which are heard",
@@ -246,7 +249,6 @@ int serve(settings& s, const serve_options& o)
     const session::stream_options& play = s.stream;
     const options::serve_settings serve = settle_serve(o, e.serve);
     const server::endpoint_options where = settle_endpoints(serve);
-    server::network_options network = server::settle_network(serve);
     session::interrupt stop;
 
     server::service_options service;
@@ -272,7 +274,7 @@ int serve(settings& s, const serve_options& o)
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);
     const std::shared_ptr<void> removed(nullptr, [&at](void*) { server::remove_socket(at); });
-    warn_of_access(at, service.token, !network.osc_peers.empty());
+    warn_of_access(at, service.token);
 
     // Nobody watches a service: in the journal the log is always verbose.
     session::session_log log(play.verbose || session::goes_to_journal(stderr), play.log);
@@ -294,7 +296,7 @@ int serve(settings& s, const serve_options& o)
         tell(state, reason);
     };
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
-    server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
+    server::serve(at, std::move(service), std::move(stream), stop.descriptor(),
                   [&] { print_endpoints(at, o.format); });
     stop.was_the_last();
     return status_ok;
