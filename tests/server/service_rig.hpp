@@ -22,6 +22,7 @@
 
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
+#include "rt/clock.hpp"
 #include "server/service.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 
@@ -87,11 +88,7 @@ public:
         o.version = "test";
         o.limits.max_stroke_s = 86400.0; // of a clock that runs as fast as it can
         o.plan_text = [](const server::planned& p, std::size_t) { return "{\"name\":\"" + p.name + "\"}"; };
-        o.now_ns = [] {
-            timespec now{};
-            clock_gettime(CLOCK_MONOTONIC, &now);
-            return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
-        };
+        o.now_ns = rt::monotonic_ns;
         server::stream_options s;
         s.tactors = o.plans.tactors;
         for (tactor_spec& t : s.tactors.tactors)
@@ -150,13 +147,22 @@ public:
         return {all->connect(box, k, "192.168.1.7"), box}; // a local one has no address
     }
     bool send(const connected& c, const json& message) { return all->receive(c.number, message.dump()); }
+    /// A request; call() counts its ids from 1.
+    static json request(int id, const std::string& method, const json& params = json::object())
+    {
+        return {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}};
+    }
+    /// Waits for the answer to a request.
+    json reply(const connected& c, int id)
+    {
+        until([&] { return c.box->reply(id).has_value(); });
+        return *c.box->reply(id);
+    }
     /// A request and its answer.
     json call(const connected& c, const std::string& method, const json& params = json::object())
     {
-        const int id = ++last_id;
-        send(c, {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}});
-        until([&] { return c.box->reply(id).has_value(); });
-        return *c.box->reply(id);
+        send(c, request(++last_id, method, params));
+        return reply(c, last_id);
     }
     json ok(const connected& c, const std::string& method, const json& params = json::object())
     {

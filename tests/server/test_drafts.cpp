@@ -69,7 +69,7 @@ struct held_service {
     }
     void plan(const service_rig::connected& c, int id, const json& params)
     {
-        rig.send(c, {{"jsonrpc", "2.0"}, {"id", id}, {"method", "plan"}, {"params", params}});
+        rig.send(c, rig.request(id, "plan", params));
     }
     /// Returns true if a request has the answer that it is outdated.
     static bool is_outdated(const service_rig::connected& c, int id)
@@ -86,9 +86,9 @@ struct held_service {
     /// Waits for the result of a request.
     json result(const service_rig::connected& c, int id)
     {
-        rig.until([&] { return c.box->reply(id).has_value(); });
-        REQUIRE_MESSAGE(c.box->reply(id)->contains("result"), c.box->reply(id)->dump());
-        return (*c.box->reply(id))["result"];
+        const json r = rig.reply(c, id);
+        REQUIRE_MESSAGE(r.contains("result"), r.dump());
+        return r["result"];
     }
 
     std::promise<void> may_go_on;
@@ -156,8 +156,7 @@ TEST_CASE("drafts in one batch: the first is outdated, and the batch is answered
     s.hold();
     json batch = json::array();
     for (int i = 1; i <= 2; ++i)
-        batch.push_back(
-            {{"jsonrpc", "2.0"}, {"id", i}, {"method", "plan"}, {"params", with_draft(small, i, 0.1 * i)}});
+        batch.push_back(service_rig::request(i, "plan", with_draft(small, i, 0.1 * i)));
     s.rig.send(me, batch);
     CHECK(me.box->all.empty());
     s.go_on();

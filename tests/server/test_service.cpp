@@ -62,7 +62,7 @@ TEST_CASE("a batch's reply comes before reports of its strokes")
     const auto c = rig.client();
     json batch = json::array();
     for (int i = 0; i < 20; ++i)
-        batch.push_back({{"jsonrpc", "2.0"}, {"id", 1000 + i}, {"method", "play"}, {"params", stroke}});
+        batch.push_back(rig.request(1000 + i, "play", stroke));
     rig.send(c, batch);
     rig.until([&] { return !c.box->all.empty(); });
     REQUIRE(c.box->all.front().is_array());
@@ -192,20 +192,15 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
         const std::size_t before = done.size();
         rig.until([&] { return done.size() != before; });
     };
-    large(json{{"jsonrpc", "2.0"},
-               {"id", 900},
-               {"method", "play"},
-               {"params", {{"points", points}, {"start", "armed"}}}}
-              .dump());
-    rig.until([&] { return c.box->reply(900).has_value(); });
-    const json n = (*c.box->reply(900))["result"]["stroke"];
+    large(rig.request(900, "play", {{"points", points}, {"start", "armed"}}).dump());
+    const json n = rig.reply(c, 900)["result"]["stroke"];
     CHECK(rig.ok(c, "fire")["count"] == 1);
     CHECK(rig.find_end(c, n)["state"] == "finished");
     const std::string noise(10'000, 'x');
     large(noise);
     CHECK(c.box->all.back()["error"]["code"] == -32700);
     CHECK(c.box->all.back().dump().size() < 1000); // what it repeats is cut
-    large(json{{"jsonrpc", "2.0"}, {"id", 901}, {"method", noise}, {"params", {{noise, noise}}}}.dump());
+    large(rig.request(901, noise, {{noise, noise}}).dump());
     CHECK((*c.box->reply(901))["error"]["code"] == -32601);
     CHECK(c.box->all.back().dump().size() < 1500);
     CHECK(done == std::vector{true, true, true});
@@ -227,20 +222,6 @@ TEST_CASE("one tactor alone has a start, too")
     CHECK(rig.call(c, "drive", with(drive, "start", "soon"))["error"]["data"]["what"] == "start");
     CHECK(rig.call(c, "drive", with(drive, "start", {{"delay_s", -1}}))["error"]["data"]["what"] ==
           "start.delay_s");
-}
-
-TEST_CASE("stop holds for what is being planned, too")
-{
-    running_rig rig;
-    const auto c = rig.client();
-    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", stroke}});
-    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "stop"}});
-    rig.until([&] { return c.box->reply(1000).has_value(); });
-    const json n = (*c.box->reply(1000))["result"]["stroke"];
-    const json end = rig.find_end(c, n);
-    CHECK(end["state"] == "cancelled");
-    CHECK(end["frames"] == 0);
-    CHECK(rig.ok(c, "play", stroke)["stroke"] == n.get<unsigned>() + 1);
 }
 
 TEST_CASE("stop ends all strokes of an armed file, also when the first has begun unseen")
@@ -313,22 +294,22 @@ TEST_CASE("cancel of all ends strokes being planned, even of a client that has g
     const json yours = rig.ok(you, "play", with(stroke, "start", "armed"))["stroke"];
     const json armed = rig.ok(me, "play", with(stroke, "start", "armed"))["stroke"];
     const json live = rig.ok(me, "begin", {{"timeout_s", 86400}})["stroke"];
-    const json cancel{{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "cancel"}, {"params", {{"all", true}}}};
-    rig.send(me, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", stroke}});
+    const json cancel = rig.request(1001, "cancel", {{"all", true}});
+    rig.send(me, rig.request(1000, "play", stroke));
     rig.send(me, cancel);
     for (const json& n : {armed, live})
         CHECK(rig.find_end(me, n)["reason"] == "cancelled by its client");
-    rig.until([&] { return me.box->reply(1000).has_value(); });
+    const json end = rig.find_end(me, rig.reply(me, 1000)["result"]["stroke"]);
     CHECK((*me.box->reply(1001))["result"] == json::object());
-    const json end = rig.find_end(me, (*me.box->reply(1000))["result"]["stroke"]);
     CHECK(end["state"] == "cancelled");
     CHECK(end["reason"] == "cancelled by its client");
     CHECK(end["frames"] == 0);
-    // Later strokes play.
+    // Later strokes play, by the next number.
     const json next = rig.ok(me, "play", stroke)["stroke"];
+    CHECK(next == end["stroke"].get<unsigned>() + 1);
     CHECK(rig.find_end(me, next)["state"] == "finished");
     you.box->all.clear();
-    rig.send(me, {{"jsonrpc", "2.0"}, {"id", 1002}, {"method", "play"}, {"params", stroke}});
+    rig.send(me, rig.request(1002, "play", stroke));
     rig.send(me, cancel);
     rig.all->disconnect(me.number);
     const auto ended = [&] {
@@ -504,7 +485,7 @@ TEST_CASE("a client that goes: its played strokes play on, also those that were 
     const json live = rig.ok(gone, "begin", {{"timeout_s", 86400}})["stroke"];
     rig.ok(gone, "to", {{"stroke", live}, {"x_mm", 20}, {"y_mm", 20}});
     for (int i = 0; i < 5; ++i)
-        rig.send(gone, {{"jsonrpc", "2.0"}, {"id", i}, {"method", "play"}, {"params", stroke}});
+        rig.send(gone, rig.request(i, "play", stroke));
     rig.all->disconnect(gone.number);
     rig.until([&] {
         std::size_t finished = 0;
@@ -514,27 +495,6 @@ TEST_CASE("a client that goes: its played strokes play on, also those that were 
     });
     CHECK(watcher.box->find_end(live).has_value());
     CHECK(rig.ok(watcher, "status")["clients"] == 1);
-}
-
-TEST_CASE("many points and many strokes are refused, not queued")
-{
-    running_rig rig([](server::service_options& o, server::stream_options&) {
-        o.now_ns = [] { return std::int64_t{1'000'000'000}; };
-    });
-    const auto c = rig.client();
-    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
-    const json point{{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}};
-    for (int i = 0; i < 2000; ++i)
-        REQUIRE(rig.code(c, "to", point) == 0);
-    CHECK(rig.code(c, "to", point) == -32001);
-    for (int i = 0; i < 3; ++i)
-        rig.ok(c, "begin", {{"timeout_s", 86400}});
-    CHECK(rig.code(c, "begin") == -32001);
-    for (int i = 0; i < 60; ++i)
-        rig.ok(c, "play", with(stroke, "start", "armed"));
-    CHECK(rig.code(c, "play", stroke) == -32001);
-    rig.ok(c, "stop");
-    rig.until([&] { return rig.code(c, "play", stroke) == 0; });
 }
 
 TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
@@ -572,40 +532,6 @@ TEST_CASE("smooth_s: an end waits until the last point is reached")
     CHECK(end["frames"] >= 24'000);
 }
 
-TEST_CASE("over a network hello comes first, and the token where one is owed")
-{
-    running_rig rig([](server::service_options& o, server::stream_options&) { o.token = "right"; });
-    const auto post = rig.client(server::client_kind::network);
-    CHECK_FALSE(rig.all->receive(post.number, "POST / HTTP/1.1"));
-    CHECK(post.box->all.empty());
-    const auto c = rig.client(server::client_kind::network);
-    CHECK(rig.code(c, "hello") == -32003);
-    CHECK(rig.code(c, "status") == -32003);
-    CHECK(rig.code(c, "hello", {{"token", "wrong"}}) == -32003);
-    CHECK_FALSE(c.box->finished);
-    CHECK(rig.code(c, "hello", {{"token", "righ"}}) == -32003);
-    CHECK(c.box->finished);
-    const auto d = rig.client(server::client_kind::network);
-    CHECK(rig.code(d, "hello", {{"token", "right"}}) == 0);
-    CHECK(rig.code(d, "status") == 0);
-    CHECK(rig.code(rig.client(), "status") == 0);
-}
-
-TEST_CASE("places: some are for the socket of this machine alone")
-{
-    service_rig rig([](server::service_options& o, server::stream_options&) {
-        o.limits.max_clients = 3;
-        o.limits.kept_clients = 2;
-    });
-    using server::client_kind;
-    CHECK(rig.all->has_place(client_kind::network));
-    const auto c = rig.client(client_kind::network);
-    CHECK_FALSE(rig.all->has_place(client_kind::network));
-    CHECK(rig.all->has_place(client_kind::local));
-    rig.all->disconnect(c.number);
-    CHECK(rig.all->has_place(client_kind::network));
-}
-
 TEST_CASE("who sends no more and waits for the end of a stroke takes no place, and there are so many of them")
 {
     running_rig rig([](server::service_options& o, server::stream_options&) {
@@ -640,7 +566,7 @@ TEST_CASE("a hundred clients at once: each request has one reply, each stroke on
         all.push_back(rig.client());
     int asked = 1'000'000; // rig.ok() counts from 1
     const auto ask = [&](const service_rig::connected& c, const char* method, const json& params) {
-        rig.send(c, {{"jsonrpc", "2.0"}, {"id", ++asked}, {"method", method}, {"params", params}});
+        rig.send(c, rig.request(++asked, method, params));
         return asked;
     };
     for (std::size_t round = 0; round < 20; ++round) {

@@ -94,7 +94,7 @@ TEST_CASE("at the end each number has had exactly one end, whoever is still ther
         numbers.push_back(rig.ok(c, "play", i % 2 == 0 ? armed : brief)["stroke"]);
     numbers.push_back(rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"]);
     for (int i = 0; i < 5; ++i)
-        rig.send(c, {{"jsonrpc", "2.0"}, {"id", 5000 + i}, {"method", "play"}, {"params", brief}});
+        rig.send(c, rig.request(5000 + i, "play", brief));
     rig.close();
     for (int i = 0; i < 5; ++i) {
         REQUIRE(c.box->reply(5000 + i).has_value());
@@ -176,16 +176,6 @@ TEST_CASE("a suspended device is no reason for the watchdog to end the service")
     CHECK(rig.all->output().progresses());
 }
 
-TEST_CASE("what does not fit at the start is refused, once")
-{
-    misfit card;
-    card.bad = true;
-    service_rig rig([&](server::service_options&, server::stream_options& s) { card.replace(s); });
-    rig.start();
-    rig.until([&] { return card.refused == 1; });
-    CHECK(card.tries == 1);
-}
-
 TEST_CASE("a card that does not fit in the place of one that did is tried again")
 {
     misfit card;
@@ -243,16 +233,12 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
     const std::vector<std::pair<std::string, json>> asked{
         {"begin", json::object()}, {"play", brief}, {"play", armed}, {"drive", {{"tactor", 0}}}};
     for (std::size_t i = 0; i < asked.size(); ++i)
-        rig.send(c, {{"jsonrpc", "2.0"},
-                     {"id", 1000 + static_cast<int>(i)},
-                     {"method", asked[i].first},
-                     {"params", asked[i].second}});
+        rig.send(c, rig.request(1000 + static_cast<int>(i), asked[i].first, asked[i].second));
     rig.ok(c, "stop");
     gate.set_value();
     for (int id = 1000; id < 1004; ++id) {
         CAPTURE(asked[static_cast<std::size_t>(id - 1000)].first);
-        rig.until([&] { return c.box->reply(id).has_value(); });
-        const json n = (*c.box->reply(id))["result"]["stroke"];
+        const json n = rig.reply(c, id)["result"]["stroke"];
         const json end = rig.find_end(c, n);
         CHECK(end["state"] == "cancelled");
         CHECK(end["reason"] == "cancelled by its client");
@@ -279,12 +265,12 @@ TEST_CASE("what is stopped before it is planned does not start an idle stream")
     const auto c = rig.client();
     rig.sleep_and_plug();
     // Both arrive before the context's thread hears of the plan.
-    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", brief}});
-    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "stop"}});
-    rig.until([&] { return c.box->reply(1000).has_value(); });
-    const json end = rig.find_end(c, (*c.box->reply(1000))["result"]["stroke"]);
+    rig.send(c, rig.request(1000, "play", brief));
+    rig.send(c, rig.request(1001, "stop"));
+    const json end = rig.find_end(c, rig.reply(c, 1000)["result"]["stroke"]);
     CHECK(end["state"] == "cancelled");
     CHECK(end["reason"] == "cancelled by its client");
+    CHECK(end["frames"] == 0);
     rig.io.poll();
     CHECK(rig.all->output().state() == server::stream_state::idle);
     CHECK(opened == 1);

@@ -23,7 +23,7 @@ json ask_sound(double seconds)
 
 json export_request(int id, double seconds)
 {
-    return {{"jsonrpc", "2.0"}, {"id", id}, {"method", "export"}, {"params", ask_sound(seconds)}};
+    return service_rig::request(id, "export", ask_sound(seconds));
 }
 
 } // namespace
@@ -78,10 +78,7 @@ TEST_CASE("files for a client that left are not made, and its strokes are played
     plan["params"]["as"] = "json";
     for (int i = 0; i < 30; ++i)
         rig.send(a, plan);
-    rig.send(a, {{"jsonrpc", "2.0"},
-                 {"id", 99},
-                 {"method", "play"},
-                 {"params", {{"path", "M 0 0 L 40 40"}, {"options", {{"duration", 0.1}}}}}});
+    rig.send(a, rig.request(99, "play", {{"path", "M 0 0 L 40 40"}, {"options", {{"duration", 0.1}}}}));
     rig.all->disconnect(a.number);
     rig.find_end(b, 1);
     rig.close();
@@ -96,8 +93,7 @@ TEST_CASE("the end of the server refuses files that wait")
     for (int i = 1; i <= 10; ++i)
         rig.send(c, export_request(i, 20.0));
     rig.close();
-    rig.until([&] { return c.box->reply(10).has_value(); });
-    CHECK((*c.box->reply(10))["error"]["code"] == net::code_no_stream);
+    CHECK(rig.reply(c, 10)["error"]["code"] == net::code_no_stream);
 }
 
 TEST_CASE("names of files are letters, digits, blanks, - and _")
