@@ -161,14 +161,6 @@ bool service::has_place(client_kind k) const
     return taken < (datagram ? std::max<std::size_t>(1, options_.limits.max_clients / osc_part) : places(k));
 }
 
-// Counts clients that send no more. A TCP client of these may still read: it gets its answers, but takes no
-// place.
-std::size_t service::count_silent() const
-{
-    return static_cast<std::size_t>(
-        std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->input_over; }));
-}
-
 client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
     auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k, std::move(from));
@@ -328,11 +320,12 @@ bool service::input_ended(client_number number)
     c->input_over = true;
     for (const std::uint32_t n : c->strokes)
         end_with_client(*strokes_.at(n));
-    // There are more of them than places: lets the first one go. Its strokes play on.
-    if (all_sent_ && count_silent() > options_.limits.max_clients)
-        all_sent_(std::find_if(clients_.begin(), clients_.end(), [](const auto& one) {
-                      return one.second->input_over;
-                  })->first);
+    // A TCP client that sends no more may still read: it gets its answers, but takes no place. If there are
+    // more of them than places, lets the first one go. Its strokes play on.
+    const auto is_silent = [](const auto& one) { return one.second->input_over; };
+    const auto silent = std::count_if(clients_.begin(), clients_.end(), is_silent);
+    if (all_sent_ && static_cast<std::size_t>(silent) > options_.limits.max_clients)
+        all_sent_(std::find_if(clients_.begin(), clients_.end(), is_silent)->first);
     return c->unanswered == 0 && c->strokes.empty();
 }
 

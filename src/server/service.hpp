@@ -261,7 +261,6 @@ private:
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);
-    std::size_t count_silent() const;
     void send(client& c, const reply_json& message);
     /// Returns the options of a stream that calls this service.
     stream_options with_handlers(stream_options s);
@@ -272,7 +271,7 @@ private:
 
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
-    void refuse_token(client& c, const answer& to, const net::rpc_fault& wrong);
+    void refuse_token(client& c, const answer& to, bool is_missing);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
     void make_qr(client& c, const net::json& params, const answer& to);
@@ -281,11 +280,9 @@ private:
     void gather_levels();
     reply_json hello_result(const client& c);
     reply_json limits_json() const;
-    reply_json people() const;
     void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
     void touch(stroke_record& r);
     void touch_later(std::uint32_t stroke);
-    void end_touch(stroke_record& r);
     void tell_touch(const stroke_record& r, bool down);
     void tell_stop(client_number by);
 
@@ -314,8 +311,8 @@ private:
     void level(client& c, const net::json& params, const answer& to);
     void set_level(stroke_record& r, double db);
     static double level_db(const stroke_record& r) noexcept;
+    player* find_player(const stroke_record& r) const noexcept;
     void cancel(client& c, const net::json& params, const answer& to);
-    void cancel_all(client& c);
     void cancel(stroke_record& r, const char* why);
     void stop(client& c, const net::json& params, const answer& to);
     void stop_all(client_number by);

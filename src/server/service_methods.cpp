@@ -27,11 +27,9 @@ using net::json;
 using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
-constexpr const char* many_wrong_tokens = "three wrong tokens";
 constexpr double first_wrong_token_s = 0.2; // until one is answered; doubles with each
 constexpr double longest_wrong_token_s = 10.0;
 constexpr std::size_t most_addresses = 1024;
-constexpr double most_levels_hz = 100.0;
 constexpr std::array event_names{"strokes", "levels", "stream", "touches", "stops"};
 
 // Compares in a time that does not show how much is right.
@@ -91,17 +89,8 @@ void service::hello(client& c, const json& params, const answer& to)
     if (name != nullptr && is_taken_name(name->get<std::string>()))
         bad_param("name", "pages call somebody else so, or nobody", "a name that others know you by");
     if (!c.admitted) {
-        if (token == nullptr || !same_secret(token->get<std::string>(), options_.token)) {
-            const net::rpc_fault owed{net::code_no_token, "token", "token",
-                                      token == nullptr ? "it is owed" : "it is wrong",
-                                      "give what the server's token_file holds"};
-            if (token != nullptr)
-                return refuse_token(c, to, owed);
-            to.fault(owed);
-            if (++c.wrong_tokens == most_wrong_tokens)
-                c.link->turn_out(many_wrong_tokens);
-            return;
-        }
+        if (token == nullptr || !same_secret(token->get<std::string>(), options_.token))
+            return refuse_token(c, to, token == nullptr);
         c.admitted = true;
         wrong_token_wait_s_.erase(c.from);
     }
@@ -122,21 +111,21 @@ double service::count_wrong_token(const std::string& from)
 }
 
 // Answers a wrong token late.
-void service::refuse_token(client& c, const answer& to, const net::rpc_fault& wrong)
+void service::refuse_token(client& c, const answer& to, bool is_missing)
 {
     if (++c.wrong_tokens > most_wrong_tokens)
         return; // it is turned out when the one before is answered
-    const double wait_s = count_wrong_token(c.from);
+    const double wait_s = is_missing ? 0.0 : count_wrong_token(c.from);
     const auto timer = late_answers_.emplace(late_answers_.end(), io_);
-    timer->expires_after(
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(wait_s)));
-    timer->async_wait([this, timer, to, wrong, number = c.number,
+    timer->expires_after(std::chrono::nanoseconds(std::llround(wait_s * 1e9)));
+    timer->async_wait([=, this, number = c.number,
                        last = c.wrong_tokens == most_wrong_tokens](const boost::system::error_code& gone) {
         if (gone)
             return; // the service ends
-        to.fault(wrong);
+        to.fault({net::code_no_token, "token", "token", is_missing ? "it is owed" : "it is wrong",
+                  "give what the server's token_file holds"});
         if (client* const guest = find(number); guest != nullptr && last)
-            guest->link->turn_out(many_wrong_tokens);
+            guest->link->turn_out("three wrong tokens");
         late_answers_.erase(timer);
     });
 }
@@ -166,6 +155,9 @@ bool service::admits(std::string_view token) const
 reply_json service::status_now()
 {
     const player_stats s = stream_.stats();
+    reply_json who = reply_json::array();
+    for (const auto& [number, c] : clients_)
+        who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
     reply_json strokes = reply_json::array();
     for (const auto& [number, r] : strokes_)
         strokes.push_back({{"stroke", number}, {"state", r->state}, {"client", r->owner}});
@@ -179,7 +171,7 @@ reply_json service::status_now()
               {"realtime", s.realtime}}},
             {"amplifier", to_string(stream_.amplifier())},
             {"clients", clients_.size()},
-            {"who", people()},
+            {"who", who},
             {"strokes", strokes},
             {"limits", limits_json()}};
 }
@@ -229,11 +221,11 @@ void service::subscribe(client& c, const json& params, const answer& to)
             bad_param("events", fmt::format("there are no \"{}\"", name), known);
         wanted.insert(name);
     }
-    const json* hz = member(params, "levels_hz");
     constexpr double usual_hz = 30.0;
-    const double rate = hz == nullptr ? usual_hz : number(*hz, "levels_hz", {0.01, most_levels_hz});
+    constexpr double most_hz = 100.0;
+    const json* hz = member(params, "levels_hz");
+    c.levels_hz = hz == nullptr ? usual_hz : number(*hz, "levels_hz", {0.01, most_hz});
     c.events = std::move(wanted);
-    c.levels_hz = rate;
     to.result(reply_json::object());
     c.levels.assign(stream_.peaks().size(), 0.0F);
     c.levels_timer.cancel();
@@ -285,15 +277,6 @@ void service::send_levels(client_number number)
     });
 }
 
-// Lists the clients that are there.
-reply_json service::people() const
-{
-    reply_json who = reply_json::array();
-    for (const auto& [number, c] : clients_)
-        who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
-    return who;
-}
-
 // Notifies the subscribers of an event, except for one client. Those that are behind get nothing.
 void service::tell_subscribers(const std::string& event, reply_json params, client_number except)
 {
@@ -330,17 +313,8 @@ void service::touch_later(std::uint32_t stroke)
         if (e)
             return;
         for (const std::uint32_t n : std::exchange(touches_due_, {}))
-            if (const auto found = strokes_.find(n); found != strokes_.end())
-                touch(*found->second);
+            touch(*strokes_.at(n));
     });
-}
-
-// Tells where a live stroke was last, at its end.
-void service::end_touch(stroke_record& r)
-{
-    touches_due_.erase(r.number);
-    if (r.touched)
-        tell_touch(r, false);
 }
 
 void service::tell_touch(const stroke_record& r, bool down)

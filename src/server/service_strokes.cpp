@@ -109,7 +109,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
 // Submits what is repeated for the frame after it, which begins now.
 void service::submit_next(stroke_record& r)
 {
-    player* out = stream_.number() == r.player ? stream_.current() : nullptr;
+    player* out = find_player(r);
     if (!r.again || r.next_waits || r.open.empty() || r.ended_by != nullptr || out == nullptr)
         return;
     const auto from = out->first_frame(r.open.back());
@@ -198,6 +198,12 @@ const char* service::stop_reason_since(const answer& to) const
     return m.stops != stops_ ? stop_reason(owner) : nullptr;
 }
 
+// Returns the player that has a stroke; null if it is gone.
+player* service::find_player(const stroke_record& r) const noexcept
+{
+    return r.player == stream_.number() ? stream_.current() : nullptr;
+}
+
 // Returns how far below what it asks for a stroke sounds.
 double service::level_db(const stroke_record& r) noexcept
 {
@@ -207,7 +213,7 @@ double service::level_db(const stroke_record& r) noexcept
 void service::set_level(stroke_record& r, double db)
 {
     r.level_db = db;
-    if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
+    if (player* p = find_player(r))
         for (const stroke_id id : r.open)
             p->set_level(id, level_db(r));
 }
@@ -236,7 +242,11 @@ void service::cancel(client& c, const json& params, const answer& to)
     if (const json* all = member(params, "all")) {
         if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
             bad_param("all", "it is true, and stands alone", R"({"stroke":N} or {"all":true})");
-        cancel_all(c);
+        // Requests that are being planned, or wait for the stream, check the count.
+        ++*c.cancels;
+        for (const std::uint32_t n : std::set(c.strokes))
+            if (const auto found = strokes_.find(n); found != strokes_.end())
+                cancel(*found->second, cancelled_by_client);
         return to.result(reply_json::object());
     }
     const std::uint32_t n = need_stroke(params);
@@ -246,15 +256,6 @@ void service::cancel(client& c, const json& params, const answer& to)
     cancel(*strokes_.at(n), cancelled_by_client);
 }
 
-// Cancels all strokes of a client. Requests that are being planned, or wait for the stream, check the count.
-void service::cancel_all(client& c)
-{
-    ++*c.cancels;
-    for (const std::uint32_t n : std::set(c.strokes))
-        if (const auto found = strokes_.find(n); found != strokes_.end())
-            cancel(*found->second, cancelled_by_client);
-}
-
 void service::cancel(stroke_record& r, const char* why)
 {
     if (r.ended_by == nullptr)
@@ -262,7 +263,7 @@ void service::cancel(stroke_record& r, const char* why)
     if (r.submits_later) // it waits for another to begin
         return finish(r, {.state = state_kind::cancelled});
     r.again.reset();
-    if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
+    if (player* p = find_player(r))
         for (const stroke_id id : r.open)
             p->cancel(id);
 }
@@ -359,7 +360,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
 // Submits the other strokes of an armed file, whose times are known only now.
 void service::start_followers(stroke_record& first, std::int64_t at_ns)
 {
-    tactor::player* out = stream_.number() == first.player ? stream_.current() : nullptr;
+    player* out = find_player(first);
     for (const auto& [number, after_s] : std::exchange(first.followers, {})) {
         const auto found = strokes_.find(number);
         if (found == strokes_.end() || !found->second->submits_later)
@@ -428,7 +429,7 @@ void service::end_rounds(stroke_record& r)
     r.again.reset();
     if (!std::exchange(r.next_waits, false))
         return;
-    if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
+    if (player* p = find_player(r))
         p->cancel(r.open.back());
     by_player_.erase({r.player, r.open.back()});
     r.open.pop_back();
@@ -455,7 +456,9 @@ void service::finish(stroke_record& r, const stroke_report& how)
             --c->live;
     }
     r.state = "ended";
-    end_touch(r);
+    touches_due_.erase(r.number);
+    if (r.touched)
+        tell_touch(r, false);
     stroke_report report = how;
     report.why = reason(r, how);
     if (options_.log)
