@@ -63,7 +63,6 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         static_cast<std::uint64_t>(std::llround(static_cast<double>(p.rounds) * p.total_s() * s.rate));
     std::vector<std::uint32_t> numbers;
     std::vector<stroke_record*> records;
-    std::vector<std::string> refused(scores.size());
     for (std::size_t i = 0; i < scores.size(); ++i) {
         stroke_record& r = add_record(owner);
         numbers.push_back(r.number);
@@ -72,37 +71,37 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         r.gain_db = gain_db;
         if (const client* c = find(owner); again && c != nullptr && !c->input_over)
             r.again = repeated{scores[i], rounds_frames};
+        if (asked.armed)
+            r.state = "armed";
         if (asked.armed && i != first) {
             r.submits_later = scores[i];
-            r.state = "armed";
             continue;
         }
-        const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
-        start_at when = start_at::now();
-        if (asked.armed)
-            when = start_at::trigger();
-        else if (asked.at_ns || scores.size() > 1) {
+        start_at when = asked.armed ? start_at::trigger() : start_at::now();
+        if (asked.at_ns || (!asked.armed && scores.size() > 1)) {
+            const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
             when = start_at::time(at);
             if (asked.at_ns)
                 r.asked_ns = at;
         }
         try {
             add_submission(r, out->submit(scores[i], when, level_db(r)));
-        } catch (const error& e) {
-            refused[i] = e.what(); // the stream may just have ended: the number ends below
-            continue;
+        } catch (const error& e) { // the stream may just have ended: the number ends below
+            r.broken = {.state = state_kind::interrupted, .reason = reason_kind::failed, .why = e.what()};
         }
-        r.state = asked.armed ? "armed" : "waiting";
     }
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->submits_later)
             records[first]->followers.emplace_back(records[i]->number, starts[i] - starts[first]);
-    const auto end = out->ended();
-    for (std::size_t i = 0; i < records.size(); ++i)
-        if (records[i]->open.empty() && !records[i]->submits_later && records[i]->state != "ended")
-            finish(*records[i], {.state = state_kind::interrupted,
-                                 .reason = end ? end->reason : reason_kind::failed,
-                                 .why = end ? end->why : refused[i]});
+    for (stroke_record* r : records) {
+        if (!r->broken)
+            continue;
+        if (const auto end = out->ended()) {
+            r->broken->reason = end->reason;
+            r->broken->why = end->why;
+        }
+        finish(*r, *r->broken);
+    }
     return numbers;
 }
 
@@ -130,14 +129,12 @@ void service::submit_next(stroke_record& r)
 std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t n, const char* why)
 {
     std::vector<std::uint32_t> numbers;
-    std::vector<stroke_record*> records;
     for (std::size_t i = 0; i < n; ++i) {
-        records.push_back(&add_record(owner));
-        records.back()->ended_by = why;
-        numbers.push_back(records.back()->number);
+        stroke_record& r = add_record(owner);
+        numbers.push_back(r.number);
+        r.ended_by = why;
+        finish(r, {.state = state_kind::cancelled});
     }
-    for (stroke_record* r : records)
-        finish(*r, {.state = state_kind::cancelled});
     return numbers;
 }
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,30 +28,24 @@ public:
     explicit value_list(const osc_message& m) : all_(m.values) {}
 
     bool left() const { return next_ != all_.size(); }
-    bool next_is_number() const { return left() && is_number(all_[next_]); }
+    bool next_is_number() const { return left() && as_number(all_[next_]); }
     /// Returns true if the next value is 0 or false.
     bool released() const
     {
         if (!left())
             return false;
-        const osc_value& v = all_[next_];
-        const auto* n = std::get_if<std::int64_t>(&v);
-        const auto* x = std::get_if<double>(&v);
-        const auto* other = std::get_if<net::osc_other>(&v);
-        return (n != nullptr && *n == 0) || (x != nullptr && *x == 0.0) ||
-               (other != nullptr && other->tag == 'F');
+        const auto* other = std::get_if<net::osc_other>(&all_[next_]);
+        return as_number(all_[next_]) == 0.0 || (other != nullptr && other->tag == 'F');
     }
 
     double number(const char* what)
     {
-        const osc_value& v = take(what, "a number");
-        if (!is_number(v))
+        const std::optional<double> x = as_number(take(what, "a number"));
+        if (!x)
             bad_param(what, "it is no number", "i, h, f and d are taken");
-        const auto* n = std::get_if<std::int64_t>(&v);
-        const double x = n != nullptr ? static_cast<double>(*n) : std::get<double>(v);
-        if (!std::isfinite(x))
+        if (!std::isfinite(*x))
             bad_param(what, "it is not finite");
-        return x;
+        return *x;
     }
     template <typename Whole>
     Whole whole(const char* what, Whole low)
@@ -76,9 +71,13 @@ public:
     }
 
 private:
-    static bool is_number(const osc_value& v)
+    static std::optional<double> as_number(const osc_value& v)
     {
-        return std::holds_alternative<std::int64_t>(v) || std::holds_alternative<double>(v);
+        if (const auto* n = std::get_if<std::int64_t>(&v))
+            return static_cast<double>(*n);
+        if (const auto* x = std::get_if<double>(&v))
+            return *x;
+        return {};
     }
     const osc_value& take(const char* what, const char* kind)
     {
