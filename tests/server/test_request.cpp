@@ -181,6 +181,23 @@ TEST_CASE("what is refused names its parameter")
     CHECK(fault_what({{"csv", "t_s,x_mm,y_mm\n0,0,0\n"}}) == "csv");
 }
 
+TEST_CASE("parameters of a view that are refused name themselves")
+{
+    const auto fault = [](const json& params) { return fault_from([&] { settle_options({}, params); }); };
+    CHECK(fault({{"view", "all"}}).what == "view");
+    CHECK(fault({{"view", 1}}).what == "view");
+    for (const json& bins : {json(0), json(4001), json(1.5), json("9"), json(nullptr)})
+        CHECK(fault({{"view", "peaks"}, {"bins", bins}}).what == "bins");
+    CHECK(fault({{"view", "percept"}, {"bins", 9}}).what == "bins");
+    CHECK(fault({{"bins", 9}}).what == "bins");
+    CHECK(fault({{"observer", "centroid"}}).what == "observer");
+    CHECK(fault({{"view", "bursts"}, {"observer", "centroid"}}).what == "observer");
+    CHECK(fault({{"view", "percept"}, {"observer", "me"}}).what == "observer");
+    CHECK(fault({{"view", "percept"}, {"observer", "me"}}).hint == "one of centroid, low-speed");
+    CHECK(fault({{"view", "percept"}, {"options", {{"sigma_mm", 3}}}}).what == "options.sigma_mm");
+    CHECK(fault({{"options", {{"sigma_mm", 9}}}}).what == "options.sigma_mm"); // which nothing uses
+}
+
 TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
 {
     planning p = palm();

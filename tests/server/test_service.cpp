@@ -11,6 +11,7 @@
 #include "rounds.hpp"
 #include "service_rig.hpp"
 
+// Many clients at once: tests/bench/serve_load.py, which is in the suite.
 namespace service_test {
 
 using namespace tactor;
@@ -476,44 +477,6 @@ TEST_CASE("too many bursts are refused before they are planned, and a view for i
     CHECK(rig.find_end(c, n)["state"] == "cancelled");
 }
 
-TEST_CASE("a client that goes: its played strokes play on, also those that were not planned yet")
-{
-    running_rig rig;
-    const auto gone = rig.client();
-    const auto watcher = rig.client();
-    rig.ok(watcher, "subscribe", {{"events", {"strokes"}}});
-    const json live = rig.ok(gone, "begin", {{"timeout_s", 86400}})["stroke"];
-    rig.ok(gone, "to", {{"stroke", live}, {"x_mm", 20}, {"y_mm", 20}});
-    for (int i = 0; i < 5; ++i)
-        rig.send(gone, rig.request(i, "play", stroke));
-    rig.all->disconnect(gone.number);
-    rig.until([&] {
-        std::size_t finished = 0;
-        for (const json& m : watcher.box->all)
-            finished += m.contains("method") && m["params"]["state"] == "finished" ? 1 : 0;
-        return finished == 6;
-    });
-    CHECK(watcher.box->find_end(live).has_value());
-    CHECK(rig.ok(watcher, "status")["clients"] == 1);
-}
-
-TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
-{
-    running_rig rig([](server::service_options& o, server::stream_options&) { o.limits.max_stroke_s = 0.2; });
-    const auto c = rig.client();
-    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
-    const json point{
-        {"jsonrpc", "2.0"}, {"method", "to"}, {"params", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}}};
-    rig.send(c, point);
-    const json end = rig.find_end(c, n);
-    CHECK(end["state"] == "interrupted");
-    CHECK(end["reason"] == "limit: it has lasted as long as it may");
-    CHECK(end["frames"] >= 9600);
-    CHECK(end["frames"] <= 9600 + 2 * 480);
-    CHECK(rig.ok(c, "status")["strokes"].empty());
-    CHECK_FALSE(rig.ok(c, "begin").empty()); // its place is free
-}
-
 TEST_CASE("smooth_s: an end waits until the last point is reached")
 {
     running_rig rig;
@@ -551,64 +514,6 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
     const auto last = rig.client();
     rig.ok(last, "stop");
     CHECK(rig.find_end(gone.back(), 3)["state"] == "cancelled");
-}
-
-// Figures that depend on the machine's time come from tests/bench/serve_load.py.
-TEST_CASE("a hundred clients at once: each request has one reply, each stroke one end, nothing is left")
-{
-    constexpr std::size_t clients = 100;
-    constexpr std::size_t drawing = 12; // of them, in each round
-    const json brief{{"path", "M 0 0 L 40 40"},
-                     {"options", {{"algorithm", "continuous"}, {"duration", 0.1}, {"level_dbfs", -40}}}};
-    running_rig rig;
-    std::vector<service_rig::connected> all;
-    for (std::size_t i = 0; i < clients; ++i)
-        all.push_back(rig.client());
-    int asked = 1'000'000; // rig.ok() counts from 1
-    const auto ask = [&](const service_rig::connected& c, const char* method, const json& params) {
-        rig.send(c, rig.request(++asked, method, params));
-        return asked;
-    };
-    for (std::size_t round = 0; round < 20; ++round) {
-        std::vector<int> plays;
-        std::vector<int> last;
-        std::vector<std::vector<json>> strokes(clients);
-        for (const auto& c : all) {
-            c.box->all.clear();
-            plays.push_back(ask(c, "play", brief));
-            last.push_back(plays.back());
-        }
-        for (std::size_t i = 0; i < drawing; ++i) {
-            const std::size_t who = (round * drawing + i) % clients;
-            const json options{{"timeout_s", 86400}, {"options", {{"level_dbfs", -40}}}};
-            const json n = rig.ok(all[who], "begin", options)["stroke"];
-            strokes[who].push_back(n);
-            for (int k = 0; k < 42; ++k)
-                ask(all[who], "to", {{"stroke", n}, {"x_mm", k % 41}, {"y_mm", 7 * k % 41}});
-            last[who] = ask(all[who], "end", {{"stroke", n}});
-        }
-        for (std::size_t i = 0; i < clients; ++i) {
-            const inbox& box = *all[i].box;
-            rig.until([&] { return box.reply(plays[i]) && box.reply(last[i]); });
-            strokes[i].push_back((*box.reply(plays[i]))["result"]["stroke"]);
-            for (const json& n : strokes[i]) {
-                CHECK(rig.find_end(all[i], n)["state"] == "finished");
-                CHECK(box.stroke_messages(n).size() == 2); // its start, and its end
-            }
-        }
-        for (const auto& c : all) {
-            std::set<int> replies;
-            for (const json& m : c.box->all)
-                if (m.contains("id")) {
-                    CHECK_MESSAGE(m.contains("result"), m.dump());
-                    CHECK(replies.insert(m["id"].get<int>()).second);
-                }
-        }
-    }
-    const json now = rig.ok(all.front(), "status");
-    CHECK(now["strokes"].empty());
-    CHECK(now["clients"] == clients);
-    CHECK(now["stream"]["xruns"] == 0);
 }
 
 } // namespace service_test

@@ -12,7 +12,6 @@
 #include "core/kind_names.hpp"
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
-#include "server/faults.hpp"
 #include "server/view.hpp"
 #include "service_rig.hpp"
 
@@ -156,17 +155,6 @@ void check_errors(const json& errors, const json& row)
         CHECK_MESSAGE(row[name] == value, name);
 }
 
-net::rpc_fault fault_from(const json& params)
-{
-    try {
-        static_cast<void>(settle_options({}, params));
-    } catch (...) {
-        return current_fault("params");
-    }
-    FAIL("nothing was refused");
-    return {};
-}
-
 // Largest amplitude of a tactor at a time; at an end of a burst it is on.
 double loudest_at(const planned& p, std::size_t tactor, double t_s, double before_s, double after_s)
 {
@@ -269,13 +257,11 @@ TEST_CASE("percept: the numbers of tactor compare, and the places felt")
         }
     // The owner's observer, and the client's parameters of it.
     with.owner.observer = observer_kind::low_speed;
-    json params = line(1.0, "park2016", {{"view", "percept"}, {"options", {{"sigma_mm", 9}}}});
+    const json params = line(1.0, "park2016", {{"view", "percept"}, {"options", {{"sigma_mm", 9}}}});
     const planned p = make_planned(with, faces, params);
     CHECK(p.observer.kind == observer_kind::low_speed);
     CHECK(p.observer.low_speed.sigma_mm == 9.0);
-    params.erase("view");
     CHECK(make_planned(with, faces, line(1.0, "park2016")).observer.kind == observer_kind::centroid);
-    CHECK(fault_from(params).what == "options.sigma_mm"); // which nothing uses
 }
 
 TEST_CASE("percept: places felt at their times, thinned out evenly, held in silence")
@@ -377,21 +363,6 @@ TEST_CASE("a view that is too long is not made")
     const planned p = make(line(2.0, "continuous"));
     for (const view_kind k : {view_kind::bursts, view_kind::percept, view_kind::peaks})
         CHECK_THROWS_AS(static_cast<void>(view_text(p, palm().tactors, {k, 4000}, 10'000)), std::bad_alloc);
-}
-
-TEST_CASE("parameters of a view that are refused name themselves")
-{
-    CHECK(fault_from({{"view", "all"}}).what == "view");
-    CHECK(fault_from({{"view", 1}}).what == "view");
-    for (const json& bins : {json(0), json(4001), json(1.5), json("9"), json(nullptr)})
-        CHECK(fault_from({{"view", "peaks"}, {"bins", bins}}).what == "bins");
-    CHECK(fault_from({{"view", "percept"}, {"bins", 9}}).what == "bins");
-    CHECK(fault_from({{"bins", 9}}).what == "bins");
-    CHECK(fault_from({{"observer", "centroid"}}).what == "observer");
-    CHECK(fault_from({{"view", "bursts"}, {"observer", "centroid"}}).what == "observer");
-    CHECK(fault_from({{"view", "percept"}, {"observer", "me"}}).what == "observer");
-    CHECK(fault_from({{"view", "percept"}, {"observer", "me"}}).hint == "one of centroid, low-speed");
-    CHECK(fault_from({{"view", "percept"}, {"options", {{"sigma_mm", 3}}}}).what == "options.sigma_mm");
 }
 
 } // namespace view_test
