@@ -175,17 +175,17 @@ bool is_in_file(const option& o, const options::wishes& s)
 }
 
 // Returns the options as a command has them: the strokes have their times, and the array has a name.
-options::wishes for_command(options::wishes s, const array& a, const tool_files& files)
+options::wishes for_command(options::wishes s, const service_options& o)
 {
     constexpr unsigned usual_rate = 48000;
     const auto value_if = [](bool is_set, auto v) { return is_set ? std::optional(v) : std::nullopt; };
-    s.array_name = value_if(!files.array.empty(), files.array);
-    s.config_file = value_if(!files.config.empty(), files.config);
+    s.array_name = value_if(!o.array_name.empty(), o.array_name);
+    s.config_file = value_if(!o.config_name.empty(), o.config_name);
     s.duration_s.reset();
     s.speed_mm_s.reset();
     s.intensity_max.reset();
     s.rate = value_if(s.render.rate != usual_rate, s.render.rate);
-    s.channels = value_if(s.render.channels > a.channels(), s.render.channels);
+    s.channels = value_if(s.render.channels > o.plans.tactors.channels(), s.render.channels);
     return s;
 }
 
@@ -235,10 +235,8 @@ void put_options(stroke& k, const options::wishes& s)
 
 // Returns " --array palm-3x3 --level-dbfs -15": what a command of the tool needs to do the same as these
 // options. `file_says`: put_options() has said what it can.
-std::string option_words(const options::wishes& s, options::place command, const array& a,
-                         const tool_files& files, bool file_says)
+std::string option_words(const options::wishes& w, options::place command, bool file_says)
 {
-    const options::wishes w = for_command(s, a, files);
     std::string words;
     for (const option& o : options::all()) {
         const options::value v = o.to.get(w);
@@ -363,7 +361,7 @@ std::string command_line(const service_options& o, const file_kind& kind, const 
 {
     return fmt::format("tactor {} {}{} {} {}", kind.command,
                        quote_word(fmt::format("{}.{}", name, kind.reads)),
-                       option_words(s, kind.place, o.plans.tactors, o.named, kind.reads == "toml"), kind.into,
+                       option_words(for_command(s, o), kind.place, kind.reads == "toml"), kind.into,
                        quote_word(fmt::format("{}.{}", name, kind.writes)));
 }
 

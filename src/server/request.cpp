@@ -71,13 +71,12 @@ void refuse_file(const option& o, const options::value& v)
 
 reply_json value_json(const option& o, const options::value& v)
 {
+    if (const auto* x = std::get_if<double>(&v); x != nullptr && o.what == options::kind::whole)
+        return static_cast<std::int64_t>(*x);
     return std::visit(
-        [&]<class T>(const T& x) -> reply_json {
+        []<class T>(const T& x) -> reply_json {
             if constexpr (std::is_same_v<T, std::monostate>)
                 return nullptr;
-            else if constexpr (std::is_same_v<T, double>)
-                return o.what == options::kind::whole ? reply_json(static_cast<std::int64_t>(x))
-                                                      : reply_json(x);
             else
                 return x;
         },
@@ -307,8 +306,8 @@ reply_json option_rows(const options::wishes& owner)
 
 void pack_points(json& params)
 {
-    if (const auto points = params.find("points"); points != params.end() && points->is_array())
-        *points = json::binary(json::to_msgpack(*points));
+    if (params.is_object() && params.contains("points") && params["points"].is_array())
+        params["points"] = json::binary(json::to_msgpack(params["points"]));
 }
 
 std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)

@@ -39,13 +39,13 @@ struct message_aside {
     std::size_t bytes = 0;
     net::rpc_message message = {};
 
-    net::rpc_message parse(const service_limits& l)
+    net::rpc_message parse(std::size_t most_nesting)
     {
         const std::string whole = std::exchange(text, {});
         bytes = whole.size();
-        net::rpc_message m = net::parse_rpc(whole, l.max_nesting);
+        net::rpc_message m = net::parse_rpc(whole, most_nesting);
         for (auto& part : m.parts)
-            if (auto* r = std::get_if<net::rpc_request>(&part); r != nullptr && r->params.is_object())
+            if (auto* r = std::get_if<net::rpc_request>(&part))
                 pack_points(r->params);
         return m;
     }
@@ -221,7 +221,8 @@ void service::receive_large(client_number number, std::string text, std::functio
     ++c->unanswered;
     planners_.add(
         {.client = number,
-         .work = [this, l] { l->message = within_memory([&] { return l->parse(options_.limits); }); },
+         .work = [this,
+                  l] { l->message = within_memory([&] { return l->parse(options_.limits.max_nesting); }); },
          .done =
              [this, number, l, done = std::move(done), asked = mark(*c)] {
                  if (client* then = find(number))
@@ -318,8 +319,13 @@ bool service::input_ended(client_number number)
     if (c == nullptr)
         return true;
     c->input_over = true;
-    for (const std::uint32_t n : c->strokes)
-        end_with_client(*strokes_.at(n));
+    // Ends strokes that have no end of their own.
+    for (const std::uint32_t n : c->strokes) {
+        stroke_record& r = strokes_.at(n);
+        if (r.live)
+            r.live->end();
+        end_rounds(r);
+    }
     // A TCP client that sends no more may still read: it gets its answers, but takes no place. If there are
     // more of them than places, lets the first one go. Its strokes play on.
     const auto is_silent = [](const auto& one) { return one.second->input_over; };
@@ -327,14 +333,6 @@ bool service::input_ended(client_number number)
     if (all_sent_ && static_cast<std::size_t>(silent) > options_.limits.max_clients)
         all_sent_(std::find_if(clients_.begin(), clients_.end(), is_silent)->first);
     return c->unanswered == 0 && c->strokes.empty();
-}
-
-// Ends a stroke that has no end of its own when its client sends no more.
-void service::end_with_client(stroke_record& r)
-{
-    if (r.live)
-        r.live->end();
-    end_rounds(r);
 }
 
 void service::check_all_sent(client_number number)

@@ -69,7 +69,9 @@ struct service_options {
     std::string version = {};
     std::string token = {}; ///< token that TCP clients need; empty: none
     net::reply_json array = {};
-    tool_files named = {}; ///< in the tool's command line, for exported files
+    std::string array_name =
+        {}; ///< preset or file in the tool's command line, for exported files; empty: none
+    std::string config_name = {};
     /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.
@@ -265,7 +267,6 @@ private:
     /// Returns the options of a stream that calls this service.
     stream_options with_handlers(stream_options s);
     void tell_stream(stream_state s, const std::string& reason);
-    void end_with_client(stroke_record& r);
     void check_all_sent(client_number number);
     void give_memory_back_when_quiet();
 
@@ -282,7 +283,6 @@ private:
     reply_json limits_json() const;
     void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
     void touch(stroke_record& r);
-    void touch_later(std::uint32_t stroke);
     void tell_touch(const stroke_record& r, bool down);
     void tell_stop(client_number by);
 
@@ -347,7 +347,7 @@ private:
     stream stream_;
     std::map<client_number, std::unique_ptr<client>> clients_;
     client_number last_client_ = 0;
-    std::map<std::uint32_t, std::unique_ptr<stroke_record>> strokes_;
+    std::map<std::uint32_t, stroke_record> strokes_;
     std::map<std::pair<std::uint64_t, stroke_id>, std::uint32_t> by_player_;
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;

@@ -160,7 +160,7 @@ reply_json service::status_now()
         who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
     reply_json strokes = reply_json::array();
     for (const auto& [number, r] : strokes_)
-        strokes.push_back({{"stroke", number}, {"state", r->state}, {"client", r->owner}});
+        strokes.push_back({{"stroke", number}, {"state", r.state}, {"client", r.owner}});
     const double rate = stream_.setup().rate;
     return {{"version", options_.version},
             {"stream",
@@ -293,27 +293,22 @@ void service::tell_subscribers(const std::string& event, reply_json params, clie
 void service::touch(stroke_record& r)
 {
     const std::int64_t now = options_.now_ns();
-    if (r.touch_told_ns && now - *r.touch_told_ns < touch_step.count())
-        return touch_later(r.number);
+    const bool is_early = r.touch_told_ns && now - *r.touch_told_ns < touch_step.count();
     const auto listeners = std::count_if(clients_.begin(), clients_.end(),
                                          [](const auto& c) { return c.second->events.contains("touches"); });
-    if (!touches_.take(static_cast<double>(listeners), most_touches_per_s, now))
-        return touch_later(r.number);
-    touches_due_.erase(r.number);
-    r.touch_told_ns = now;
-    tell_touch(r, true);
-}
-
-void service::touch_later(std::uint32_t stroke)
-{
-    if (!touches_due_.insert(stroke).second || touches_due_.size() > 1)
+    if (!is_early && touches_.take(static_cast<double>(listeners), most_touches_per_s, now)) {
+        touches_due_.erase(r.number);
+        r.touch_told_ns = now;
+        return tell_touch(r, true);
+    }
+    if (!touches_due_.insert(r.number).second || touches_due_.size() > 1)
         return;
     touch_timer_.expires_after(touch_step);
     touch_timer_.async_wait([this](const boost::system::error_code& e) {
         if (e)
             return;
         for (const std::uint32_t n : std::exchange(touches_due_, {}))
-            touch(*strokes_.at(n));
+            touch(strokes_.at(n));
     });
 }
 

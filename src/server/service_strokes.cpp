@@ -224,11 +224,11 @@ void service::level(client& c, const json& params, const answer& to)
         const std::uint32_t n = need_stroke(params);
         if (!c.strokes.contains(n))
             no_such_stroke(n);
-        set_level(*strokes_.at(n), db);
+        set_level(strokes_.at(n), db);
     } else {
         c.level_db = db;
         for (const std::uint32_t n : c.strokes)
-            set_level(*strokes_.at(n), db);
+            set_level(strokes_.at(n), db);
     }
     to.result(reply_json::object());
 }
@@ -243,14 +243,14 @@ void service::cancel(client& c, const json& params, const answer& to)
         ++*c.cancels;
         for (const std::uint32_t n : std::set(c.strokes))
             if (const auto found = strokes_.find(n); found != strokes_.end())
-                cancel(*found->second, cancelled_by_client);
+                cancel(found->second, cancelled_by_client);
         return to.result(reply_json::object());
     }
     const std::uint32_t n = need_stroke(params);
     if (!c.strokes.contains(n))
         no_such_stroke(n);
     to.result(reply_json::object());
-    cancel(*strokes_.at(n), cancelled_by_client);
+    cancel(strokes_.at(n), cancelled_by_client);
 }
 
 void service::cancel(stroke_record& r, const char* why)
@@ -276,9 +276,9 @@ void service::stop_all(client_number by)
     ++stops_;
     stopped_by_ = by;
     // Followers in an armed file end with the stroke that they wait for.
-    for (const auto& [number, r] : strokes_)
-        if (r->ended_by == nullptr)
-            r->ended_by = stop_reason(r->owner);
+    for (auto& [number, r] : strokes_)
+        if (r.ended_by == nullptr)
+            r.ended_by = stop_reason(r.owner);
     stream_.cancel_all();
     if (stopped_)
         stopped_();
@@ -294,14 +294,14 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
     // Armed strokes keep a stream going: if it was stopped for want of strokes, there is nothing to start.
     const std::int64_t now = options_.now_ns();
     std::size_t n = p == nullptr ? 0 : p->fire(now);
-    for (const auto& [number, r] : strokes_) {
-        if (r->state != "armed" || r->player != stream_.number())
+    for (auto& [number, r] : strokes_) {
+        if (r.state != "armed" || r.player != stream_.number())
             continue;
-        r->state = "waiting";
-        if (r->submits_later)
+        r.state = "waiting";
+        if (r.submits_later)
             ++n; // it follows another stroke of its file
         else
-            r->asked_ns = now;
+            r.asked_ns = now;
     }
     to.result({{"count", n}});
 }
@@ -312,7 +312,7 @@ void service::release(const std::vector<std::uint32_t>& numbers)
         const auto found = strokes_.find(n);
         if (found == strokes_.end())
             continue;
-        stroke_record& r = *found->second;
+        stroke_record& r = found->second;
         r.released = true;
         for (const reply_json& held : std::exchange(r.held, {}))
             send_to_listeners(r, held);
@@ -323,14 +323,14 @@ void service::release(const std::vector<std::uint32_t>& numbers)
 
 service::stroke_record& service::add_record(client_number owner)
 {
-    auto r = std::make_unique<stroke_record>();
-    r->number = ++last_stroke_;
-    r->owner = owner;
+    stroke_record& r = strokes_[++last_stroke_];
+    r.number = last_stroke_;
+    r.owner = owner;
     if (client* c = find(owner)) {
-        c->strokes.insert(r->number);
-        r->level_db = c->level_db;
+        c->strokes.insert(r.number);
+        r.level_db = c->level_db;
     }
-    return *strokes_.emplace(r->number, std::move(r)).first->second;
+    return r;
 }
 
 void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns)
@@ -338,7 +338,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     const auto found = by_player_.find({player, id});
     if (found == by_player_.end())
         return;
-    stroke_record& r = *strokes_.at(found->second);
+    stroke_record& r = strokes_.at(found->second);
     if (!r.open.empty() && r.open.back() == id)
         r.next_waits = false;
     if (r.state == "started") // it began again after an xrun, or with the next round
@@ -360,9 +360,9 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
     player* out = find_player(first);
     for (const auto& [number, after_s] : std::exchange(first.followers, {})) {
         const auto found = strokes_.find(number);
-        if (found == strokes_.end() || !found->second->submits_later)
+        if (found == strokes_.end() || !found->second.submits_later)
             continue;
-        stroke_record& r = *found->second;
+        stroke_record& r = found->second;
         if (r.ended_by != nullptr) { // stopped since the first began
             finish(r, {.state = state_kind::cancelled});
             continue;
@@ -390,7 +390,7 @@ void service::ended(std::uint64_t player, const stroke_report& report)
     const auto found = by_player_.find({player, report.id});
     if (found == by_player_.end())
         return;
-    stroke_record& r = *strokes_.at(found->second);
+    stroke_record& r = strokes_.at(found->second);
     by_player_.erase(found);
     if (report.started_ns && r.state != "started" && report.frames != 0) {
         r.started_ns = report.started_ns;
@@ -436,12 +436,12 @@ void service::finish(stroke_record& r, const stroke_report& how)
 {
     // A stroke that did not begin takes its followers with it.
     for (const auto& [number, after_s] : std::exchange(r.followers, {}))
-        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->submits_later) {
+        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second.submits_later) {
             stroke_report same = how;
             same.frames = 0;
             same.started_ns.reset();
-            f->second->ended_by = r.ended_by;
-            finish(*f->second, same);
+            f->second.ended_by = r.ended_by;
+            finish(f->second, same);
         }
     if (how.started_ns)
         r.started_ns = how.started_ns;
@@ -519,7 +519,7 @@ void service::send_to_listeners(const stroke_record& r, const reply_json& messag
 void service::note_busy()
 {
     stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
-                             [](const auto& r) { return r.second->state != "ended"; }));
+                             [](const auto& r) { return r.second.state != "ended"; }));
 }
 
 void service::begin(client& c, const json& params, const answer& to)
@@ -589,7 +589,7 @@ service::stroke_record& service::own_live(client& c, std::uint32_t number)
 {
     if (!c.strokes.contains(number))
         no_such_stroke(number);
-    stroke_record& r = *strokes_.at(number);
+    stroke_record& r = strokes_.at(number);
     if (!r.live)
         no_such_stroke(number, "it is no live stroke");
     return r;

@@ -267,9 +267,9 @@ int serve(settings& s, const serve_options& o)
         if (value)
             service.array[key] = *value;
     service.plans = make_planning(s, e, serve, service.limits);
-    service.named.array = e.array_file.empty() ? e.tactors.name : e.array_file;
+    service.array_name = e.array_file.empty() ? e.tactors.name : e.array_file;
     if (service.plans.owner.render.marker_channel) // which no option of the tool says
-        service.named.config = e.config_name;
+        service.config_name = e.config_name;
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);
