@@ -38,17 +38,6 @@ struct message_aside {
     std::string text;
     std::size_t bytes = 0;
     net::rpc_message message = {};
-
-    net::rpc_message parse(std::size_t most_nesting)
-    {
-        const std::string whole = std::exchange(text, {});
-        bytes = whole.size();
-        net::rpc_message m = net::parse_rpc(whole, most_nesting);
-        for (auto& part : m.parts)
-            if (auto* r = std::get_if<net::rpc_request>(&part))
-                pack_points(r->params);
-        return m;
-    }
 };
 
 net::rpc_fault no_hello()
@@ -218,22 +207,29 @@ void service::receive_large(client_number number, std::string text, std::functio
         return done(true);
     }
     const auto l = std::make_shared<message_aside>(message_aside{std::move(text)});
+    const auto parse = [this, l] {
+        const std::string whole = std::exchange(l->text, {});
+        l->bytes = whole.size();
+        net::rpc_message m = net::parse_rpc(whole, options_.limits.max_nesting);
+        for (auto& part : m.parts)
+            if (auto* r = std::get_if<net::rpc_request>(&part))
+                pack_points(r->params);
+        return m;
+    };
     ++c->unanswered;
-    planners_.add(
-        {.client = number,
-         .work = [this,
-                  l] { l->message = within_memory([&] { return l->parse(options_.limits.max_nesting); }); },
-         .done =
-             [this, number, l, done = std::move(done), asked = mark(*c)] {
-                 if (client* then = find(number))
-                     --then->unanswered;
-                 const bool go_on = receive(number, l->message, l->bytes, asked);
-                 planners_.aside([l] {}); // which frees it
-                 give_memory_back_when_quiet();
-                 done(go_on);
-             },
-         .drop = [](bool) {},
-         .quick = true});
+    planners_.add({.client = number,
+                   .work = [l, parse] { l->message = within_memory(parse); },
+                   .done =
+                       [this, number, l, done = std::move(done), asked = mark(*c)] {
+                           if (client* then = find(number))
+                               --then->unanswered;
+                           const bool go_on = receive(number, l->message, l->bytes, asked);
+                           planners_.aside([l] {}); // which frees it
+                           give_memory_back_when_quiet();
+                           done(go_on);
+                       },
+                   .drop = [](bool) {},
+                   .quick = true});
 }
 
 // Returns the small blocks of large messages to the system. Trimming blocks the heap for all threads, so this
