@@ -79,8 +79,9 @@ public:
 
 class service_rig {
 public:
-    explicit service_rig(
-        const std::function<void(server::service_options&, server::stream_options&)>& change = {})
+    using changes = std::function<void(server::service_options&, server::stream_options&)>;
+
+    explicit service_rig(const changes& change = {})
     {
         server::service_options o;
         o.plans.tactors = preset_array("palm-3x3");
@@ -237,9 +238,7 @@ private:
 /// A service with a card, whose stream runs.
 class running_rig : public service_rig {
 public:
-    explicit running_rig(
-        const std::function<void(server::service_options&, server::stream_options&)>& change = {})
-        : service_rig(change)
+    explicit running_rig(const changes& change = {}) : service_rig(change)
     {
         plug();
         start();
