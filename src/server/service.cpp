@@ -152,11 +152,16 @@ bool service::has_place(client_kind k) const
 
 client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
-    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k, std::move(from));
-    c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
+    const bool is_local = k == client_kind::local;
     // A WebSocket has shown its origin, and datagrams come only from accepted peers.
-    c->greeted = k != client_kind::network;
-    clients_.emplace(last_client_, std::move(c));
+    client c{.number = ++last_client_,
+             .link = std::move(link),
+             .kind = k,
+             .from = is_local ? "this computer" : std::move(from),
+             .greeted = k != client_kind::network,
+             .admitted = is_local || k == client_kind::datagram || options_.token.empty(),
+             .levels_timer = boost::asio::steady_timer(io_)};
+    clients_.emplace(last_client_, std::make_unique<client>(std::move(c)));
     return last_client_;
 }
 
@@ -251,9 +256,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
     client* c = find(number);
     if (c == nullptr || !admitted(*c, m))
         return false;
-    const auto all = std::make_shared<pending>(*this, number);
-    all->batch = m.batch;
-    all->open = m.parts.size();
+    const auto all = std::make_shared<pending>(pending{*this, number, m.batch, {}, m.parts.size()});
     for (const auto& part : m.parts) {
         const auto* r = std::get_if<net::rpc_request>(&part);
         all->places.push_back(

@@ -134,16 +134,6 @@ private:
     using reply_json = net::reply_json;
 
     struct client {
-        client(boost::asio::io_context& io, client_number n, std::shared_ptr<client_link> l, client_kind k,
-               std::string address)
-            : number(n),
-              link(std::move(l)),
-              kind(k),
-              from(k == client_kind::local ? "this computer" : std::move(address)),
-              levels_timer(io)
-        {
-        }
-
         client_number number;
         std::shared_ptr<client_link> link;
         client_kind kind;
@@ -153,14 +143,14 @@ private:
         bool admitted = false; ///< its token was right, or it needs none
         bool input_over = false;
         unsigned wrong_tokens = 0;
-        std::set<std::string> events;
+        std::set<std::string> events = {};
         double levels_hz = 30.0;
         boost::asio::steady_timer levels_timer;
-        std::vector<float> levels; ///< by channel, since the last notification
-        std::size_t coming = 0;    ///< requests whose strokes have no number yet
-        std::size_t bytes = 0;     ///< of requests that wait to be planned
+        std::vector<float> levels = {}; ///< by channel, since the last notification
+        std::size_t coming = 0;         ///< requests whose strokes have no number yet
+        std::size_t bytes = 0;          ///< of requests that wait to be planned
         std::size_t unanswered = 0;
-        std::set<std::uint32_t> strokes; ///< strokes that have not ended
+        std::set<std::uint32_t> strokes = {}; ///< strokes that have not ended
         std::size_t live = 0;
         /// Count of its cancels of all. Its requests share it, and may outlive the client.
         std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
@@ -204,13 +194,12 @@ private:
             std::string reply = {};
         };
 
-        pending(service& s, client_number c) : owner(s), to(c) {}
         void give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes);
 
         service& owner;
         client_number to;
         bool batch = false;
-        std::vector<place> places;
+        std::vector<place> places = {};
         std::size_t open = 0;
         std::vector<std::uint32_t> numbers = {}; ///< strokes to release when it is sent
     };
@@ -276,6 +265,8 @@ private:
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
     void make_qr(client& c, const net::json& params, const answer& to);
+    void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
+    void send_to_listeners(const stroke_record& r, const net::reply_json& message);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();
@@ -332,8 +323,6 @@ private:
     void end_rounds(stroke_record& r);
     void add_submission(stroke_record& r, stroke_id id);
     void finish(stroke_record& r, const stroke_report& how);
-    void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
-    void send_to_listeners(const stroke_record& r, const net::reply_json& message);
     std::string reason(const stroke_record& r, const stroke_report& how) const;
     const char* stop_reason(client_number owner) const;
     stop_mark mark(const client& c) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// hello, status, options, qr, subscribe, and notifications of levels, touches and stops.
+// hello, status, options, qr, subscribe, and notifications of strokes, levels, touches and stops.
 #include "server/service.hpp"
 
 #include <algorithm>
@@ -204,6 +204,36 @@ void service::make_qr(client& /*c*/, const json& params, const answer& to)
             if ((symbol->data[y * symbol->width + x] & 1U) != 0)
                 path += fmt::format("M{} {}h1v1h-1z", x, y);
     to.result({{"size", symbol->width}, {"path", std::move(path)}});
+}
+
+void service::tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how)
+{
+    const bool sounded = r.started_ns && (state == "started" || how.frames != 0 || how.started_ns);
+    const std::int64_t at_ns = r.started_ns.value_or(0);
+    const auto from = [&](std::int64_t origin_ns) {
+        return sounded ? reply_json(seconds(at_ns + origin_ns)) : reply_json(nullptr);
+    };
+    reply_json n = net::notification("stroke", {{"stroke", r.number},
+                                                {"state", state},
+                                                {"reason", how.why},
+                                                {"frames", how.frames},
+                                                {"started_s", from(0)},
+                                                {"started_unix_s", from(unix_ns() - options_.now_ns())},
+                                                {"late_s", how.late_s},
+                                                {"held_points", how.held_points},
+                                                {"outside_points", how.outside_points}});
+    if (!r.released) {
+        r.held.push_back(std::move(n));
+        return;
+    }
+    send_to_listeners(r, n);
+}
+
+void service::send_to_listeners(const stroke_record& r, const reply_json& message)
+{
+    for (const auto& [number, c] : clients_)
+        if (number == r.owner || (c->admitted && c->events.contains("strokes")))
+            send(*c, message);
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strokes: submission, live ones, level, cancel, stop and fire; their starts and ends, and the notifications:
-// each number has exactly one end.
+// Strokes: submission, live ones, level, cancel, stop and fire; their starts and ends: each number has
+// exactly one end.
 #include "server/service.hpp"
 
 #include <algorithm>
@@ -483,36 +483,6 @@ std::string service::reason(const stroke_record& r, const stroke_report& how) co
     default:
         return how.why;
     }
-}
-
-void service::tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how)
-{
-    const bool sounded = r.started_ns && (state == "started" || how.frames != 0 || how.started_ns);
-    const std::int64_t at_ns = r.started_ns.value_or(0);
-    const auto from = [&](std::int64_t origin_ns) {
-        return sounded ? reply_json(seconds(at_ns + origin_ns)) : reply_json(nullptr);
-    };
-    reply_json n = net::notification("stroke", {{"stroke", r.number},
-                                                {"state", state},
-                                                {"reason", how.why},
-                                                {"frames", how.frames},
-                                                {"started_s", from(0)},
-                                                {"started_unix_s", from(unix_ns() - options_.now_ns())},
-                                                {"late_s", how.late_s},
-                                                {"held_points", how.held_points},
-                                                {"outside_points", how.outside_points}});
-    if (!r.released) {
-        r.held.push_back(std::move(n));
-        return;
-    }
-    send_to_listeners(r, n);
-}
-
-void service::send_to_listeners(const stroke_record& r, const reply_json& message)
-{
-    for (const auto& [number, c] : clients_)
-        if (number == r.owner || (c->admitted && c->events.contains("strokes")))
-            send(*c, message);
 }
 
 // Counts strokes alone: a request that waits for the stream wakes it.
