@@ -122,12 +122,6 @@ void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& s
         }
 }
 
-std::string toml_text(std::vector<stroke> strokes, const std::vector<double>& starts)
-{
-    count_from_piece(strokes, starts);
-    return detail::strokes_text(strokes);
-}
-
 // Appends the points of each stroke, by hand: a document of a million numbers takes too much memory.
 void append_points(std::string& out, const std::vector<stroke>& strokes)
 {
@@ -143,7 +137,7 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
     }
 }
 
-std::string result_text(const read_file& f)
+std::string result_text(read_file f)
 {
     const std::vector<double> starts = path_starts_s(f.strokes);
     net::reply_json strokes = net::reply_json::array();
@@ -154,9 +148,12 @@ std::string result_text(const read_file& f)
         for (const std::string& w : k.warnings)
             warnings.push_back(net::cut_echo(w));
     }
-    const net::reply_json toml = f.toml.empty() ? toml_text(f.strokes, starts) : f.toml;
-    std::string out =
-        fmt::format(R"({{"toml":{},"strokes":{},"points":[)", net::json_line(toml), net::json_line(strokes));
+    if (f.toml.empty()) {
+        count_from_piece(f.strokes, starts);
+        f.toml = detail::strokes_text(f.strokes);
+    }
+    std::string out = fmt::format(R"({{"toml":{},"strokes":{},"points":[)", net::json_line(f.toml),
+                                  net::json_line(strokes));
     append_points(out, f.strokes);
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
 }
@@ -256,8 +253,6 @@ struct file_kind {
     std::string_view into;  ///< before the file that it writes
     std::string_view writes;
     std::optional<plot::file_format> picture = {};
-
-    bool has_plan() const { return extension != "toml" && extension != "csv"; }
 };
 
 constexpr std::array kinds{
@@ -365,18 +360,6 @@ std::string command_line(const service_options& o, const file_kind& kind, const 
                        quote_word(fmt::format("{}.{}", name, kind.writes)));
 }
 
-std::string result_text(const service_options& o, const file_kind& kind, const std::string& name,
-                        const options::wishes& s, const std::string& bytes)
-{
-    if (bytes.size() > most_file_bytes)
-        too_large();
-    std::string out = fmt::format(R"({{"name":{},"mime":"{}","command":{},"base64":")",
-                                  net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime,
-                                  net::json_line(command_line(o, kind, name, s)));
-    net::append_base64(out, bytes);
-    return out + "\"}";
-}
-
 // Writes and reads the strokes: an exported file has the digits that the tool finds in it.
 std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
                        const std::string& source, const std::string& name, std::vector<stroke> strokes,
@@ -419,7 +402,7 @@ std::string import_strokes(const planning& with, const layout& faces, const json
         if (fit)
             f.toml.clear();
         f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
-        return result_text(f);
+        return result_text(std::move(f));
     } catch (...) {
         throw fault_error(current_fault(source, name));
     }
@@ -435,11 +418,17 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     try {
         std::vector<stroke> strokes =
             settle_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
-        if (!kind.has_plan())
+        if (kind.extension == "toml" || kind.extension == "csv") // which need no plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);
-        return result_text(o, kind, name, s,
-                           make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on));
+        const std::string bytes = make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);
+        if (bytes.size() > most_file_bytes)
+            too_large();
+        std::string out = fmt::format(R"({{"name":{},"mime":"{}","command":{},"base64":")",
+                                      net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime,
+                                      net::json_line(command_line(o, kind, name, s)));
+        net::append_base64(out, bytes);
+        return out + "\"}";
     } catch (...) {
         throw fault_error(current_fault(source));
     }
