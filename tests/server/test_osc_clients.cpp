@@ -450,13 +450,6 @@ TEST_CASE("places are for those of whom something goes on")
         o.limits.max_clients = 12; // a quarter of them for senders of OSC
         o.limits.kept_clients = 0;
     });
-    for (std::uint16_t port = 1; port <= 50; ++port) {
-        rig.say(osc_rig::at(port), "/tactor/play", {drawing, "duration=0.01"s});
-        CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 0 started");
-        CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 0 finished");
-        rig.io.poll();
-        CHECK(rig.osc.count() == 0);
-    }
     for (std::uint16_t port = 1; port <= 3; ++port)
         rig.say(osc_rig::at(port), "/tactor/begin", endless(1));
     rig.say(me, "/tactor/begin", endless(1));

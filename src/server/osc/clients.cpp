@@ -65,7 +65,7 @@ osc_clients::~osc_clients()
 {
     service_.on_stop({});
     for (const auto& [from, s] : senders_)
-        service_.disconnect(s->client);
+        service_.disconnect(s.client);
 }
 
 void osc_clients::receive(std::string_view packet, const endpoint& from)
@@ -212,7 +212,7 @@ void osc_clients::act()
 {
     while (!held_.empty() && held_.begin()->first <= outside_.now_ns()) {
         const held h = std::move(held_.extract(held_.begin()).mapped());
-        sender& s = *senders_.at(h.from);
+        sender& s = senders_.at(h.from);
         if (h.request.method == "subscribe") {
             s.unsubscribes.reset();
         } else {
@@ -237,7 +237,7 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
         if (at->second.request.method == "subscribe" || !which(at->second))
             continue;
         const held gone = std::move(held_.extract(at).mapped());
-        sender& s = *senders_.at(gone.from);
+        sender& s = senders_.at(gone.from);
         --s.held;
         s.drawn_as.erase(gone.request.number);
         send_stroke(gone.from, gone.request.number, "cancelled");
@@ -258,7 +258,7 @@ void osc_clients::later(F f)
 osc_clients::sender* osc_clients::find(const endpoint& from)
 {
     const auto found = senders_.find(from);
-    return found == senders_.end() ? nullptr : found->second.get();
+    return found == senders_.end() ? nullptr : &found->second;
 }
 
 osc_clients::sender& osc_clients::admit(const endpoint& from)
@@ -267,10 +267,9 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
         return *s;
     if (!service_.has_place(client_kind::datagram))
         limit_reached("max_clients", "there is no place for one more");
-    auto s = std::make_unique<sender>();
-    s->client = service_.connect(std::make_shared<sender_link>(*this, from), client_kind::datagram,
-                                 net::plain(from.address()).to_string());
-    return *senders_.emplace(from, std::move(s)).first->second;
+    const client_number n = service_.connect(std::make_shared<sender_link>(*this, from),
+                                             client_kind::datagram, net::plain(from.address()).to_string());
+    return senders_[from] = {.client = n};
 }
 
 void osc_clients::ask(sender& s, const osc_request& r)
@@ -404,9 +403,9 @@ void osc_clients::forget_idle()
 {
     for (const endpoint& e : std::exchange(to_check_, {})) {
         const auto found = senders_.find(e);
-        if (found == senders_.end() || !found->second->idle())
+        if (found == senders_.end() || !found->second.idle())
             continue;
-        service_.disconnect(found->second->client);
+        service_.disconnect(found->second.client);
         senders_.erase(found);
     }
 }

@@ -61,14 +61,42 @@ public:
 
 private:
     class sender_link;
-    struct asked_for;
-    struct drawn;
-    struct sender;
     struct held {
         endpoint from;
         osc_request request; ///< a begin, or the end of a subscription
     };
     using held_messages = std::multimap<std::int64_t, held>; ///< by when they are due
+
+    /// A request to the service that is not answered yet.
+    struct asked_for {
+        std::string method;
+        std::int32_t number = 0;
+    };
+
+    /// A stroke with a number of the sender's choice.
+    struct drawn {
+        std::optional<std::uint32_t> stroke = {}; ///< number of the service, once it is known
+        bool held = false;                        ///< it waits for its time
+        double intensity_max = 1.0;               ///< value of its points that means 1
+        bool is_loud = false;                     ///< a point above intensity 1 was reported
+        std::deque<osc_request> waiting = {};     ///< messages until its number is known
+    };
+
+    struct sender {
+        client_number client = 0;
+        std::uint64_t last_id = 0;
+        std::map<std::uint64_t, asked_for> asked = {};
+        std::map<std::int32_t, drawn> drawn_as = {};
+        std::map<std::uint32_t, std::int32_t> numbers = {}; ///< of strokes that go on, by the service's
+        std::size_t held = 0;
+        std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
+        std::uint16_t port = 0;                                   ///< destination of the subscription
+
+        bool idle() const
+        {
+            return asked.empty() && drawn_as.empty() && numbers.empty() && held == 0 && !unsubscribes;
+        }
+    };
 
     void take(const net::osc_message& m, const endpoint& from);
     void stop(const endpoint& from);
@@ -97,44 +125,13 @@ private:
     boost::asio::io_context& io_;
     service& service_;
     outside outside_;
-    std::map<endpoint, std::unique_ptr<sender>> senders_;
+    std::map<endpoint, sender> senders_;
     held_messages held_;
     std::set<endpoint> to_check_;        ///< senders that may be idle
     std::deque<std::int64_t> errors_ns_; ///< times of the last errors, the oldest first
     std::int64_t unix_ns_ = 0;           ///< time of the packet
     std::int64_t offset_ns_ = 0;         ///< CLOCK_MONOTONIC minus the system's clock
     std::shared_ptr<const int> alive_ = std::make_shared<const int>();
-};
-
-/// A request to the service that is not answered yet.
-struct osc_clients::asked_for {
-    std::string method;
-    std::int32_t number = 0;
-};
-
-/// A stroke with a number of the sender's choice.
-struct osc_clients::drawn {
-    std::optional<std::uint32_t> stroke = {}; ///< number of the service, once it is known
-    bool held = false;                        ///< it waits for its time
-    double intensity_max = 1.0;               ///< value of its points that means 1
-    bool is_loud = false;                     ///< a point above intensity 1 was reported
-    std::deque<osc_request> waiting = {};     ///< messages until its number is known
-};
-
-struct osc_clients::sender {
-    client_number client = 0;
-    std::uint64_t last_id = 0;
-    std::map<std::uint64_t, asked_for> asked = {};
-    std::map<std::int32_t, drawn> drawn_as = {};
-    std::map<std::uint32_t, std::int32_t> numbers = {}; ///< its own, by the service's, of strokes that go on
-    std::size_t held = 0;
-    std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
-    std::uint16_t port = 0;                                   ///< destination of the subscription
-
-    bool idle() const
-    {
-        return asked.empty() && drawn_as.empty() && numbers.empty() && held == 0 && !unsubscribes;
-    }
 };
 
 } // namespace tactor::server
