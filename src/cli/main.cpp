@@ -2,6 +2,7 @@
 // The commands of the tool, how the shells complete them, and how it ends.
 #include <algorithm>
 #include <array>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <csignal>
@@ -157,7 +158,7 @@ void offer_values(const std::string& type, const std::string& typed, const std::
     else if (type == "STROKE")
         offer_all(stroke_presets());
     else if (type == "EXPERIMENT")
-        offer_all(lines{study::shipped_experiment});
+        offer_all(std::array{study::shipped_experiment});
     else if (!type.starts_with("FILE"))
         offer_all(detail::split(type, type.find('|') == std::string::npos ? ',' : '|'));
     if (means("FILE") || means("DIR") || means("PATH") || means("STROKE") || means("EXPERIMENT"))
