@@ -167,8 +167,7 @@ TEST_CASE("a system that sleeps switches off; waking up follows the order of a s
     CHECK(r.end(r.id).why == "the system was suspended");
     r.wait(3000 * ms);
     r.dac.wake(true);
-    for (int i = 0; i < 40; ++i)
-        r.play(96);
+    r.play(3840);
     CHECK(r.news() == event_log{"prepare", "start", "on"});
     CHECK(r.link.amplifier.ready);
 }
@@ -185,8 +184,7 @@ TEST_CASE("the amplifier's thread notices a sleep that begins and ends between t
         r.control();
         CHECK(offs(r.news()) == 1);
         CHECK_FALSE(r.line.is_on);
-        for (int i = 0; i < 40; ++i)
-            r.play(96);
+        r.play(3840);
         CHECK(r.news() == event_log{"on"});
     }
 }

@@ -207,30 +207,19 @@ TEST_CASE("a stroke submitted for a frame starts at that frame")
     }
 }
 
-TEST_CASE("a tiny ring delays drives and loses none")
+TEST_CASE("a tiny ring and a mixer without space delay drives and lose none")
 {
-    for (const std::size_t ring : {2U, 4U, 7U}) {
+    // A drive a burst and a burst each 70 ms: one command a period is enough.
+    const score s = random_score(11, 40);
+    for (const auto& [ring, drives] : {std::pair(2U, 8192U), {4U, 8192U}, {7U, 8192U}, {2048U, 4U}}) {
         CAPTURE(ring);
-        rig r({.ring = ring});
-        // A drive a burst and a burst each 70 ms: one command a period is enough.
-        const score s = random_score(11, 40);
+        rig r({.ring = ring, .loop = {.drives = drives}});
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
         r.play_out();
         CHECK(r.end(id).state == state_kind::finished);
         CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
     }
-}
-
-TEST_CASE("a mixer without space makes drives wait in the ring")
-{
-    rig r({.loop = {.drives = 4}});
-    const score s = random_score(12, 40);
-    const std::uint64_t from = r.status().written;
-    const stroke_id id = r.submit(s);
-    r.play_out();
-    CHECK(r.end(id).state == state_kind::finished);
-    CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
 }
 
 TEST_CASE("short writes and writes of nothing lose no frame")

@@ -285,14 +285,6 @@ TEST_CASE("a device that does not prepare or start again ends the stream")
     }
 }
 
-TEST_CASE("a device that does not start at first fails the start")
-{
-    rig r({.started = false});
-    r.dac.fail_start(-EIO);
-    CHECK(r.start().status == io_kind::failed);
-    CHECK_FALSE(r.status().running);
-}
-
 TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
 {
     for (const bool can_resume : {true, false}) {
@@ -376,8 +368,7 @@ TEST_CASE("a stroke that begins in a buffer that is filled and not started ends 
         r.live->to({20.0, 20.0}, 1.0);
         const std::uint64_t written = r.status().written;
         r.dac.wake(true);
-        for (int i = 0; i < 40; ++i)
-            r.play(96);
+        r.play(3840);
         CHECK(r.status().running);
         CHECK(r.status().written > written);
         CHECK(r.end({1}).state == state_kind::interrupted);

@@ -47,22 +47,21 @@ void run_until(fake_dac& dac, std::uint64_t buffer, Condition done)
     }
 }
 
-// Changes its set-up with each start, like a PCM that turns out to have no clock.
+// Has a set-up of its own, which changes with each start, like a PCM that turns out to have no clock.
 class changing_sink final : public forwarding_sink {
 public:
     explicit changing_sink(std::unique_ptr<sink> s)
-        : forwarding_sink(std::move(s)), setup_(forwarding_sink::setup())
+        : forwarding_sink(std::move(s)), own(forwarding_sink::setup())
     {
     }
-    const stream_setup& setup() const noexcept override { return setup_; }
+    const stream_setup& setup() const noexcept override { return own; }
     io_kind start() noexcept override
     {
-        setup_.has_clock = !setup_.has_clock;
+        own.has_clock = !own.has_clock;
         return forwarding_sink::start();
     }
 
-private:
-    stream_setup setup_;
+    stream_setup own;
 };
 
 std::int64_t now_ns()
@@ -241,22 +240,11 @@ TEST_CASE("a device that does not start and a missing sink are errors")
 
 TEST_CASE("a sink of one's own without rate, channels or periods is an error")
 {
-    class empty_sink final : public forwarding_sink {
-    public:
-        empty_sink(std::unique_ptr<sink> s, unsigned stream_setup::*member)
-            : forwarding_sink(std::move(s)), setup_(forwarding_sink::setup())
-        {
-            setup_.*member = 0;
-        }
-        const stream_setup& setup() const noexcept override { return setup_; }
-
-    private:
-        stream_setup setup_;
-    };
     for (const auto member : {&stream_setup::rate, &stream_setup::channels, &stream_setup::period_frames,
                               &stream_setup::buffer_frames}) {
         fake_dac dac;
-        auto s = std::make_unique<empty_sink>(alsa::adopt(dac.pcm(), nine()), member);
+        auto s = std::make_unique<changing_sink>(alsa::adopt(dac.pcm(), nine()));
+        s->own.*member = 0;
         CHECK_THROWS_WITH_AS(player(std::move(s), palm()), doctest::Contains("a sink of"), error);
     }
 }
@@ -356,13 +344,11 @@ TEST_CASE("edges at the ends of time fire or wait")
 
 TEST_CASE("several producers of every kind at once: each stroke ends exactly once")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::vector<int> ends(2000, 0);
     stroke_id most;
     {
-        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         std::mutex mutex;
+        clocked_player p;
         p.on_report([&](const stroke_report& r) {
             const std::lock_guard lock(mutex);
             ++ends.at(r.id.number);
@@ -411,11 +397,9 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
 
 TEST_CASE("a live stroke outlives its player")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::optional<live_stroke> left;
     {
-        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
+        clocked_player p;
         left = p.begin({.timeout_s = 86400.0});
         CHECK(left->to(1.0, 1.0));
     }

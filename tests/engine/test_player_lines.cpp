@@ -100,17 +100,6 @@ player_lines with(const std::shared_ptr<line_state>& s)
     return l;
 }
 
-class any_line final : public enable_line {
-public:
-    bool set(bool) noexcept override { return true; }
-};
-
-player_lines slow_amplifier()
-{
-    player_lines l{.amplifier = std::make_unique<any_line>(), .settle_s = 600.0};
-    return l;
-}
-
 // Only a failure takes so long.
 constexpr double long_enough_s = 60.0;
 
@@ -454,7 +443,9 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
 
 TEST_CASE("cancel() is reported without a frame being played")
 {
-    dac_player p(patient(), slow_amplifier());
+    player_lines lines = with(std::make_shared<line_state>());
+    lines.settle_s = 600.0;
+    dac_player p(patient(), std::move(lines));
     const stroke_id score = p.submit(tone(1.0));
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     CHECK_FALSE(p.wait(score, 1e-9));

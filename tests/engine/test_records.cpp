@@ -181,7 +181,6 @@ TEST_CASE("a player logs its start and its end, and survives a log that throws")
 {
     for (const bool throws : {false, true}) {
         CAPTURE(throws);
-        fake_dac dac;
         heard told;
         player_options o = patient();
         o.log = [to = told.function(), throws](log_kind k, std::string_view text) {
@@ -190,10 +189,10 @@ TEST_CASE("a player logs its start and its end, and survives a log that throws")
                 throw std::runtime_error("log");
         };
         {
-            player p(alsa::adopt(dac.pcm(), nine()), palm(), o);
+            dac_player p(o);
             CHECK(told.count("info stream on \"null\" runs: 9 channels at 48000 Hz, 3 of 96 frames") == 1);
             const stroke_id id = p.submit(tone(0.1));
-            const running_clock clock(dac);
+            const running_clock clock(p.dac);
             REQUIRE(p.wait(id));
             p.stop();
             CHECK(p.ended()->reason == reason_kind::none);
