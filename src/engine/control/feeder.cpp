@@ -47,6 +47,12 @@ double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
     return ns > ns_per_frame ? ns * 1e-9 : 0.0;
 }
 
+// Returns the report of a stroke that was cut short before it began.
+stroke_report interrupted(stroke_id id, reason_kind r, std::string why)
+{
+    return {.id = id, .state = state_kind::interrupted, .reason = r, .why = std::move(why)};
+}
+
 } // namespace
 
 feeder::feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horizon_frames)
@@ -144,20 +150,24 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     if (stream_over_)
         return;
     end_cancelled();
-    find_due(written);
+    // Converts times to frames as late as possible, when the clock knows best.
+    while (!timed_.empty() && clock_.valid()) {
+        const auto next = timed_.begin();
+        const std::uint64_t at = clock_.frame_at(next->first);
+        if (at > written + horizon_)
+            break;
+        waiting_.emplace(at, std::move(next->second));
+        timed_.erase(next);
+    }
     if (!waiting_live_.empty()) {
         look_at_waiting_live(written);
         admit_live();
     }
     // While a score waits for space, the others must not use up the space that becomes free.
     feed(written, admit(written) ? horizon_ : horizon_ / 2);
-    link_.feeding.store(has_strokes(), std::memory_order_relaxed);
-}
-
-// Returns true if a stroke needs the stream. Armed strokes do not until they are triggered.
-bool feeder::has_strokes() const noexcept
-{
-    return !waiting_.empty() || !timed_.empty() || !waiting_live_.empty() || !in_use_.empty();
+    // Armed strokes do not need the stream until they are triggered.
+    link_.feeding.store(!waiting_.empty() || !timed_.empty() || !waiting_live_.empty() || !in_use_.empty(),
+                        std::memory_order_relaxed);
 }
 
 // Begins the scores that are due within the horizon, the earliest first. Returns false if the ring had too
@@ -384,19 +394,6 @@ std::size_t feeder::fire(std::int64_t time_ns)
     return n;
 }
 
-// Converts times to frames as late as possible, when the clock knows best.
-void feeder::find_due(std::uint64_t written)
-{
-    while (!timed_.empty() && clock_.valid()) {
-        const auto next = timed_.begin();
-        const std::uint64_t at = clock_.frame_at(next->first);
-        if (at > written + horizon_)
-            return;
-        waiting_.emplace(at, std::move(next->second));
-        timed_.erase(next);
-    }
-}
-
 // Counts waiting time, as the audio thread does for its live strokes.
 void feeder::look_at_waiting_live(std::uint64_t written)
 {
@@ -559,11 +556,6 @@ std::string text(reason_kind r, int code)
         return "the player was closed";
     }
     return "";
-}
-
-stroke_report interrupted(stroke_id id, reason_kind r, std::string why)
-{
-    return {.id = id, .state = state_kind::interrupted, .reason = r, .why = std::move(why)};
 }
 
 } // namespace tactor::engine

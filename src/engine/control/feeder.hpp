@@ -117,9 +117,7 @@ private:
         std::optional<active> use;
     };
 
-    void find_due(std::uint64_t written);
     bool admit(std::uint64_t written);
-    bool has_strokes() const noexcept;
     void look_at_waiting_live(std::uint64_t written);
     void admit_live();
     std::uint32_t take_slot(active a);
@@ -171,7 +169,5 @@ private:
 
 /// Returns a reason for people, with its negative errno if known; empty for `none`.
 std::string text(reason_kind r, int code);
-/// Returns the report of a stroke that was cut short before it began.
-stroke_report interrupted(stroke_id id, reason_kind r, std::string why);
 
 } // namespace tactor::engine
