@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <span>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -26,6 +28,8 @@
 #include "engine/live.hpp"
 #include "rt/clock.hpp"
 #include "rt/thread.hpp"
+#include "synth/score/levels.hpp"
+#include "synth/score/score.hpp"
 
 namespace tactor {
 inline namespace v0 {
@@ -161,6 +165,68 @@ std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
     return s;
 }
 
+constexpr const char* replan = "plan it for the array that the player was opened with";
+
+void check_tactor(const score::impl& s, std::size_t i, std::span<const double> limits)
+{
+    constexpr double rounding = 1.0 + 1e-6;
+    const std::uint32_t channel = s.tactors[i].channel;
+    const double limit = limits[channel];
+    if (limit == 0.0)
+        throw error(
+            error_kind::bad_input, "stroke",
+            fmt::format("it drives tactor {} on channel {}, where the player's array has none", i, channel),
+            replan);
+    if (s.asked[i] > limit * rounding)
+        throw error(error_kind::bad_input, "stroke",
+                    fmt::format("it drives tactor {} at up to {:.4g} dBFS, but the player's array allows "
+                                "{:.4g} dBFS on channel {}",
+                                i, synth::in_db(s.asked[i]), synth::in_db(limit), channel),
+                    replan);
+}
+
+// Returns the array. \throws error: bad_input for a tactor on a channel that the stream does not have,
+// not_available for a tactor that shares its channel of the device.
+const array& checked(const array& a, const stream_setup& s)
+{
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel >= s.channels)
+            throw error(error_kind::bad_input, "player",
+                        fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
+                                    a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
+                        fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
+    if (const std::string lost = lost_tactor(a, s.wiring); !lost.empty())
+        throw error(error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
+                    "give each channel one of the device's, at 1, where the PCM is defined (ttable, "
+                    "bindings), or play on the card itself, hw:CARD=NAME");
+    return a;
+}
+
+// Checks that a score fits the player. `limits`: of its array, by channel of the stream; 0: no tactor.
+// \throws error (bad_input) for a score that has another rate or number of channels, drives a channel without
+// a tactor, drives a tactor beyond its limit, or has its marker on a tactor's channel.
+void check_fits(const score& s, const stream_setup& stream, std::span<const double> limits)
+{
+    if (s.rate() != stream.rate || s.channels() != stream.channels)
+        throw error(error_kind::bad_input, "stroke",
+                    fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
+                                counted(s.channels(), "channel"), s.rate(), stream.channels, stream.rate),
+                    "render it with the stream's rate and channels, or open the stream with the score's")
+            .with_field(s.channels() == stream.channels ? "rate"
+                        : s.rate() == stream.rate       ? "channels"
+                                                        : "");
+    const score::impl& made = detail::access::of(s);
+    for (std::size_t i = 0; i < made.asked.size(); ++i)
+        if (made.asked[i] > 0.0)
+            check_tactor(made, i, limits);
+    if (made.marker && limits[*made.marker] > 0.0)
+        throw error(
+            error_kind::bad_input, "stroke",
+            fmt::format("its marker is on channel {}, where the player's array has a tactor", *made.marker),
+            "choose a spare channel for it")
+            .with_field("marker_channel");
+}
+
 } // namespace
 
 void start_at::refuse_frame(long long stream_frame)
@@ -192,7 +258,7 @@ const stream_setup& player::setup() const noexcept
 stroke_id player::submit(const score& s, start_at start, double level_db)
 {
     const float gain = to_gain(level_db);
-    engine::check_fits(s, impl_->out->setup(), impl_->limits);
+    check_fits(s, impl_->out->setup(), impl_->limits);
     const std::lock_guard lock(impl_->mutex);
     impl_->check_open();
     const stroke_id id = impl_->next_id();
@@ -383,7 +449,7 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       stream(fmt::format("stream on \"{}\"", out->setup().name)),
       lines(checked(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
-      tactors(engine::fitting(a, out->setup())),
+      tactors(checked(a, out->setup())),
       limits(synth::channel_limits(a, out->setup().channels)),
       log(o.log, link, o.limits),
       book(o.keep_drive_time ? out->setup().device : std::string(),

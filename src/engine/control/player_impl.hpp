@@ -12,7 +12,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -26,20 +25,6 @@
 #include "engine/link.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/thread.hpp"
-
-namespace tactor::engine {
-
-/// Returns the array if it fits the stream; otherwise some drives would reach no tactor.
-/// \throws error: bad_input for a tactor on a channel that the stream does not have, not_available for a
-///         tactor that shares its channel of the device.
-const array& fitting(const array& a, const stream_setup& s);
-
-/// Checks that a score fits the player. `limits`: of its array, by channel of the stream; 0: no tactor.
-/// \throws error (bad_input) for a score that has another rate or number of channels, drives a channel
-///         without a tactor, drives a tactor beyond its limit, or has its marker on a tactor's channel.
-void check_fits(const score& s, const stream_setup& stream, std::span<const double> limits);
-
-} // namespace tactor::engine
 
 namespace tactor {
 inline namespace v0 {
