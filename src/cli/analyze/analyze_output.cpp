@@ -372,18 +372,6 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
 }
 
-// A text in quotes, as R reads it.
-std::string in_quotes(std::string_view text)
-{
-    std::string q;
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            q += '\\';
-        q += c;
-    }
-    return fmt::format("\"{}\"", q);
-}
-
 // The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
 // difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
 std::string write_model(const study::run_outline& r)
@@ -392,7 +380,8 @@ std::string write_model(const study::run_outline& r)
     const char* people = r.task != task_kind::choose && r.methods.size() > 1 ? "(1 + method | participant)"
                          : r.motions.size() > 1                              ? "(1 + motion | participant)"
                                                                              : "(1 | participant)";
-    const std::string data = fmt::format("data = subset(d, run == {})", in_quotes(r.name));
+    // R reads the texts of JSON.
+    const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
     switch (r.task) {
     case task_kind::choose:
         return fmt::format("glmer(chosen ~ {} + order + {}, family = binomial, {})", motion, people, data);

@@ -32,20 +32,11 @@ random_numbers numbers_for(const calibration_settings& s, const std::string& par
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
 }
 
-staircase_options settle_stairs(const calibration_settings& s, std::size_t place)
-{
-    staircase_options o = s.staircase;
-    o.ceiling_dbfs = s.ceilings_dbfs[place];
-    o.start_dbfs = std::min(o.start_dbfs, o.ceiling_dbfs);
-    return o;
-}
-
-constexpr const char* subject = "--simulate";
 constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 [[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)
 {
-    throw error(error_kind::bad_input, subject, why, hint);
+    throw error(error_kind::bad_input, "--simulate", why, hint);
 }
 
 double number(std::string_view key, std::string_view text, double low, double high)
@@ -234,7 +225,10 @@ void calibration::begin_tactor()
     if (done())
         return;
     intervals_ = numbers_for(settings_, fmt::format("{}", settings_.tactors[place_]));
-    stairs_ = staircase(settle_stairs(settings_, place_));
+    staircase_options o = settings_.staircase;
+    o.ceiling_dbfs = settings_.ceilings_dbfs[place_];
+    o.start_dbfs = std::min(o.start_dbfs, o.ceiling_dbfs);
+    stairs_ = staircase(std::move(o));
     series_dbfs_.clear();
 }
 

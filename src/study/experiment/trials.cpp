@@ -19,11 +19,6 @@
 namespace tactor::study {
 namespace {
 
-bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
 // Lists the cells of a run: each motion by each method, or by each order of the two.
 std::vector<planned_trial> list_cells(const run_definition& r)
 {
@@ -119,10 +114,7 @@ std::vector<std::size_t> run_order(std::size_t n, std::string_view code)
 {
     const std::size_t rows = n % 2 == 0 ? n : 2 * n;
     std::size_t row = default_seed(code) % rows;
-    if (!code.empty() && is_digit(code.back())) {
-        std::size_t digits = code.size();
-        while (digits > 0 && is_digit(code[digits - 1]))
-            --digits;
+    if (const std::size_t digits = code.find_last_not_of("0123456789") + 1; digits < code.size()) {
         std::size_t number = 0; // modulo rows: it may have any number of digits
         for (const char c : code.substr(digits))
             number = (number * 10 + static_cast<std::size_t>(c - '0')) % rows;
