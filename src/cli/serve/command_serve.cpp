@@ -37,13 +37,6 @@ namespace {
 
 using files::or_null;
 
-// Options of `tactor serve` alone; of [serve], those that the command line also has.
-struct serve_options : options::serve_settings {
-    std::string format = "text";
-};
-
-constexpr const char* socket_name = "/tactor.sock";
-
 // Returns true for a service of the system: the service manager gives a folder outside the user's.
 bool serves_system()
 {
@@ -56,7 +49,7 @@ bool serves_system()
 std::string default_socket(bool others)
 {
     if (const std::string folder = rt::runtime_folder(); !folder.empty())
-        return folder + socket_name;
+        return folder + "/tactor.sock";
     if (others)
         return {};
     throw error(error_kind::bad_input, "socket",
@@ -65,7 +58,7 @@ std::string default_socket(bool others)
 }
 
 // Returns `s`, which the configuration says, with the options over it.
-options::serve_settings settle_serve(const serve_options& o, options::serve_settings s)
+options::serve_settings settle_serve(const options::serve_settings& o, options::serve_settings s)
 {
     const auto prefer = [](auto& ours, const auto& given) {
         if (given)
@@ -241,7 +234,7 @@ std::function<void(server::stream_state, const std::string&)> make_owner_log()
     };
 }
 
-int serve(settings& s, const serve_options& o)
+int serve(settings& s, const options::serve_settings& o, const std::string& format)
 {
     // [defaults] hold for strokes and predictions, unless a client gives other options.
     s.place |= options::on_play | options::on_compare;
@@ -297,7 +290,7 @@ int serve(settings& s, const serve_options& o)
     };
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), stop.descriptor(),
-                  [&] { print_endpoints(at, o.format); });
+                  [&] { print_endpoints(at, format); });
     stop.was_the_last();
     return status_ok;
 }
@@ -306,7 +299,8 @@ int serve(settings& s, const serve_options& o)
 
 int run_serve(command_line& line)
 {
-    serve_options o;
+    options::serve_settings o; // of [serve], what the command line has, too
+    std::string format;
     CLI::App& c = line.app;
     c.add_option("--socket", o.socket,
                  "Unix socket (default: tactor.sock in RUNTIME_DIRECTORY, else in XDG_RUNTIME_DIR)")
@@ -321,13 +315,13 @@ int run_serve(command_line& line)
                  o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
              });
     settings& s = add_options(line, options::on_serve);
-    add_format_option(c, o.format, {"text", "json"},
+    add_format_option(c, format, {"text", "json"},
                       "format of the lines that say where it listens (default text)");
     c.footer("tactor serve --http 4003 -D null\n"
              "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
              "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
     line.parse();
-    return serve(s, o);
+    return serve(s, o, format);
 }
 
 } // namespace tactor::cli
