@@ -201,33 +201,25 @@ int render(settings& s, const std::string& name)
     return status_ok;
 }
 
-using plot::figure_view;
-
-struct plot_settings {
-    picture_options picture;
-    figure_view view = figure_view::both;
-    bool animated = false;
-};
-
-int draw(settings& s, const plot_settings& p)
+int draw(settings& s, const picture_options& o, plot::figure_options f)
 {
-    const picture_options& o = p.picture;
+    f.width_mm = o.width_mm;
+    f.heading = o.has_title();
     const plot::file_format format = plot::find_format(o.file); // before the work
-    if (p.animated && format != plot::file_format::svg)
+    if (f.animated && format != plot::file_format::svg)
         refuse_option("--animate", "only SVG can move", "name a file .svg");
-    if (p.animated && p.view == figure_view::wave)
+    if (f.animated && f.view == plot::figure_view::wave)
         refuse_option("--animate", "the waveform does not move", "leave out --view wave");
     const environment e = session::read_environment(s);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
     // Only the samples have levels: a picture of a plan needs none that a card could play.
     std::optional<score> sound;
-    if (p.view == figure_view::wave)
+    if (f.view == plot::figure_view::wave)
         sound = make_score(q, e, session::settle_render(s, e));
     const std::string name = plot::name_scene(q.strokes, fs::path(shown_name(q.name)).filename().string());
     const plot::canvas picture = plot::draw_figure(
-        {e.tactors, o.choose_title(name), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
-        {p.view, o.width_mm, o.has_title(), p.animated});
+        {e.tactors, o.choose_title(name), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, f);
     session::tell_of_pipe_to_write(o.file);
     plot::save(picture, o.file, o.dpi, o.force);
     say_warnings(collect_warnings(q.plans));
@@ -269,25 +261,26 @@ int run_render(command_line& line)
 
 int run_plot(command_line& line)
 {
-    plot_settings p;
+    picture_options o;
+    plot::figure_options f;
     add_strokes(line);
     settings& s = add_options(line, options::on_plot);
-    line.app.add_option("-o,--output", p.picture.file, "picture to write")
+    line.app.add_option("-o,--output", o.file, "picture to write")
         ->type_name("FILE.svg|.png|.pdf")
         ->required();
     add_text(line.app, "--view", "array|timing|wave|both",
              "show the array, the bursts over time, the samples, or the first two (default both)",
-             [&p](const std::string& t) {
-                 p.view = figure_view(choose("--view", t, {"array", "timing", "wave", "both"}));
+             [&f](const std::string& t) {
+                 f.view = plot::figure_view(choose("--view", t, {"array", "timing", "wave", "both"}));
              });
-    line.app.add_flag("--animate", p.animated,
+    line.app.add_flag("--animate", f.animated,
                       "SVG: light up the tactors that play, again and again, in real time");
-    add_picture_options(line.app, p.picture, "85, one print column");
+    add_picture_options(line.app, o, "85, one print column");
     line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
                     "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
                     "tactor plot park2016-1 --view wave --width 170 -o wave.png");
     line.parse();
-    return draw(s, p);
+    return draw(s, o, f);
 }
 
 } // namespace tactor::cli
