@@ -62,54 +62,54 @@ std::string heading(const std::string& title, const stroke& s, const plan& p, do
         p.wave.kind == waveform_kind::sine ? "sine of " : "", plot::describe_sound(p), level_text(sound, s));
 }
 
-void print_one(std::FILE* out, const std::string& title, const stroke& s, const plan& p, double start_s,
-               const array& a, const render_options& sound)
+void print_one(const std::string& title, const stroke& s, const plan& p, double start_s, const array& a,
+               const render_options& sound)
 {
-    say(out, "{}", heading(title, s, p, start_s, a, sound));
+    say(stdout, "{}", heading(title, s, p, start_s, a, sound));
     if (s.note != note_kind::none)
-        say(out, "note: {}\n", files::note_text(s.note));
-    say(out, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.curve ? "t_s" : "onset_s", "duration_s", "x_mm", "y_mm",
-        "tactor:amplitude");
+        say(stdout, "note: {}\n", files::note_text(s.note));
+    say(stdout, "\n{:>10} {:>10} {:>9} {:>9}  {}\n", p.curve ? "t_s" : "onset_s", "duration_s", "x_mm",
+        "y_mm", "tactor:amplitude");
     files::for_each_row(p, [&](const burst& b) {
         std::string drives;
         for (const drive& d : b.drives)
             drives += fmt::format(" {}:{:.4f}", d.tactor, d.amplitude);
-        fmt::print(out, "{}",
-                   fit_lines(out, fmt::format("{:10.6f} {:10.6f} {:9.3f} {:9.3f} {}\n", b.onset_s,
-                                              b.duration_s, b.position.x_mm, b.position.y_mm, drives)));
+        fmt::print("{}",
+                   fit_lines(stdout, fmt::format("{:10.6f} {:10.6f} {:9.3f} {:9.3f} {}\n", b.onset_s,
+                                                 b.duration_s, b.position.x_mm, b.position.y_mm, drives)));
     });
     for (const conflict& c : p.conflicts)
-        say(out, "conflict: tactor {} serves two bursts from {:.6f} s to {:.6f} s\n", c.tactor, c.from_s,
+        say(stdout, "conflict: tactor {} serves two bursts from {:.6f} s to {:.6f} s\n", c.tactor, c.from_s,
             c.to_s);
     for (const meeting& m : p.dropped)
-        say(out, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm, m.position.y_mm,
-            m.t_s);
+        say(stdout, "dropped: the crossing at ({:.3f}, {:.3f}) mm, {:.6f} s\n", m.position.x_mm,
+            m.position.y_mm, m.t_s);
     for (const std::string& w : p.warnings)
-        say(out, "warning: {}\n", w);
+        say(stdout, "warning: {}\n", w);
 }
 
 // Both write as they go: a plan of an hour needs no document in memory.
-void print_text(std::FILE* out, const piece& p, const environment& e, const render_options& sound)
+void print_text(const piece& p, const environment& e, const render_options& sound)
 {
     const auto starts = start_times_s(p.plans);
     if (p.fit)
-        say(out, "{}", fit_note(*p.fit));
+        say(stdout, "{}", fit_note(*p.fit));
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
-            fmt::print(out, "\n");
-        print_one(out, name_stroke(p, i, e), p.strokes[i], p.plans[i].plan, starts[i], e.tactors, sound);
+            fmt::print("\n");
+        print_one(name_stroke(p, i, e), p.strokes[i], p.plans[i].plan, starts[i], e.tactors, sound);
     }
 }
 
-void print_csv(std::FILE* out, const piece& p, const environment& e)
+void print_csv(const piece& p, const environment& e)
 {
-    fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
+    fmt::print("stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
     const auto starts = start_times_s(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         files::for_each_row(p.plans[i].plan, [&](const burst& b) {
             const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";
             for (const drive& d : b.drives)
-                fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", i, starts[i], b.onset_s, b.duration_s, tau,
+                fmt::print("{},{},{},{},{},{},{},{},{},{}\n", i, starts[i], b.onset_s, b.duration_s, tau,
                            b.position.x_mm, b.position.y_mm, d.tactor, e.tactors.tactors[d.tactor].channel,
                            d.amplitude);
         });
@@ -131,9 +131,9 @@ void print_plan(settings& s, const std::string& format)
         });
     else if (format == "csv") {
         say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
-        print_csv(stdout, p, e);
+        print_csv(p, e);
     } else
-        print_text(stdout, p, e, sound);
+        print_text(p, e, sound);
 }
 
 // Returns true for a file that may be replaced: an empty one, or a WAV file.

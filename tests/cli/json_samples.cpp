@@ -78,6 +78,6 @@ std::string walked()
 int main()
 {
     fmt::print("[{},\n{},\n", session::devices_json(studio()), walked());
-    print_json(stdout, troubled_run());
+    print_json(troubled_run());
     fmt::print("]\n");
 }

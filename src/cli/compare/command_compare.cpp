@@ -113,47 +113,47 @@ std::string one_end(const std::optional<interval>& v, double interval::*end)
 }
 
 // Under a row, in its columns.
-void print_spread(std::FILE* out, const comparison_row& r, bool by_taps)
+void print_spread(const comparison_row& r, bool by_taps)
 {
     if (!r.spread)
         return;
     const row_spread& s = *r.spread;
     for (const auto& [name, end] : {std::pair{"5 %", &interval::low}, std::pair{"95 %", &interval::high}}) {
-        fmt::print(out, "{:>30} {:>6} {:>6} {:>6} ", name, "", one_end(s.rms_error_mm, end),
+        fmt::print("{:>30} {:>6} {:>6} {:>6} ", name, "", one_end(s.rms_error_mm, end),
                    one_end(s.largest_error_mm, end));
         if (by_taps)
-            fmt::print(out, "{:>8} {:>8} {:>6}\n", one_end(s.felt_length_mm, end), "",
+            fmt::print("{:>8} {:>8} {:>6}\n", one_end(s.felt_length_mm, end), "",
                        one_end(s.length_ratio, end));
         else
-            fmt::print(out, "{:>6} {:>7}\n", one_end(s.speed_cv, end), one_end(s.intensity_cv, end));
+            fmt::print("{:>6} {:>7}\n", one_end(s.speed_cv, end), one_end(s.intensity_cv, end));
     }
 }
 
-void print_row(std::FILE* out, const comparison_row& r, bool by_taps)
+void print_row(const comparison_row& r, bool by_taps)
 {
     if (r.refused) {
-        say(out, "{} refused: {}\n", names(r), r.refused->what());
+        say(stdout, "{} refused: {}\n", names(r), r.refused->what());
         return;
     }
     if (!r.unpredicted.empty()) {
-        say(out, "{} no prediction: {}\n", names(r), r.unpredicted);
+        say(stdout, "{} no prediction: {}\n", names(r), r.unpredicted);
         return;
     }
     if (by_taps) {
-        fmt::print(out, "{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.plan->bursts.size(),
+        fmt::print("{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.plan->bursts.size(),
                    figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm),
                    figure(r.tapped.felt_length_mm), figure(r.tapped.target_length_mm),
                    figure(r.tapped.length_ratio));
         return;
     }
     const std::string bursts = r.plan->curve ? "-" : fmt::format("{}", r.plan->bursts.size());
-    fmt::print(out, "{} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6.1f} {:>6.1f}\n", names(r), bursts,
+    fmt::print("{} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6.1f} {:>6.1f}\n", names(r), bursts,
                figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm), figure(r.felt.speed_cv),
                figure(r.felt.intensity_cv), 100.0 * r.felt.silent_share, 100.0 * r.felt.shared_share);
 }
 
 // Prints each warning once: most are the same for all phantom models.
-void print_notes(std::FILE* out, const comparison& c)
+void print_notes(const comparison& c)
 {
     std::set<std::string> said;
     for (const comparison_row& r : c.rows)
@@ -161,53 +161,52 @@ void print_notes(std::FILE* out, const comparison& c)
             for (const std::string& w : r.plan->warnings) {
                 const std::string text = fmt::format("warning: {}: {}\n", to_string(r.algorithm), w);
                 if (said.insert(text).second)
-                    say_text(out, text);
+                    say_text(stdout, text);
             }
 }
 
-void print_heading(std::FILE* out, bool by_taps)
+void print_heading(bool by_taps)
 {
     if (by_taps) {
-        fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>17}\n", "", "", "", "error mm   ", "length mm    ");
-        fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", "algorithm", "phantom",
-                   "bursts", "RMS", "max", "felt", "target", "ratio");
+        fmt::print("\n{:<13} {:<16} {:>6} {:>13} {:>17}\n", "", "", "", "error mm   ", "length mm    ");
+        fmt::print("{:<13} {:<16} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", "algorithm", "phantom", "bursts",
+                   "RMS", "max", "felt", "target", "ratio");
         return;
     }
-    fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",
+    fmt::print("\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",
                "% of time ");
-    fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6}\n", "algorithm", "phantom",
-               "bursts", "RMS", "max", "speed", "intens.", "silent", "shared");
+    fmt::print("{:<13} {:<16} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6}\n", "algorithm", "phantom", "bursts",
+               "RMS", "max", "speed", "intens.", "silent", "shared");
 }
 
-void print_one(std::FILE* out, const comparison& c, const std::string& title, const array& a)
+void print_one(const comparison& c, const std::string& title, const array& a)
 {
     const trajectory& m = c.target.motion;
     const std::string faces =
         c.faces == faces_kind::delaunay ? "" : fmt::format(", faces {}", to_string(c.faces));
-    say(out, "{} on {}: {} mm in {}{}\n", title, a.name, plain_number(m.length_mm()),
+    say(stdout, "{} on {}: {} mm in {}{}\n", title, a.name, plain_number(m.length_mm()),
         seconds_text(m.duration_s()), faces);
     if (c.target.note != note_kind::none)
-        say(out, "note: {}\n", files::note_text(c.target.note));
+        say(stdout, "note: {}\n", files::note_text(c.target.note));
     const bool by_taps = c.observer.kind == observer_kind::low_speed;
-    print_heading(out, by_taps);
+    print_heading(by_taps);
     for (const comparison_row& r : c.rows) {
-        print_row(out, r, by_taps);
-        print_spread(out, r, by_taps);
+        print_row(r, by_taps);
+        print_spread(r, by_taps);
     }
-    print_notes(out, c);
+    print_notes(c);
 }
 
-void print_text(std::FILE* out, const std::vector<comparison>& all, const std::vector<std::string>& titles,
-                const array& a)
+void print_text(const std::vector<comparison>& all, const std::vector<std::string>& titles, const array& a)
 {
     for (std::size_t i = 0; i < all.size(); ++i) {
-        print_one(out, all[i], titles[i], a);
-        fmt::print(out, "\n");
+        print_one(all[i], titles[i], a);
+        fmt::print("\n");
     }
     const detail::observer_choice& o = all.front().observer;
     if (all.front().spread.people != 0)
-        say(out, "{}.\n", detail::spread_note(all.front().spread, o.kind == observer_kind::low_speed));
-    say(out, "{}\nThis is {}.\n",
+        say(stdout, "{}.\n", detail::spread_note(all.front().spread, o.kind == observer_kind::low_speed));
+    say(stdout, "{}\nThis is {}.\n",
         o.kind == observer_kind::low_speed
             ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
             : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
@@ -258,7 +257,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     if (asked.format == "json")
         fmt::print("{}", files::comparisons_text(all, e.tactors));
     else
-        print_text(stdout, all, titles, e.tactors);
+        print_text(all, titles, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
         throw why_refused(all, p);
     return status_ok;

@@ -165,9 +165,9 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     const auto broken = play(session, r.strokes);
     static_cast<session::run_facts&>(r) = session.finish();
     if (o.json())
-        print_json(stdout, r);
+        print_json(r);
     else if (s.stream.verbose || !is_clean(r))
-        print_table(stdout, r);
+        print_table(r);
     return judge_run(r, session.signal(), broken);
 }
 

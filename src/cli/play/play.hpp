@@ -127,8 +127,8 @@ std::optional<error> unfinished(const play_report& r);
 void tell(const stroke_outcome& s, unsigned rate, bool as_json);
 
 /// Prints the end of a run: an object of schema tactor-play/1, or a short table of the counters.
-void print_json(std::FILE* to, const play_report& r);
-void print_table(std::FILE* to, const play_report& r);
+void print_json(const play_report& r);
+void print_table(const play_report& r);
 /// Returns true if nothing disturbed or limited the strokes.
 bool is_clean(const play_report& r);
 /// Returns the schema of such an object.

@@ -191,10 +191,10 @@ std::optional<error> unfinished(const play_report& r)
     return error(error_kind::runtime, last->name, why);
 }
 
-void print_json(std::FILE* to, const play_report& r)
+void print_json(const play_report& r)
 {
     const auto all = files::make_object([&r](auto& io) { report_members(io, r); });
-    fmt::print(to, "{}\n", all.dump(2));
+    fmt::print("{}\n", all.dump(2));
 }
 
 bool is_clean(const play_report& r)
@@ -206,26 +206,26 @@ bool is_clean(const play_report& r)
            !s.left_on;
 }
 
-void print_table(std::FILE* to, const play_report& r)
+void print_table(const play_report& r)
 {
     const player_stats& s = r.stats;
-    fmt::print(to, "xruns           {}\n", xruns_text(s));
-    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
-    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
-    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
-    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
+    fmt::print("xruns           {}\n", xruns_text(s));
+    fmt::print("latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
+    fmt::print("ring low water  {}\n", counted(s.ring_low_water, "drive"));
+    fmt::print("page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
+    fmt::print("limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
                counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
     if (s.stalls != 0)
-        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+        fmt::print("stalls          {}, amplifier off in each\n", s.stalls);
     if (s.off_failures != 0)
-        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
+        fmt::print("off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
                    s.left_on ? "" : ", off in the end");
     if (s.sync_pulses + s.sync_missed != 0)
-        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
-                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
+        fmt::print("sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n", s.sync_pulses,
+                   s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
     if (r.reopened != 0)
-        fmt::print(to, "reopened        {}\n", r.reopened);
-    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
+        fmt::print("reopened        {}\n", r.reopened);
+    fmt::print("real time       {}, memory {}\n", s.realtime ? "yes" : "no",
                r.locked_memory ? "locked" : "not locked");
 }
 

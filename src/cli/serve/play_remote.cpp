@@ -292,7 +292,7 @@ private:
                 broken_.emplace(e);
         }
         if (options_.json())
-            print_json(stdout, report_);
+            print_json(report_);
         else if (report_.stats.xruns != 0)
             say(stdout, "xruns           {}\n", report_.stats.xruns);
         return judge_run(report_, server_.signal(), broken_);
