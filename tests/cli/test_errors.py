@@ -43,6 +43,8 @@ class Help(ErrorsTest):
             self.assertEqual(set(re.findall(r"--[a-z][a-z-]+", whole)) - set(re.findall(r"--[a-z][a-z-]+", short)), {"--help"}, command)
             described = re.findall(r"^  (?:-\w,)?(--[a-z-]+)", whole, re.M)
             self.assertEqual(len(described), len(set(described)), command)
+        whole = self.ok("--help-all").stdout  # the pages of all commands
+        self.assertTrue("\nUsage: tactor stop [OPTIONS]\n" in whole and "{" not in whole)
 
     def test_help_lists_the_options_that_have_a_word(self):
         self.assertIn("  --level-dbfs DB ", self.ok("help", "level").stdout)
