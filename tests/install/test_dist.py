@@ -5,7 +5,6 @@ Each file by itself, with warnings as errors, without the tests; nothing is made
 Usage: test_dist.py TOOL SOURCE_ROOT BUILD_ROOT. Compiles the library twice.
 """
 import os
-import pathlib
 import shutil
 import tarfile
 

@@ -10,7 +10,6 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import encoded, _need, _number, reading, _shown, _whole
 from tactor._errors import InputError
-from tactor._plan import Plan
 from tactor._score import Score, placed
 from tactor._stroke import Stroke
 

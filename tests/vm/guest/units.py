@@ -7,7 +7,7 @@ import signal
 import subprocess
 import unittest
 
-from rig import OUT, PERIOD, PERIODS, Card, GpioSim, wait_for
+from rig import PERIOD, PERIODS, Card, GpioSim, wait_for
 from test_service import LONG, Client
 
 SOCKET = "/run/tactor.sock"
