@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "core/distance.hpp"
 #include "core/limits.hpp"
+#include "core/path/shape.hpp"
 #include "core/words.hpp"
 #include "percept/observer.hpp"
 

@@ -11,7 +11,7 @@
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
-#include "core/distance.hpp"
+#include "core/path/shape.hpp"
 #include "core/trajectory/spans.hpp"
 
 namespace movement_test {

@@ -16,8 +16,6 @@
 #include <boost/math/tools/roots.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
-#include "core/distance.hpp"
-
 namespace tactor::detail {
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include <tactor/path.hpp>
 
-#include "core/distance.hpp"
+#include "core/path/shape.hpp"
 
 namespace tactor::detail {
 

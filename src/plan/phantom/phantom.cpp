@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/access.hpp"
-#include "core/distance.hpp"
+#include "core/path/shape.hpp"
 #include "core/refused.hpp"
 #include "plan/faces/face_rules.hpp"
 #include "plan/faces/layout_impl.hpp"
