@@ -17,7 +17,7 @@
 
 #include "python/binding.hpp"
 #include "session/device.hpp"
-#include "session/lines.hpp"
+#include "session/device_stream.hpp"
 #include "session/live_remarks.hpp"
 
 namespace tactor::python {

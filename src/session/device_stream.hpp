@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The stream to a device: players one after the other, as often as the device is lost and comes back.
+/// The stream to a device: players one after the other, as often as the device is lost and comes back, and
+/// the GPIO lines that they share.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -17,7 +19,6 @@
 
 #include "rt/event_fd.hpp"
 #include "session/environment.hpp"
-#include "session/lines.hpp"
 
 namespace tactor::session {
 
@@ -106,6 +107,40 @@ private:
 
 /// Adds a further player's counters.
 void add_stats(player_stats& sum, const player_stats& more);
+
+/// `muted`: off, though the player that has the lines had switched it on.
+enum class amplifier_state { none, off, on, muted };
+/// "none", "off" or "on".
+std::string_view to_string(amplifier_state s) noexcept;
+
+/// Opens the lines that [amplifier] and [sync] name, unless no_gpio is set. Call it before threads and
+/// locked memory: it forks the holder of the amplifier's line. `arm`: the trigger is wanted. \throws error as
+/// open_amplifier() does.
+player_lines open_lines(const stream_options& o, const environment& e, bool arm);
+
+/// GPIO lines that outlive each player: one that plays on after its device was lost is a new one.
+class lent_lines {
+public:
+    lent_lines() : lent_lines(player_lines{}) {}
+    explicit lent_lines(player_lines own);
+    /// Lends the lines to one player at a time. `proof_s`: as player_lines.
+    player_lines lend(double proof_s = 0.0) const;
+
+    /// Calls `f`, which must not throw, when the amplifier has gone on or off, in the thread that switches.
+    void on_switch(std::function<void()> f) { state_->switched = std::move(f); }
+    /// Returns what the line was switched to. Any thread.
+    amplifier_state amplifier() const noexcept;
+
+private:
+    struct state {
+        player_lines own;
+        std::function<void()> switched = {};
+        std::atomic<bool> on = false;
+        std::atomic<bool> was_on = false; ///< with the player that has the lines
+    };
+
+    std::shared_ptr<state> state_;
+};
 
 struct stream_parts {
     std::function<std::unique_ptr<sink>()> open = {}; ///< blocks shortly. \throws error

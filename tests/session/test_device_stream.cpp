@@ -10,8 +10,6 @@
 
 #include <doctest/doctest.h>
 
-#include "session/lines.hpp"
-
 namespace device_stream_test {
 
 using namespace tactor;
