@@ -118,7 +118,7 @@ public:
 
 private:
     friend struct detail::access;
-    explicit score(std::shared_ptr<const impl> made) noexcept;
+    explicit score(std::shared_ptr<const impl> made) noexcept : impl_(std::move(made)) {}
     [[nodiscard]] static std::vector<placed_plan> alone(plan p);
 
     std::shared_ptr<const impl> impl_;

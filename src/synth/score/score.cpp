@@ -326,10 +326,6 @@ std::vector<double> start_times_s(std::span<const placed_plan> plans)
     return std::move(times).all();
 }
 
-score::score(std::shared_ptr<const impl> made) noexcept : impl_(std::move(made))
-{
-}
-
 std::vector<placed_plan> score::alone(plan p)
 {
     std::vector<placed_plan> one;
