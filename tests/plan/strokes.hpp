@@ -20,9 +20,15 @@ inline stroke make_stroke(trajectory t)
     return {"", std::move(t), {}, {}};
 }
 
-inline stroke along(std::string_view svg, double duration_s)
+inline stroke along(std::string_view svg, double duration_s = 1.0)
 {
     return make_stroke(trajectory::along(path::from_svg(svg), duration_s));
+}
+
+/// Returns a line through the middle of `palm`.
+inline stroke across(double duration_s)
+{
+    return along("M 0 20 L 40 20", duration_s);
 }
 
 inline stroke timed(std::vector<timed_point> p)

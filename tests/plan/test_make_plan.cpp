@@ -24,11 +24,6 @@ using namespace tactor::test;
 
 namespace {
 
-stroke across(double duration_s)
-{
-    return along("M 0 20 L 40 20", duration_s);
-}
-
 /// Returns how far a movement leaves the array, sampled at many places; and the first place outside.
 struct excursion {
     double farthest_mm = 0.0;

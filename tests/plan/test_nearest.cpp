@@ -14,10 +14,10 @@
 #include <tactor/setup.hpp>
 
 #include "arrays.hpp"
-#include "caught.hpp"
 #include "has.hpp"
 #include "plan/phantom/same_tactors.hpp"
 #include "rounds.hpp"
+#include "strokes.hpp"
 
 namespace nearest_test {
 
@@ -66,11 +66,6 @@ double share(const layout& l, double step_mm, const Count& counts)
                 some += counts(p) ? 1.0 : 0.0;
             }
     return some / all;
-}
-
-stroke along(const std::string& data, double duration_s = 1.0)
-{
-    return {"s", trajectory::along(path::from_svg(data), duration_s)};
 }
 
 bool warns(const plan& p, const std::string& of)

@@ -18,15 +18,6 @@ namespace park_test {
 using namespace tactor;
 using namespace tactor::test;
 
-namespace {
-
-stroke across(double duration_s)
-{
-    return along("M 0 20 L 40 20", duration_s);
-}
-
-} // namespace
-
 TEST_CASE("the four target motions give 21, 21, 31 and 31 bursts that never overlap")
 {
     const unsigned counts[] = {21, 21, 31, 31};
