@@ -10,7 +10,6 @@
 
 #include "options/option.hpp"
 #include "options/settle.hpp"
-#include "options/option.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "core/path/number.hpp"
 #include "core/path/impl.hpp"
+#include "core/path/number.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
