@@ -15,7 +15,6 @@
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
 #include "core/words.hpp"
-#include "files/stroke/toml.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
@@ -266,7 +265,7 @@ void turn_array(const toml_table& table, array& a)
 {
     if (!table.has("mirror") && !table.has("rotate_deg"))
         return;
-    affine m = read_turn(table);
+    affine m = table.turn();
     point least = a.tactors.front().position;
     point most = least;
     for (const tactor_spec& t : a.tactors) {

@@ -338,13 +338,13 @@ std::optional<std::string> toml_table::choice(std::string_view key,
 }
 
 std::optional<toml_table> toml_table::table(std::string_view key, std::string title,
-                                            std::string_view shape) const
+                                            std::string_view example) const
 {
     const toml::node* n = node(key);
     if (!n)
         return std::nullopt;
     if (!n->is_table())
-        wrong_type(key, *n, fmt::format("a table, {}", shape));
+        wrong_type(key, *n, fmt::format("a table, {}", example));
     return toml_table(*n->as_table(), std::move(title), *file_);
 }
 
@@ -371,6 +371,14 @@ const toml::array* toml_table::list(std::string_view key, std::string_view of_wh
     if (n && !n->is_array())
         wrong_type(key, *n, fmt::format("a list of {}", of_what));
     return n ? n->as_array() : nullptr;
+}
+
+affine toml_table::turn(double scale) const
+{
+    const affine turned = rotation(number("rotate_deg", turn_deg).value_or(0.0));
+    const std::string mirror = choice("mirror", {"x", "y"}).value_or("");
+    return turned *
+           affine{mirror == "x" ? -scale : scale, 0.0, 0.0, mirror == "y" ? -scale : scale, 0.0, 0.0};
 }
 
 std::optional<point> toml_table::place(std::string_view key) const

@@ -16,6 +16,7 @@
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
+#include "core/path/shape.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {
@@ -29,6 +30,9 @@ struct toml_hints {
 /// Parses a document. `name` stands for the file in messages.
 /// \throws error (bad_input) with file, line and column.
 toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints = {});
+
+/// Range of turns and angles, degrees.
+inline constexpr bounds turn_deg{-3600.0, 3600.0};
 
 /// A table of a document. Refers to the document and to the name: both must outlive it.
 class toml_table {
@@ -72,13 +76,16 @@ public:
         const auto name = choice(key, kind_names<Kind>());
         return name ? find_kind<Kind>(*name) : std::nullopt;
     }
-    /// `shape` shows a wrong value's author how it is written.
-    std::optional<toml_table> table(std::string_view key, std::string title, std::string_view shape) const;
+    /// `example` shows a wrong value's author how it is written.
+    std::optional<toml_table> table(std::string_view key, std::string title, std::string_view example) const;
     /// Returns an array of tables, [[key]]; an empty list if there is none.
     std::vector<toml_table> tables(std::string_view key) const;
     const toml::array* list(std::string_view key, std::string_view of_what) const;
     const toml::node* node(std::string_view key) const { return table_->get(key); }
 
+    /// Reads mirror and rotate_deg, which array and stroke files share. Returns the map that scales by
+    /// `scale`, mirrors and then turns about the origin.
+    affine turn(double scale = 1.0) const;
     /// Reads [x, y] in mm.
     std::optional<point> place(std::string_view key) const;
     /// Returns a list of two values.

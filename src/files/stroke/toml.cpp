@@ -23,6 +23,7 @@
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
 #include "files/text_file.hpp"
+#include "files/toml_reader.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -219,7 +220,7 @@ void place_stroke(const toml_table& t, stroke& s)
     if (*first == "about_mm")
         t.fail("about_mm", "nothing is scaled, turned or mirrored about it",
                "add scale, rotate_deg or mirror, or leave it out");
-    affine m = read_turn(t, t.number("scale", scales).value_or(1.0));
+    affine m = t.turn(t.number("scale", scales).value_or(1.0));
     const point by = t.place("translate_mm").value_or(point{});
     const point from = about.value_or(point{});
     m.e = from.x_mm + by.x_mm;
@@ -583,13 +584,6 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
 }
 
 } // namespace
-
-affine read_turn(const toml_table& t, double scale)
-{
-    const affine turn = rotation(t.number("rotate_deg", turn_deg).value_or(0.0));
-    const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
-    return turn * affine{mirror == "x" ? -scale : scale, 0.0, 0.0, mirror == "y" ? -scale : scale, 0.0, 0.0};
-}
 
 std::vector<stroke> read_strokes_file(std::string_view text, const std::string& name, double intensity_max)
 {
