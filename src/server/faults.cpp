@@ -138,6 +138,12 @@ double number(const json& v, const std::string& what, detail::bounds b)
     return n;
 }
 
+double number_or(const json& params, const char* name, detail::bounds b, double usual)
+{
+    const json* v = member(params, name);
+    return v == nullptr ? usual : number(*v, name, b);
+}
+
 double need_number(const json& params, const char* name, detail::bounds b)
 {
     const json* v = member(params, name);

@@ -51,6 +51,8 @@ void allow_only(const net::json& params, std::initializer_list<std::string_view>
 const net::json* member(const net::json& params, const char* name);
 /// Returns a number within bounds. \throws fault_error.
 double number(const net::json& v, const std::string& what, detail::bounds b);
+/// Returns a member that is a number within bounds; `usual` if there is none. \throws fault_error.
+double number_or(const net::json& params, const char* name, detail::bounds b, double usual);
 /// Returns a required number within bounds. \throws fault_error.
 double need_number(const net::json& params, const char* name, detail::bounds b);
 /// Returns a whole number within bounds. \throws fault_error.

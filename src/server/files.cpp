@@ -255,7 +255,7 @@ struct file_kind {
     std::optional<plot::file_format> picture = {};
 };
 
-constexpr std::array kinds{
+constexpr std::array file_kinds{
     file_kind{"toml", "application/toml", "render", options::on_render, "toml", "-o", "wav"},
     file_kind{"csv", "text/csv", "render", options::on_render, "csv", "-o", "wav"},
     file_kind{"wav", "audio/wav", "render", options::on_render, "toml", "-o", "wav"},
@@ -272,9 +272,9 @@ const file_kind& find_kind(const json& params)
     if (as == nullptr)
         bad_param("as", "it is missing", hint);
     const std::string name = text(*as, "as");
-    const auto* found =
-        std::find_if(kinds.begin(), kinds.end(), [&name](const file_kind& k) { return k.extension == name; });
-    if (found == kinds.end())
+    const auto* found = std::find_if(file_kinds.begin(), file_kinds.end(),
+                                     [&name](const file_kind& k) { return k.extension == name; });
+    if (found == file_kinds.end())
         bad_param("as", fmt::format("there is no \"{}\"", name), hint);
     return *found;
 }
@@ -392,9 +392,7 @@ std::string import_strokes(const planning& with, const layout& faces, const json
     const std::string source = found;
     const std::string named = read_name(params);
     const std::string name = source == "stroke" ? source : named;
-    const json* scale = member(params, "intensity_max");
-    const double intensity_max =
-        scale == nullptr ? 1.0 : number(*scale, "intensity_max", detail::bounds_of::intensity_max);
+    const double intensity_max = number_or(params, "intensity_max", detail::bounds_of::intensity_max, 1.0);
     const bool fit = flag(params, "fit");
     try {
         read_file f = source == "stroke" ? read_file{read_strokes(source, params[source], with.owner)}

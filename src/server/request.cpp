@@ -438,12 +438,9 @@ planned make_drive(const planning& with, const json& params)
     const double tactor = need_number(params, "tactor", {0, count - 1});
     if (tactor != std::floor(tactor))
         bad_param("tactor", fmt::format("{} is no whole number", tactor), "they count from 0");
-    const json* given = member(params, "intensity");
-    const double intensity = given == nullptr ? 1.0 : number(*given, "intensity", detail::bounds_of::part);
-    given = member(params, "duration_s");
+    const double intensity = number_or(params, "intensity", detail::bounds_of::part, 1.0);
     constexpr double usual_s = 0.5;
-    const double seconds =
-        given == nullptr ? usual_s : number(*given, "duration_s", detail::bounds_of::duration_s);
+    const double seconds = number_or(params, "duration_s", detail::bounds_of::duration_s, usual_s);
     check_duration(with, seconds);
     check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
     planned p{{"drive"}, with.owner.render};

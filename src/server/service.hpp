@@ -310,8 +310,7 @@ private:
     void fire(client& c, const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
     void begin(client& c, const net::json& params, const answer& to);
-    void begin_now(client& c, const live_options& o, double intensity_max, const answer& to,
-                   const char* ended_by);
+    void begin_now(client& c, const live_options& o, double intensity_max, const answer& to);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
     stroke_record& own_live(client& c, std::uint32_t number);

@@ -84,8 +84,7 @@ void service::read_job(plan_job& j, std::int64_t now_ns)
     if (const json* draft = member(params, "draft"))
         j.draft = whole(*draft, "draft", {0.0, 0x1p53});
     j.view = read_view(params);
-    if (const json* gain = member(params, "gain_db"))
-        j.gain_db = number(*gain, "gain_db", {player::least_level_db, 0.0});
+    j.gain_db = number_or(params, "gain_db", {player::least_level_db, 0.0}, 0.0);
     if (const json* repeat = member(params, "repeat"))
         j.rounds =
             *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));

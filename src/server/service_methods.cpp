@@ -253,8 +253,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     }
     constexpr double usual_hz = 30.0;
     constexpr double most_hz = 100.0;
-    const json* hz = member(params, "levels_hz");
-    c.levels_hz = hz == nullptr ? usual_hz : number(*hz, "levels_hz", {0.01, most_hz});
+    c.levels_hz = number_or(params, "levels_hz", {0.01, most_hz}, usual_hz);
     c.events = std::move(wanted);
     to.result(reply_json::object());
     c.levels.assign(stream_.peaks().size(), 0.0F);

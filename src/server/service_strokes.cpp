@@ -506,10 +506,8 @@ void service::begin(client& c, const json& params, const answer& to)
     o.plan = s.plan;
     o.render = s.render;
     o.longest_s = options_.limits.max_stroke_s;
-    if (const json* t = member(params, "timeout_s"))
-        o.timeout_s = number(*t, "timeout_s", detail::bounds_of::timeout_s);
-    if (const json* t = member(params, "smooth_s"))
-        o.smooth_s = number(*t, "smooth_s", detail::bounds_of::smooth_s);
+    o.timeout_s = number_or(params, "timeout_s", detail::bounds_of::timeout_s, o.timeout_s);
+    o.smooth_s = number_or(params, "smooth_s", detail::bounds_of::smooth_s, o.smooth_s);
     check_free_place(c);
     if (c.live >= options_.limits.max_live_strokes)
         limit_reached("max_live_strokes",
@@ -521,25 +519,21 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.live;
     const double intensity_max = s.intensity_max.value_or(1.0);
     once_ready(to, "options", [this, number = c.number, o, to, intensity_max] {
-        client* then = find(number);
-        if (then == nullptr)
-            return;
-        --then->live;
-        begin_now(*then, o, intensity_max, to, stop_reason_since(to));
+        if (client* then = find(number)) {
+            --then->live;
+            begin_now(*then, o, intensity_max, to);
+        }
     });
 }
 
-void service::begin_now(client& c, const live_options& o, double intensity_max, const answer& to,
-                        const char* ended_by)
+void service::begin_now(client& c, const live_options& o, double intensity_max, const answer& to)
 {
     player* out = stream_.current();
     if (ending_ || out == nullptr || out->ended())
         no_stream(ending_ ? "the server ends" : stream_.reason());
-    if (ended_by != nullptr) {
-        // It was cancelled while the stream was being started.
+    if (const char* ended_by = stop_reason_since(to)) { // while the stream was being started
         const auto numbers = end_unbegun(c.number, 1, ended_by);
-        to.result({{"stroke", numbers.front()}}, numbers);
-        return;
+        return to.result({{"stroke", numbers.front()}}, numbers);
     }
     live_stroke live = out->begin(o);
     stroke_record& r = add_record(c.number);

@@ -200,21 +200,10 @@ void read_subscribe(value_list& v, osc_request& r)
     r.params["events"] = std::move(events);
 }
 
-struct known_address {
-    std::string_view address;
-    void (*read)(value_list& v, osc_request& r);
-};
-
 constexpr std::string_view osc_root = "/tactor/";
-constexpr std::array osc_addresses{
-    known_address{"/tactor/play", read_play},
-    known_address{"/tactor/begin", read_begin},
-    known_address{"/tactor/to", read_to},
-    known_address{"/tactor/end", read_own_stroke},
-    known_address{"/tactor/cancel", read_own_stroke},
-    known_address{osc_stop, read_stop},
-    known_address{"/tactor/drive", read_drive},
-    known_address{"/tactor/subscribe", read_subscribe},
+constexpr std::pair<std::string_view, void (*)(value_list& v, osc_request& r)> readers[] = {
+    {"play", read_play},         {"begin", read_begin}, {"to", read_to},       {"end", read_own_stroke},
+    {"cancel", read_own_stroke}, {"stop", read_stop},   {"drive", read_drive}, {"subscribe", read_subscribe},
 };
 
 } // namespace
@@ -227,15 +216,17 @@ bool is_servers_own(std::string_view address)
 
 osc_request read_osc(const osc_message& m)
 {
-    const auto found = std::find_if(osc_addresses.begin(), osc_addresses.end(),
-                                    [&](const known_address& k) { return k.address == m.address; });
-    if (found == osc_addresses.end())
+    const std::string_view address = m.address;
+    const auto* found = std::find_if(std::begin(readers), std::end(readers), [&](const auto& reader) {
+        return address.starts_with(osc_root) && address.substr(osc_root.size()) == reader.first;
+    });
+    if (found == std::end(readers))
         throw fault_error(
             {net::code_no_method, "bad-input", "address", "it is not known",
              "/tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
-    osc_request r{.method = m.address.substr(osc_root.size())};
+    osc_request r{.method = std::string(found->first)};
     value_list v(m);
-    found->read(v, r);
+    found->second(v, r);
     v.end();
     return r;
 }
