@@ -495,14 +495,13 @@ void service::note_busy()
 void service::begin(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"options", "timeout_s", "smooth_s"});
-    const live_options usual;
-    options::wishes s = options_.plans.owner;
-    s.plan.algorithm = usual.plan.algorithm;
-    s.plan.outside = usual.plan.outside;
-    if (const json* o = member(params, "options"))
-        s = with_options(s, *o, options_for::live);
-    check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
     live_options o;
+    options::wishes s = options_.plans.owner;
+    s.plan.algorithm = o.plan.algorithm;
+    s.plan.outside = o.plan.outside;
+    if (const json* given = member(params, "options"))
+        s = with_options(s, *given, options_for::live);
+    check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
     o.plan = s.plan;
     o.render = s.render;
     o.longest_s = options_.limits.max_stroke_s;
@@ -567,13 +566,11 @@ void service::to(client& c, const json& params, const answer& to)
     const std::uint32_t n = need_stroke(params);
     const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
     const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
-    const json* given = member(params, "intensity");
-    const double asked =
-        given == nullptr ? 1.0 : number(*given, "intensity", {0.0, std::numeric_limits<double>::max()});
     stroke_record& r = own_live(c, n);
-    const double intensity = given == nullptr ? 1.0 : asked / r.intensity_max;
+    const double intensity =
+        number_or(params, "intensity", {0.0, std::numeric_limits<double>::max()}, r.intensity_max);
     try {
-        if (!r.live->to(x, y, intensity))
+        if (!r.live->to(x, y, intensity / r.intensity_max))
             no_such_stroke(n, "it has ended");
     } catch (const error& e) {
         throw fault_error(library_fault(e, "x_mm"));
