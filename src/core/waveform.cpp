@@ -11,8 +11,8 @@
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
-#include "core/path/number.hpp"
 #include "core/refused.hpp"
+#include "core/split.hpp"
 #include "core/words.hpp"
 
 namespace tactor {

@@ -17,8 +17,8 @@
 
 #include <tactor/error.hpp>
 
-#include "core/path/number.hpp"
 #include "core/sha256.hpp"
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/sound_file.hpp"

@@ -18,8 +18,8 @@
 #include <tactor/error.hpp>
 
 #include "core/owned.hpp"
-#include "core/path/number.hpp"
 #include "core/refused.hpp"
+#include "core/split.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/path/number.hpp"
 #include "core/refused.hpp"
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "files/text_file.hpp"
 

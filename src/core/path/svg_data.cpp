@@ -18,7 +18,7 @@
 #include <tactor/error.hpp>
 
 #include "core/limits.hpp"
-#include "core/path/number.hpp"
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 

@@ -17,7 +17,6 @@
 
 #include <tactor/error.hpp>
 
-#include "core/path/number.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/recorded_points.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/path/impl.hpp"
-#include "core/path/number.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"

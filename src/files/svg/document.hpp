@@ -19,8 +19,8 @@
 #include <tactor/error.hpp>
 
 #include "core/path/impl.hpp"
-#include "core/path/number.hpp"
 #include "core/path/shape.hpp"
+#include "core/split.hpp"
 
 namespace tactor::detail {
 

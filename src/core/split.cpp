@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/path/number.hpp"
+#include "core/split.hpp"
 
 #include <charconv>
 #include <limits>
