@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The rows. To add an option: a row here, and the code that uses the value.
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 #include <fmt/format.h>
 

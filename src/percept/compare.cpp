@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <functional>
 #include <numbers>
-#include <span>
 #include <utility>
 #include <vector>
 

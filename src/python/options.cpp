@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "python/binding.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>

@@ -2,7 +2,6 @@
 #include "server/planners.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include <boost/asio/post.hpp>

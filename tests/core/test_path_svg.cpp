@@ -10,7 +10,6 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/error.hpp>
 #include <tactor/path.hpp>
 #include <tactor/stroke.hpp>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ends of strokes: by themselves, cancelled, stopped, in any order with faults.
 #include <algorithm>
-#include <cmath>
 
 #include <doctest/doctest.h>
 

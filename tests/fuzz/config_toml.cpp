@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Configuration and array files: what each section says is in its bounds.
-#include <algorithm>
 #include <cmath>
 
 #include <tactor/setup.hpp>

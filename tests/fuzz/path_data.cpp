@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // SVG path data, there and back again.
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A browser's request, or the frames of a WebSocket after one that asks for it, through a pair of sockets.
 #include <algorithm>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <sys/socket.h>

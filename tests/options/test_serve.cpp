@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
 #include <tactor/setup.hpp>
 
 #include "caught.hpp"

@@ -2,8 +2,6 @@
 // Clients that know of each other: who is there, touches and stops.
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <new>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,6 @@
 #include <memory>
 #include <numbers>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>

@@ -2,7 +2,6 @@
 #include "cli/play/play.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

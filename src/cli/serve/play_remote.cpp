@@ -12,7 +12,6 @@
 #include <variant>
 #include <vector>
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <tactor/stroke.hpp>

@@ -6,8 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 

@@ -2,7 +2,6 @@
 #include "plan/faces/face_rules.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 

@@ -7,7 +7,6 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 #include <tactor/stroke.hpp>
