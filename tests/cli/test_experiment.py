@@ -137,6 +137,14 @@ class DryRun(ExperimentTest):
         said = self.ok("experiment", "small.toml", "--dry-run", "--config", "tired.toml").stdout
         self.assertIn("s without the answers", said)
 
+    def test_codes_that_differ_in_capitals_only_are_one_on_some_disks(self):
+        self.simulate("p1")
+        before = contents(self.dir / "study")
+        for more in ((), ("--resume",)):
+            self.simulate("P1", *more, run=lambda *a: self.refused(2, *a))
+        self.assertEqual(contents(self.dir / "study"), before)
+        self.simulate("p2")
+
     def test_the_seed_is_the_option_s_or_the_definition_s_or_the_code_s(self):
         small = self.small()
         self.assertEqual(self.dry(small), self.dry(small, "--participant", "01"))

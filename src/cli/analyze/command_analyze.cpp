@@ -41,7 +41,9 @@ void parse_excluded(std::string_view text, study::selection& who)
 {
     for (const std::string& one : parse_codes("--exclude", text)) {
         const std::size_t colon = one.find(':');
-        who.without[one.substr(0, colon)] = colon == one.npos ? "" : one.substr(colon + 1);
+        std::string& reason = who.without[one.substr(0, colon)];
+        if (colon != one.npos)
+            reason = one.substr(colon + 1);
     }
 }
 
@@ -208,7 +210,7 @@ int run_report(command_line& line)
     add_study_options(c, o.folder, o.who);
     add_text(c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
              [&o](const std::string& t) {
-                 if (!t.ends_with(".md"))
+                 if (std::filesystem::path(t).extension() != ".md")
                      throw error(error_kind::bad_input, t, "the report is Markdown", "end the name in .md");
                  o.file = t;
              });

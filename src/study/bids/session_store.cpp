@@ -56,15 +56,15 @@ std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
     return {fs::file_size(file, ignored), fs::last_write_time(file, ignored)};
 }
 
-// Reads the columns of a table that is there. Returns what its last line lacks before another one can follow.
-// A table that cannot be read any more takes an answer nevertheless: in the order of a new table.
-std::string read_columns(text_table& t)
+// Reads the columns of a table that is there. Returns what its last line lacks before another one can follow;
+// nothing if it cannot be read.
+std::optional<std::string> read_columns(text_table& t)
 {
     try {
         t = text_table(t.file(), last_line::may_be_cut);
         return t.missing_end();
     } catch (const error&) {
-        return "\n";
+        return {};
     }
 }
 
@@ -214,13 +214,19 @@ void session_store::write_line(const fs::path& file, const named_cells& cells)
     const bool known = last_ && last_->file == file && last_->state == find_state(file);
     if (!known)
         last_ = {file, text_table(file, header_line(cells)), {}};
+    std::optional<std::string> end = "";
     if (is_on_disk(file)) {
-        const std::string end = known ? std::string() : read_columns(last_->columns);
-        append_text(file, end + last_->columns.line(cells));
+        if (!known)
+            end = read_columns(last_->columns);
+        // A table that cannot be read takes an answer nevertheless: in the order of a new table.
+        append_text(file, end.value_or("\n") + last_->columns.line(cells));
     } else {
         write_whole(file, last_->columns.with_line(cells));
     }
-    last_->state = find_state(file);
+    if (end)
+        last_->state = find_state(file);
+    else
+        last_.reset();
 }
 
 void session_store::make_last_void(const run_definition& r)

@@ -16,6 +16,7 @@
 #include <tactor/version.hpp>
 
 #include "core/split.hpp"
+#include "core/words.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
 
@@ -179,8 +180,15 @@ void study_folder::refuse_others()
         const fs::path file = e.path() / "session.json";
         if (!is_on_disk(file))
             continue;
-        const session_data s = read_session(file);
         const std::string who = e.path().filename().string();
+        const std::string own = "sub-" + code_;
+        if (who != own && in_small_letters(who) == in_small_letters(own))
+            throw error(error_kind::bad_input, "--participant",
+                        fmt::format("{} is here already, and {} is the same name where a disk does not know "
+                                    "capitals",
+                                    who, own),
+                        "choose another code");
+        const session_data s = read_session(file);
         if (s.simulated != simulated_)
             throw error(
                 error_kind::bad_input, folder_.string(),

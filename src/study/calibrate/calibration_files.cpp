@@ -179,8 +179,12 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         if (!begun && lines_.rows() > 0)
             throw error(error_kind::bad_input, beginning.string(),
                         "it is missing, which says how the log was begun", "begin another, with another log");
-        if (!begun || !resume)
-            write_whole(beginning, settings_text(s));
+        if (!begun || !resume) {
+            const std::string text = settings_text(s);
+            detail::output_file out(beginning, {}, detail::owner_kind::program);
+            out.write(text.data(), static_cast<std::int64_t>(text.size()));
+            out.commit();
+        }
         if (synced_)
             detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
     } catch (...) {

@@ -115,11 +115,12 @@ std::vector<std::string> select(const std::vector<std::string>& known, const sel
         only.insert(find_code(known, wanted, "--participants"));
     std::map<std::string, std::string> without;
     for (const auto& [wanted, reason] : who.without)
-        without[find_code(known, wanted, "--exclude")] = reason.empty() ? "no reason was given" : reason;
+        if (std::string& why = without[find_code(known, wanted, "--exclude")]; !reason.empty())
+            why = reason;
     std::vector<std::string> selected;
     for (const std::string& code : known)
         if (without.contains(code))
-            excluded.push_back({code, without[code]});
+            excluded.push_back({code, without[code].empty() ? "no reason was given" : without[code]});
         else if (!only.empty() && !only.contains(code))
             excluded.push_back({code, "not among those selected"});
         else

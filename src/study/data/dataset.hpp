@@ -4,7 +4,7 @@
 /// The analysis reads these files and nothing else:
 ///
 ///   participants.tsv                          participant_id: who takes part, in this order
-///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; of their columns those that column_use says
+///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials, in the columns of trial_columns
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
 ///                                             left alone: the order of motions and methods, and the runs
 #pragma once
@@ -123,9 +123,9 @@ struct trial_row {
 
 /// Reader that needs a column.
 enum class column_use {
-    analysis, ///< the analysis, and sessions that go on
-    session,  ///< sessions that go on
-    nobody,   ///< tables of older versions do not have it
+    analysis, ///< the analysis of each task, and sessions that go on
+    session,  ///< sessions that go on; the analysis of the tasks that have it
+    nobody,   ///< none: tables of older versions do not have it
 };
 
 struct trial_column {
