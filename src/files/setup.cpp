@@ -77,6 +77,11 @@ calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*
         t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, entries[i]->where().text()),
                "it is measured once in a calibration");
     entries[i] = &t;
+    for (const char* key : {"check_right", "check_below_right", "staircases"})
+        t.whole(key, 0, any_number);
+    if (const toml::array* all = t.list("reversals_dbfs", "levels"))
+        for (const toml::node& n : *all)
+            t.to_number(n, "reversals_dbfs", limit_db);
     return {i, t.number("threshold_dbfs", limit_db), t.number("sd_db", spread_db),
             t.need(t.whole("trials", 0, any_number), "trials")};
 }

@@ -142,6 +142,8 @@ void note_input(const fs::path& file, owner_kind owner)
 
 void refuse_input(const struct stat& file, const fs::path& output, owner_kind writer)
 {
+    if (!S_ISREG(file.st_mode))
+        return;
     inputs& i = known_inputs();
     const std::lock_guard locked(i.guard);
     for (const auto& [read, what] : i.all) {

@@ -247,8 +247,8 @@ void line_connection::read_more()
     const bool may_end = text_.ends_with('\r');
     if (text_.size() > limits().message_bytes + (may_end ? 1 : 0))
         return fail(connection_fault::too_long);
-    if (text_.empty())
-        std::string().swap(text_); // returns its memory
+    if (text_.size() <= chunk_.size() && text_.capacity() > large_message)
+        text_.shrink_to_fit(); // returns the memory of a large message
     scanned_ = text_.size();
     if (over_) {
         stop_reading();

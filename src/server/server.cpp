@@ -166,7 +166,10 @@ private:
         due_.async_wait([this](const boost::system::error_code& e) {
             if (e)
                 return;
-            clients_.act();
+            try {
+                clients_.act();
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way
+            }
             arm();
         });
     }

@@ -279,7 +279,7 @@ private:
 
     // service_jobs.cpp
     void add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
-    static void read_job(plan_job& j, std::int64_t now_ns);
+    void read_job(plan_job& j, std::int64_t now_ns) const;
     void work_on(plan_job& j);
     std::string make_text(const plan_job& j, const go_on_check& go_on);
     void make_scores(plan_job& j, const go_on_check& go_on);

@@ -65,8 +65,8 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
                    .outlives = job->plays()});
 }
 
-// Reads the parameters beside the strokes. The planner reads those, and the parameters of files.
-void service::read_job(plan_job& j, std::int64_t now_ns)
+// Reads the parameters of play and plan, except for their strokes. The planner reads those, and all of files.
+void service::read_job(plan_job& j, std::int64_t now_ns) const
 {
     const json& params = j.params;
     if (j.plays())
@@ -77,6 +77,8 @@ void service::read_job(plan_job& j, std::int64_t now_ns)
                             "draft", "bins", "observer"});
     else
         return;
+    static_cast<void>(find_source(params));
+    static_cast<void>(settle_options(options_.plans.owner, params));
     if (const json* start = member(params, "start")) {
         static_cast<void>(read_start(start, now_ns));
         j.start = *start;
@@ -107,6 +109,10 @@ void service::work_on(plan_job& j)
         j.fault = too_large_to_send();
     } catch (...) {
         j.fault = current_fault("params");
+    }
+    if (j.fault) {
+        j.made.reset();
+        j.scores.clear();
     }
     j.params = nullptr;
 }

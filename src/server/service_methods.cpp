@@ -110,22 +110,25 @@ double service::count_wrong_token(const std::string& from)
     return wait_s;
 }
 
-// Answers a wrong token late.
+// Answers a missing token at once, and a wrong one late.
 void service::refuse_token(client& c, const answer& to, bool is_missing)
 {
     if (++c.wrong_tokens > most_wrong_tokens)
         return; // it is turned out when the one before is answered
-    const double wait_s = is_missing ? 0.0 : count_wrong_token(c.from);
-    const auto timer = late_answers_.emplace(late_answers_.end(), io_);
-    timer->expires_after(std::chrono::nanoseconds(std::llround(wait_s * 1e9)));
-    timer->async_wait([=, this, number = c.number,
-                       last = c.wrong_tokens == most_wrong_tokens](const boost::system::error_code& gone) {
-        if (gone)
-            return; // the service ends
+    const auto refuse = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
         to.fault({net::code_no_token, "token", "token", is_missing ? "it is owed" : "it is wrong",
                   "give what the server's token_file holds"});
         if (client* const guest = find(number); guest != nullptr && last)
             guest->link->turn_out("three wrong tokens");
+    };
+    if (is_missing)
+        return refuse();
+    const auto timer = late_answers_.emplace(late_answers_.end(), io_);
+    timer->expires_after(std::chrono::nanoseconds(std::llround(count_wrong_token(c.from) * 1e9)));
+    timer->async_wait([=, this](const boost::system::error_code& gone) {
+        if (gone)
+            return; // the service ends
+        refuse();
         late_answers_.erase(timer);
     });
 }

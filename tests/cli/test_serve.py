@@ -469,10 +469,18 @@ class Limits(ServeTest):
 
     def test_an_idle_stream_stops_and_starts_with_the_next_stroke(self):
         c = self.serve("--idle-stop", "0.05").client()
+        c.ok("subscribe", events=["stream"])
+        # The notification may have come before anybody listened.
+        while c.ok("status")["stream"]["state"] != "idle":
+            pass
         for method, params in (("play", SHORT), ("drive", {"tactor": 0, "duration_s": 0.05})):
-            while c.ok("status")["stream"]["state"] != "idle":
-                pass
-            self.assertEqual(c.await_end(c.ok(method, **params)["stroke"])["state"], "finished")
+            n = c.ok(method, **params)["stroke"]
+            self.assertEqual(c.await_end(n)["state"], "finished")
+            c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "idle")
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        self.assertEqual(c.ok("status")["stream"]["state"], "running")
+        c.ok("end", stroke=n)
+        c.await_end(n)
 
 
 if __name__ == "__main__":

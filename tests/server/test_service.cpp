@@ -516,4 +516,61 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
     CHECK(rig.find_end(gone.back(), 3)["state"] == "cancelled");
 }
 
+TEST_CASE("many points and many strokes are refused, not queued")
+{
+    running_rig rig([](server::service_options& o, server::stream_options&) {
+        o.now_ns = [] { return std::int64_t{1'000'000'000}; };
+    });
+    const auto c = rig.client();
+    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
+    const json point{{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}};
+    for (int i = 0; i < 2000; ++i)
+        REQUIRE(rig.code(c, "to", point) == 0);
+    CHECK(rig.code(c, "to", point) == -32001);
+    for (int i = 0; i < 3; ++i)
+        rig.ok(c, "begin", {{"timeout_s", 86400}});
+    CHECK(rig.code(c, "begin") == -32001);
+    for (int i = 0; i < 60; ++i)
+        rig.ok(c, "play", with(stroke, "start", "armed"));
+    CHECK(rig.code(c, "play", stroke) == -32001);
+    rig.ok(c, "stop");
+    rig.until([&] { return rig.code(c, "play", stroke) == 0; });
+}
+
+TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
+{
+    running_rig rig([](server::service_options& o, server::stream_options&) { o.limits.max_stroke_s = 0.2; });
+    const auto c = rig.client();
+    const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
+    const json point{
+        {"jsonrpc", "2.0"}, {"method", "to"}, {"params", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}}};
+    rig.send(c, point);
+    const json end = rig.find_end(c, n);
+    CHECK(end["state"] == "interrupted");
+    CHECK(end["reason"] == "limit: it has lasted as long as it may");
+    CHECK(end["frames"] >= 9600);
+    CHECK(end["frames"] <= 9600 + 2 * 480);
+    CHECK(rig.ok(c, "status")["strokes"].empty());
+    CHECK_FALSE(rig.ok(c, "begin").empty()); // its place is free
+}
+
+TEST_CASE("over a network hello comes first, and the token where one is owed")
+{
+    running_rig rig([](server::service_options& o, server::stream_options&) { o.token = "right"; });
+    const auto post = rig.client(server::client_kind::network);
+    CHECK_FALSE(rig.all->receive(post.number, "POST / HTTP/1.1"));
+    CHECK(post.box->all.empty());
+    const auto c = rig.client(server::client_kind::network);
+    CHECK(rig.code(c, "hello") == -32003);
+    CHECK(rig.code(c, "status") == -32003);
+    CHECK(rig.code(c, "hello", {{"token", "wrong"}}) == -32003);
+    CHECK_FALSE(c.box->finished);
+    CHECK(rig.code(c, "hello", {{"token", "righ"}}) == -32003);
+    CHECK(c.box->finished);
+    const auto d = rig.client(server::client_kind::network);
+    CHECK(rig.code(d, "hello", {{"token", "right"}}) == 0);
+    CHECK(rig.code(d, "status") == 0);
+    CHECK(rig.code(rig.client(), "status") == 0);
+}
+
 } // namespace service_test
