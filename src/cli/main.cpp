@@ -2,7 +2,6 @@
 // The commands of the tool, how the shells complete them, and how it ends.
 #include <algorithm>
 #include <array>
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <csignal>

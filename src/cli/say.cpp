@@ -59,9 +59,11 @@ progress_line::~progress_line()
 void progress_line::update(std::uint64_t done, std::uint64_t all)
 {
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(500) || ::isatty(STDERR_FILENO) == 0)
+    if (now - last_ < std::chrono::milliseconds(500))
         return;
     last_ = now;
+    if (::isatty(STDERR_FILENO) == 0)
+        return;
     shown_ = true;
     const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(all);
     std::fputs(fmt::format("\r\033[K{}: {:.1f} %", shown(name_), percent).c_str(), stderr);

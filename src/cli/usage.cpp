@@ -251,11 +251,13 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
             fmt::format("say {} {}; {}", name, o->get_type_name(), help_command(app, command))};
 }
 
-// A value that is none of those that the option lists.
+// Refuses a value that the option does not list.
 error unlisted(const CLI::App& command, const std::string& said)
 {
     const std::string name = said.substr(0, said.find(':'));
     const CLI::Option& o = *command.get_option(name);
+    if (o.count() > 1)
+        return {error_kind::bad_input, name, "it is given more than once", "give it once"};
     return {error_kind::bad_input, name, fmt::format("\"{}\" is not known", o.results().front()),
             fmt::format("one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
 }

@@ -139,15 +139,23 @@ public:
             begin["smooth_s"] = *stream_.smooth_s;
         server_.let_finish(to_finish);
         const net::json n = server_.call("begin", begin)["stroke"];
-        // After a throw the server ends the stroke as it ends those of a client that goes away.
-        for (bool end_sent = false; !ended(n, out);) {
-            wait(lines.descriptor());
-            if (server_.signal() != 0 && !std::exchange(cancelled_, true))
-                server_.tell("cancel", {{"stroke", n}});
-            if (!cancelled_)
-                draw(n, lines);
-            if (lines.over() && !std::exchange(end_sent, true) && !cancelled_)
-                server_.tell("end", {{"stroke", n}});
+        try {
+            for (bool end_sent = false; !ended(n, out);) {
+                wait(lines.descriptor());
+                if (server_.signal() != 0 && !std::exchange(cancelled_, true))
+                    server_.tell("cancel", {{"stroke", n}});
+                if (!cancelled_)
+                    draw(n, lines);
+                if (lines.over() && !std::exchange(end_sent, true) && !cancelled_)
+                    server_.tell("end", {{"stroke", n}});
+            }
+        } catch (const error&) {
+            try {
+                server_.tell("cancel", {{"stroke", n}}); // a client that goes away ends it after its burst
+            } catch (
+                const error&) { // NOLINT(bugprone-empty-catch): the server is gone, as the other error says
+            }
+            throw;
         }
         tell(out, report_.device.rate, options_.json());
         judge(out, true);
