@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cost of a period for the audio thread while many strokes sound: the mean, and the worst. And the way of a
-// live point to the period in which it sounds.
+// Cost of a period for the audio thread while many strokes sound: the mean, and the worst; and how long a
+// live point takes to the period in which it sounds.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

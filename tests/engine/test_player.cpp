@@ -47,7 +47,7 @@ void run_until(fake_dac& dac, std::uint64_t buffer, Condition done)
     }
 }
 
-// Has a set-up of its own, which changes with each start, like a PCM that turns out to have no clock.
+// Sink with a separate set-up, which changes with each start, like a PCM that turns out to have no clock.
 class changing_sink final : public forwarding_sink {
 public:
     explicit changing_sink(std::unique_ptr<sink> s)
@@ -233,7 +233,8 @@ TEST_CASE("a device that does not start and a missing sink are errors")
 {
     fake_dac broken;
     broken.fail_start(-EIO);
-    CHECK_THROWS_AS(player(alsa::adopt(broken.pcm(), nine()), palm()), error);
+    CHECK_THROWS_WITH_AS(player(alsa::adopt(broken.pcm(), nine()), palm()),
+                         doctest::Contains("it does not start (the device failed)"), error);
     CHECK(broken.closed());
     CHECK_THROWS_WITH_AS(player(nullptr, palm()), doctest::Contains("no sink"), error);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Limits of a channel, and the power of all channels together.
+// Limits of a channel, drive time, and the power of all channels together.
 #include <algorithm>
 #include <cmath>
 #include <complex>

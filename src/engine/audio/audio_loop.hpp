@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The audio thread: the scores that it plays, its work, one step at a time, without threads or a clock, so
-/// that tests can step it, and the thread itself.
+/// The audio thread, its table of scores, and its loop, which tests step without threads or a clock.
 #pragma once
 
 #include <array>

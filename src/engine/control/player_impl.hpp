@@ -44,7 +44,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
         explicit control_thread(impl& p);
         /// Ends the thread; it does not call the player any more. If the player's own handler destroys this
         /// object in the thread itself, the destructor returns at once, and the thread ends when the handler
-        /// has returned.
+        /// has returned. The event and the descriptor may be gone by then.
         ~control_thread();
         control_thread(const control_thread&) = delete;
         control_thread& operator=(const control_thread&) = delete;

@@ -76,7 +76,7 @@ struct seen_tactor {
     double side = 0.0; ///< of the line from the closest one through p; > 0: left
 };
 
-/// Mostly the tactors of a face, which are few.
+/// Tactors as seen from a point, mostly the few of a face.
 using seen_tactors = boost::container::small_vector<seen_tactor, 8>;
 
 seen_tactors see(const layout::impl& l, const std::vector<unsigned>& ranks, point p)

@@ -389,8 +389,9 @@ public:
             if (g < least_share)
                 continue;
             sum += g * g;
-            add_drive(layout_, v, g, out);
+            out.push_back({l.index_of[v], g});
         }
+        std::sort(out.begin(), out.end(), [](const drive& a, const drive& b) { return a.tactor < b.tactor; });
         for (drive& d : out)
             d.amplitude *= a_v / std::sqrt(sum);
         std::erase_if(out, [](const drive& d) { return !(d.amplitude > 0.0); });

@@ -54,7 +54,7 @@ def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = ma
     if not hint and math.isfinite(least):
         hint = f"{least:g} to {most:g}" if math.isfinite(most) else f"{least:g} or more"
     try:
-        if isinstance(value, (str, bytes, bytearray, bool)) or not _is_plain(value):
+        if isinstance(value, (str, bytes, bytearray, memoryview, bool)) or not _is_plain(value):
             raise TypeError
         number = float(value)
     except (TypeError, ValueError):

@@ -12,8 +12,8 @@
 
 namespace tactor::synth {
 
-/// Sine and cosine of an angle, with equal bits on every machine. The C library's depend on its version and
-/// the processor.
+/// Sine and cosine of an angle in cycles, with equal bits on every machine. The C library's depend on its
+/// version and the processor.
 struct sine_cosine {
     double sin = 0.0;
     double cos = 1.0;
