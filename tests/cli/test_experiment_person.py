@@ -251,6 +251,11 @@ class ByLines(PersonTest):
         self.assertNotIn("agree", result.stdout)  # without a consent question
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
 
+    def test_a_wait_for_max_drive_s_is_shown_once(self):
+        self.write("tired.toml", "[limits]\nmax_drive_s = 0.5\nwindow_s = 4.0\n")
+        shown = self.ok(*self.args("--config", "tired.toml"), stdin=self.ANSWERS).stdout
+        self.assertIn(shown.count("One moment, please."), range(1, 6))  # of five trials
+
     def test_the_end_of_answers_loses_none(self):
         self.refused(1, *self.args("--verbose", "--log", "stream.log"), stdin=AGREED + "1\n1\n")
         self.assertRegex((self.dir / "stream.log").read_text(), r"20\d\d-\d\d-\d\dT\S+ info ")
