@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The engine, which plays scores on a sink in real time.
+/// The engine, which plays scores on a sink in real time, strokes that a program feeds point by point while
+/// they sound (from a sensor, a finger, a simulation), and reports about strokes and streams that have ended.
 #pragma once
 
+#include <compare>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -12,15 +14,15 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
 #include <tactor/error.hpp>
 #include <tactor/lines.hpp>
-#include <tactor/live.hpp>
+#include <tactor/plan.hpp>
 #include <tactor/render.hpp>
-#include <tactor/report.hpp>
 #include <tactor/sink.hpp>
 
 namespace tactor::detail {
@@ -35,6 +37,193 @@ concept no_count = std::floating_point<T> || std::same_as<T, bool>;
 
 namespace tactor {
 inline namespace v0 {
+
+/// Identifier of a stroke of a player. A plain value. The number is unique in one player; 0 means no stroke.
+struct stroke_id {
+    std::uint32_t number = 0;
+
+    friend constexpr auto operator<=>(const stroke_id&, const stroke_id&) noexcept = default;
+};
+
+/// Way in which a submitted score ended. Each score ends in exactly one of these.
+enum class state_kind {
+    finished,    ///< its last frame reached the DAC
+    cancelled,   ///< faded out on request
+    interrupted, ///< ended by an xrun, the loss of the device, a failure, a live stroke's silent producer or
+                 ///< its longest_s
+};
+TACTOR_KIND(state_kind);
+
+/// Reason why a stroke was interrupted, or why a stream ended.
+enum class reason_kind {
+    none,      ///< the stroke finished or was cancelled; stop() stopped the stream
+    xrun,      ///< the device ran dry
+    suspended, ///< the system was suspended
+    lost,      ///< the device is gone, its position stands still, or one xrun followed another
+    failed,    ///< the device failed
+    late,      ///< the computer was too slow to prepare the stroke in time
+    crowded,   ///< too many strokes at once
+    closed,    ///< the player was destroyed
+    starved,   ///< live_options::timeout_s: no more points came
+    too_long,  ///< live_options::longest_s
+    muted,     ///< the amplifier was off
+    amplifier, ///< the amplifier's line cannot be switched
+    left_on,   ///< the amplifier's line cannot be switched off: it may be on
+    plan,      ///< live strokes: a custom phantom model failed, or gave more than the intensity
+    handler,   ///< one of the program's handlers threw
+};
+TACTOR_KIND(reason_kind);
+
+/// Delays of a live stroke's points: from their time stamps until the first frame that they changed was at
+/// the DAC. For the first point of a stroke that time is stroke_report::started_ns. For the others it is the
+/// one that the DAC's clock predicts when they are rendered. Two kinds of points do not count: those that
+/// come in a stream's first periods, before this clock is known, and those that a newer point overtook before
+/// the next period.
+struct live_delay {
+    std::uint64_t points = 0; ///< number of points that count
+    double least_s = 0.0;     ///< below 0 if a time stamp lies in the future
+    double mean_s = 0.0;
+    double most_s = 0.0;
+};
+
+/// Report about one stroke that has ended.
+struct stroke_report {
+    stroke_id id = {};
+    state_kind state = state_kind::finished;
+    std::uint64_t frames = 0;               ///< frames that were played, from its first on
+    reason_kind reason = reason_kind::none; ///< reason of an interruption
+    std::string why = {};                   ///< the reason in words, with further details
+    /// Delay of its first sample at the DAC after the requested time; 0 if in time, and for start_at::now().
+    double late_s = 0.0;
+    /// Time of its first sample at the DAC, CLOCK_MONOTONIC, from the DAC's clock while that sample passed;
+    /// none if it never sounded (`frames` is 0).
+    std::optional<std::int64_t> started_ns = {};
+    std::optional<live_delay> delay = {}; ///< live strokes only, after a point has sounded
+    std::uint64_t held_points = 0;        ///< live strokes only: points above intensity 1, which sounded as 1
+    std::uint64_t outside_points = 0;     ///< live strokes only: points outside the array, moved to its edge
+};
+
+/// End of a stream.
+struct stream_end {
+    reason_kind reason = reason_kind::none; ///< none: stop() ended it in order
+    std::string why = {};                   ///< the reason for people; empty for none
+};
+
+/// Outcome of a call of wait().
+enum class wait_kind {
+    ended,   ///< the stroke has ended, and its report is there
+    timeout, ///< it has not ended: the time was over, or the caller is a handler, where wait() does not block
+    taken,   ///< it has ended, but its report was returned before, or dropped for 4096 newer ones
+    unknown, ///< this player never had such a stroke
+};
+TACTOR_KIND(wait_kind);
+
+/// Result of wait(): the report, or the reason why there is none.
+class wait_result {
+public:
+    wait_result(wait_kind without) noexcept : outcome_(without) {}
+    wait_result(stroke_report r) noexcept : outcome_(wait_kind::ended), report_(std::move(r)) {}
+
+    [[nodiscard]] wait_kind outcome() const noexcept { return outcome_; }
+    /// Returns true if there is a report. Without one, `*` and `->` must not be used.
+    explicit operator bool() const noexcept { return report_.has_value(); }
+    const stroke_report& operator*() const noexcept { return *report_; }
+    const stroke_report* operator->() const noexcept { return &*report_; }
+
+private:
+    wait_kind outcome_;
+    std::optional<stroke_report> report_;
+};
+
+/// Options of a live stroke.
+struct live_options {
+    /// These members count: `algorithm`, `phantom` and `faces`, or `custom_phantom`, `carrier_hz`, `wave` (no
+    /// recording along a length), `am`, `scale`, `outside`; for bursts also `soa_s`, and `burst_s` or
+    /// `profile`, which give their duration. Algorithm continuous: the carrier runs and the phantom's weights
+    /// follow the points. Algorithm park2016: each SOA has a burst at the newest position.
+    plan_options plan{.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp};
+    /// Levels, phase and the bursts' ramp. Rate and channels are the stream's.
+    render_options render = {};
+    /// Time-out, s, 0.001 to 86400. A producer that is silent for so long has failed: the stroke fades out
+    /// and ends interrupted. The time counts from player::begin() on, also before the first point. It counts
+    /// frames of the stream, so it stops while the system sleeps.
+    double timeout_s = 0.5;
+    /// Longest time that the stroke may sound, s, 0.001 to 86400, exact to a period. Then it fades out and
+    /// ends interrupted. None: no limit.
+    std::optional<double> longest_s = {};
+    /// Window over which points are smoothed, s, 0 (off) to 1. It is for points that come in bursts, as over
+    /// a network. Place and intensity are the mean of the points over the window that ends now. So the stroke
+    /// moves evenly to each new point and reaches it one window after the point came. Behind points that move
+    /// evenly it is late by half the window. end() waits until the stroke has reached the last point.
+    double smooth_s = 0.0;
+};
+
+/// Counts of a live stroke's points.
+struct live_counts {
+    std::uint64_t points = 0;  ///< accepted by to()
+    std::uint64_t outside = 0; ///< of these, points that were moved to the nearest point of the array
+    std::uint64_t limited = 0; ///< of these, points at which a tactor was held at its channel's limit
+    std::uint64_t held = 0;    ///< of these, points with an intensity above 1, which sounded as 1
+};
+
+/// The producer's end of a live stroke. Cheap to copy. All copies feed the same stroke, and a move is a copy.
+/// It may outlive the player. Without end() or cancel(), or when no copy is left, the stroke ends by its
+/// time-out (live_options::timeout_s). Any thread may call all members. No call waits for the audio thread or
+/// the player; a call may wait (for a microsecond) for another call of to() on the same stroke.
+class TACTOR_API live_stroke {
+public:
+    [[nodiscard]] stroke_id id() const noexcept;
+
+    /// Moves the stroke to a place, mm, at an intensity (linear; 1 is the requested level). That level is the
+    /// ceiling: an intensity above 1 sounds as 1, and live_counts::held and stroke_report::held_points count
+    /// it. A place outside the array becomes the nearest one in it (outside_kind::clamp), and
+    /// live_counts::outside and stroke_report::outside_points count it. When several points arrive within one
+    /// period, the newest counts.
+    ///
+    /// Continuous: with the next period that is written, the weights begin to move from the last point's to
+    /// this one's. The move takes one period, at least continuous_step_s. The buffer's delay adds to this.
+    /// Bursts: the next burst has this place. It starts at most one SOA later. With live_options::smooth_s,
+    /// both begin at that time to move there.
+    ///
+    /// `at_ns`: time of the touch, CLOCK_MONOTONIC; stroke_report::delay counts from it. None: now. It does
+    /// not change when the stroke gets there.
+    ///
+    /// Returns false if the stroke has ended; its report says why. If the phantom model gives a tactor more
+    /// than the intensity (after the intensity scale), the stroke ends interrupted.
+    /// \throws error (bad_input) for a number that is not finite, an intensity or a time stamp below 0, a
+    ///         point outside the array (with outside_kind::error), and a point that a custom phantom model
+    ///         refuses with that error. The stroke then stays where it was. Other exceptions of such a model
+    ///         pass through, too, and the stroke ends interrupted, with what() as its reason; std::bad_alloc
+    ///         does not end it. error (runtime) if such a model calls this for the stroke that asks it. The
+    ///         model may end or cancel that stroke, but must not wait for another thread that calls this.
+    bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<std::int64_t> at_ns = {});
+    /// Deleted: a time stamp is not an intensity, and seconds are not a time stamp.
+    template <std::same_as<std::int64_t> T>
+    bool to(double x_mm, double y_mm, T time_stamp) = delete;
+    template <std::floating_point T>
+    bool to(double x_mm, double y_mm, double intensity, T seconds) = delete;
+
+    /// Announces that no more points come. The stroke fades out (continuous) or plays its last burst to the
+    /// end, and ends finished.
+    void end() noexcept;
+    /// Fades the stroke out; it ends cancelled. The same as player::cancel().
+    void cancel() noexcept;
+
+    /// Returns true while the stroke accepts points.
+    [[nodiscard]] bool open() const noexcept;
+    [[nodiscard]] live_counts counts() const noexcept;
+
+    live_stroke(const live_stroke&) noexcept = default;
+    live_stroke& operator=(const live_stroke&) noexcept = default;
+
+    struct impl;
+
+private:
+    friend struct detail::access;
+    explicit live_stroke(std::shared_ptr<impl> p) noexcept;
+
+    std::shared_ptr<impl> impl_;
+};
 
 /// Event for which a stroke's start waits.
 enum class start_kind { frame, time, trigger };
@@ -307,3 +496,8 @@ private:
 
 } // namespace v0
 } // namespace tactor
+
+template <>
+struct std::hash<tactor::stroke_id> {
+    std::size_t operator()(tactor::stroke_id id) const noexcept { return id.number; }
+};

@@ -9,14 +9,12 @@
 #include <tactor/choices.hpp>
 #include <tactor/error.hpp>
 #include <tactor/lines.hpp>
-#include <tactor/live.hpp>
 #include <tactor/path.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/player.hpp>
 #include <tactor/render.hpp>
-#include <tactor/report.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/sink.hpp>
 #include <tactor/stroke.hpp>

@@ -11,7 +11,7 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/start_times.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -65,7 +65,8 @@ error about_own(const error& x, const stroke& s)
 template <class F>
 void for_each_stroke(const piece& p, std::size_t count, F f)
 {
-    progress_line line(shown_name(p.name));
+    const std::string name = shown_name(p.name);
+    progress_line line(name);
     for (std::size_t i = 0; i < count; ++i) {
         line.update(i, count);
         try {

@@ -30,7 +30,7 @@
 #include "cli/usage.hpp"
 #include "core/split.hpp"
 #include "options/settle.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 #include "study/experiment/definition.hpp"
 
 namespace tactor::cli {
@@ -320,9 +320,12 @@ int main(int argc, char** argv)
     std::signal(SIGPIPE, SIG_IGN);
     hold_standard_files();
     try {
-        return flushed(run(arguments(argc, argv)));
-    } catch (const CLI::Success&) {
-        return flushed(status_ok);
+        int status = status_ok;
+        try {
+            status = run(arguments(argc, argv));
+        } catch (const CLI::Success&) { // NOLINT(bugprone-empty-catch): help or a version is printed
+        }
+        return flushed(status);
     } catch (const tactor::error& e) {
         if (is_unread(e))
             return status_unread;

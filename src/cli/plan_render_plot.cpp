@@ -22,8 +22,7 @@
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/environment.hpp"
-#include "session/interrupt.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

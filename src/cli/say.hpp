@@ -37,7 +37,8 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);
 /// leaves nothing behind.
 class progress_line {
 public:
-    explicit progress_line(std::string name) : name_(std::move(name)) {}
+    /// `name` must outlive it.
+    explicit progress_line(std::string_view name) : name_(name) {}
     progress_line(const progress_line&) = delete;
     progress_line& operator=(const progress_line&) = delete;
     ~progress_line();
@@ -46,7 +47,7 @@ public:
     void update(std::uint64_t done, std::uint64_t all);
 
 private:
-    std::string name_;
+    std::string_view name_;
     bool shown_ = false;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };

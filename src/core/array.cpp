@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/suggest.hpp"
 
 namespace tactor {

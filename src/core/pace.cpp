@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/refused.hpp"
 
 namespace tactor::detail {

@@ -16,9 +16,8 @@
 #include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/live.hpp>
 #include <tactor/phantom.hpp>
-#include <tactor/report.hpp>
+#include <tactor/player.hpp>
 #include <tactor/sink.hpp>
 
 #include "engine/audio/dac_clock.hpp"

@@ -12,7 +12,6 @@
 
 #include <tactor/error.hpp>
 
-#include "core/prefix_bits.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
 

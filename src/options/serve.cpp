@@ -14,7 +14,6 @@
 #include <tactor/error.hpp>
 
 #include "core/bounds.hpp"
-#include "core/prefix_bits.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/path/shape.hpp"
 #include "core/words.hpp"
 #include "percept/observer.hpp"

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/access.hpp"
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"

@@ -11,7 +11,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
 #include "plan/curve_impl.hpp"

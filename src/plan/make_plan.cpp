@@ -12,7 +12,7 @@
 #include <tactor/error.hpp>
 #include <tactor/phantom.hpp>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"

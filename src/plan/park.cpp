@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "plan/job.hpp"
 
 namespace tactor::detail {

@@ -1,14 +1,38 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Reads /proc and /dev. A missing or forbidden file counts as empty, but a lack of descriptors throws. Does
-/// not use std::filesystem's iterators and streams: those of libstdc++ 12 end the process when memory runs
-/// out, or continue with a part.
+/// The environment of the process, and /proc and /dev: a missing or forbidden file counts as empty, but a
+/// lack of descriptors throws. Does not use std::filesystem's iterators and streams: those of libstdc++ 12
+/// end the process when memory runs out, or continue with a part.
 #pragma once
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 namespace tactor::rt {
+
+/// A variable of the environment; empty where it is not set.
+inline std::string variable(const char* name)
+{
+    const char* v = std::getenv(name);
+    return v == nullptr ? "" : v;
+}
+
+/// Returns the first of RUNTIME_DIRECTORY, which systemd gives to services and may be a list; empty where
+/// there is none.
+inline std::string service_folder()
+{
+    const std::string all = variable("RUNTIME_DIRECTORY");
+    return all.substr(0, all.find(':'));
+}
+
+/// Returns the folder of what lives no longer than this machine's run: service_folder(), else
+/// XDG_RUNTIME_DIR; empty where nothing says which.
+inline std::string runtime_folder()
+{
+    const std::string folder = service_folder();
+    return folder.empty() ? variable("XDG_RUNTIME_DIR") : folder;
+}
 
 /// Returns the names in a folder, in no order, without "." and "..".
 /// \throws error (runtime) when the process has no descriptors left.

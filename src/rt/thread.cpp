@@ -141,11 +141,6 @@ void thread::detach() noexcept
     joinable_ = false;
 }
 
-bool thread::is_current() const noexcept
-{
-    return joinable_ && pthread_equal(handle_, pthread_self()) != 0;
-}
-
 busy_watch::busy_watch() noexcept : on_(is_realtime())
 {
 }

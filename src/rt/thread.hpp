@@ -38,7 +38,7 @@ public:
     /// Detaches the thread, for a thread that destroys its owner.
     void detach() noexcept;
 
-    bool is_current() const noexcept;
+    bool is_current() const noexcept { return joinable_ && pthread_equal(handle_, pthread_self()) != 0; }
     /// Returns 0 if SCHED_FIFO was granted, errno if it was refused, -1 if it was not requested.
     int fifo_error() const noexcept { return fifo_error_; }
 

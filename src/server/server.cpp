@@ -40,7 +40,7 @@
 #include "net/osc.hpp"
 #include "net/web.hpp"
 #include "rt/clock.hpp"
-#include "server/osc/clients.hpp"
+#include "server/osc.hpp"
 
 namespace tactor::server {
 namespace {

@@ -22,7 +22,6 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <tactor/error.hpp>
-#include <tactor/live.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
 

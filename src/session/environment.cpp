@@ -15,8 +15,8 @@
 #include "core/words.hpp"
 #include "files/text_file.hpp"
 #include "options/settle.hpp"
-#include "rt/variable.hpp"
-#include "session/pipes.hpp"
+#include "rt/system_files.hpp"
+#include "session/process.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {

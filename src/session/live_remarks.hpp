@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <tactor/live.hpp>
 #include <tactor/path.hpp>
+#include <tactor/player.hpp>
 
 namespace tactor::session {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include <tactor/error.hpp>
-#include <tactor/report.hpp>
+#include <tactor/player.hpp>
 
 #include "core/owned.hpp"
 

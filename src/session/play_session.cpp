@@ -13,7 +13,7 @@
 #include "core/log.hpp"
 #include "core/words.hpp"
 #include "session/device.hpp"
-#include "session/own_memory.hpp"
+#include "session/process.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {

@@ -13,8 +13,8 @@
 
 #include "session/device.hpp"
 #include "session/device_stream.hpp"
-#include "session/interrupt.hpp"
 #include "session/log.hpp"
+#include "session/process.hpp"
 
 namespace tactor::session {
 

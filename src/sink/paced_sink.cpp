@@ -11,7 +11,7 @@
 #include <tactor/error.hpp>
 #include <tactor/sink.hpp>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "sink/pacer.hpp"
 

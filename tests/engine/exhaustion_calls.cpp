@@ -14,7 +14,6 @@
 #include <tactor/alsa.hpp>
 #include <tactor/config.hpp>
 #include <tactor/lines.hpp>
-#include <tactor/live.hpp>
 #include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>

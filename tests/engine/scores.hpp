@@ -13,8 +13,8 @@
 
 #include <tactor/array.hpp>
 #include <tactor/plan.hpp>
+#include <tactor/player.hpp>
 #include <tactor/render.hpp>
-#include <tactor/report.hpp>
 
 namespace tactor::test {
 

@@ -28,7 +28,6 @@
 #include <tactor/alsa.hpp>
 #include <tactor/asio.hpp>
 #include <tactor/error.hpp>
-#include <tactor/live.hpp>
 #include <tactor/path.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>

@@ -7,7 +7,7 @@
 #include "holds.hpp"
 #include "net/osc.hpp"
 #include "server/faults.hpp"
-#include "server/osc/request.hpp"
+#include "server/osc.hpp"
 
 using namespace tactor;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Senders of OSC: their numbers, their times, their messages, and their end.
-#include "server/osc/clients.hpp"
+#include "server/osc.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Requests of OSC messages, and faults of their values.
-#include "server/osc/request.hpp"
+#include "server/osc.hpp"
 
 #include <limits>
 

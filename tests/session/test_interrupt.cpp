@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "session/interrupt.hpp"
+#include "session/process.hpp"
 
 #include <csignal>
 #include <string>

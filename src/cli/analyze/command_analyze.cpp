@@ -16,7 +16,7 @@
 #include "core/split.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 #include "study/data/dataset.hpp"
 #include "study/report/report.hpp"
 

@@ -26,7 +26,7 @@
 #include "files/setup_text.hpp"
 #include "options/option.hpp"
 #include "session/device.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_files.hpp"

@@ -17,7 +17,7 @@
 #include "cli/devices.hpp"
 #include "core/split.hpp"
 #include "rt/thread.hpp"
-#include "session/own_memory.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "files/json/schema.hpp"
 #include "files/setup_text.hpp"
 #include "session/device.hpp"
-#include "session/interrupt.hpp"
+#include "session/process.hpp"
 #include "study/calibrate/calibration_files.hpp"
 
 namespace tactor::cli {

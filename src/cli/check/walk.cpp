@@ -13,7 +13,7 @@
 #include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "core/split.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -18,7 +18,7 @@
 #include "percept/compare.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

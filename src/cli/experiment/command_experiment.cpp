@@ -18,7 +18,7 @@
 #include "core/words.hpp"
 #include "net/listen.hpp"
 #include "session/device.hpp"
-#include "session/interrupt.hpp"
+#include "session/process.hpp"
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/session/experiment_session.hpp"

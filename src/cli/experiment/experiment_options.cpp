@@ -22,7 +22,7 @@
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "options/option.hpp"
-#include "session/interrupt.hpp"
+#include "session/process.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/simulated.hpp"

@@ -24,10 +24,9 @@
 #include "files/text_file.hpp"
 #include "session/device.hpp"
 #include "session/environment.hpp"
-#include "session/interrupt.hpp"
 #include "session/live_remarks.hpp"
-#include "session/pipes.hpp"
 #include "session/play_session.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "cli/say.hpp"
 #include "core/owned.hpp"
 #include "core/words.hpp"
-#include "rt/variable.hpp"
+#include "rt/system_files.hpp"
 #include "session/walk.hpp"
 #include "synth/score/score_view.hpp"
 

@@ -25,12 +25,11 @@
 #include "files/plan/plan_members.hpp"
 #include "options/option.hpp"
 #include "rt/clock.hpp"
-#include "rt/variable.hpp"
+#include "rt/system_files.hpp"
 #include "server/server.hpp"
 #include "session/device.hpp"
-#include "session/interrupt.hpp"
 #include "session/log.hpp"
-#include "session/own_memory.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

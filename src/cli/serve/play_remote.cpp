@@ -22,9 +22,8 @@
 #include "cli/settings.hpp"
 #include "files/plan/plan_json.hpp"
 #include "files/text_file.hpp"
-#include "session/interrupt.hpp"
 #include "session/live_remarks.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -23,8 +23,8 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"
-#include "rt/variable.hpp"
-#include "session/interrupt.hpp"
+#include "rt/system_files.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 namespace {

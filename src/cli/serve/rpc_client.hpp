@@ -12,7 +12,7 @@
 
 #include "net/listen.hpp"
 #include "net/rpc.hpp"
-#include "session/interrupt.hpp"
+#include "session/process.hpp"
 
 namespace tactor::cli {
 

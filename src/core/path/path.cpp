@@ -17,7 +17,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/path/impl.hpp"
 
 namespace tactor {

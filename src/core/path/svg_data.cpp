@@ -17,7 +17,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "core/bounds.hpp"
-#include "core/limits.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 

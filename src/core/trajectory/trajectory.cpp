@@ -13,7 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/path/impl.hpp"
 #include "core/refused.hpp"
 #include "core/trajectory/impl.hpp"

@@ -15,7 +15,7 @@
 #include <set>
 
 #include <tactor/lines.hpp>
-#include <tactor/live.hpp>
+#include <tactor/player.hpp>
 
 #include "amplifier/amplifier.hpp"
 #include "engine/audio/dac_clock.hpp"

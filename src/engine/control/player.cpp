@@ -464,7 +464,16 @@ void player::impl::start(const player_options& o)
     try {
         check_start(audio, stream, o);
         made = out->setup();
-        log_start(o);
+        detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
+                    counted(made.channels, "channel"), made.rate, made.buffer_frames / made.period_frames,
+                    made.period_frames, made.has_clock ? "" : ", timed by us");
+        for (const std::string& odd : wiring_warnings(tactors, made.wiring))
+            detail::log(log.function(), log_kind::warning, "{}: {}", stream, odd);
+        if (const int refused = audio.fifo_error(); refused == 0)
+            detail::log(log.function(), log_kind::info, "the audio thread has real-time priority");
+        else if (refused > 0)
+            detail::log(log.function(), log_kind::warning, "the audio thread has no real-time priority: {}",
+                        std::error_code(refused, std::generic_category()).message());
         // Below the audio thread, which it watches, but high, because the line's holder waits for 150 ms
         // only.
         if (lines.amplifier != nullptr)
@@ -501,24 +510,6 @@ void player::impl::listen()
                   "keep edge_input::descriptor() open as long as the input lives"),
             code);
     control->watch(fd);
-}
-
-void player::impl::log_start(const player_options& o) const
-{
-    const stream_setup& s = made;
-    detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
-                counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames, s.period_frames,
-                s.has_clock ? "" : ", timed by us");
-    for (const std::string& odd : wiring_warnings(tactors, s.wiring))
-        detail::log(log.function(), log_kind::warning, "{}: {}", stream, odd);
-    if (!o.realtime && !o.require_realtime)
-        return;
-    const int refused = audio.fifo_error();
-    if (refused == 0)
-        detail::log(log.function(), log_kind::info, "the audio thread has real-time priority");
-    else
-        detail::log(log.function(), log_kind::warning, "the audio thread has no real-time priority: {}",
-                    std::error_code(refused, std::generic_category()).message());
 }
 
 } // namespace v0

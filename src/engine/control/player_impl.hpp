@@ -120,7 +120,6 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::unique_ptr<engine::trigger_thread> pulses;      ///< null without a line for pulses
 
 private:
-    void log_start(const player_options& o) const;
     void listen();
     void woken();
     bool take_reports();

@@ -20,12 +20,12 @@
 
 #include <tactor/player.hpp>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/owned.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
 #include "rt/clock.hpp"
-#include "rt/variable.hpp"
+#include "rt/system_files.hpp"
 
 namespace tactor::engine {
 namespace {

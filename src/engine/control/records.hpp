@@ -14,8 +14,8 @@
 #include <vector>
 
 #include <tactor/error.hpp>
+#include <tactor/player.hpp>
 #include <tactor/render.hpp>
-#include <tactor/report.hpp>
 
 #include "engine/link.hpp"
 #include "synth/guard.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stroke files in TOML: [stroke] or [[stroke]].
-#include "files/stroke/toml.hpp"
+// Stroke files: how their format is found, and those in TOML, [stroke] or [[stroke]].
+#include <tactor/stroke.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,11 +17,11 @@
 
 #include "core/access.hpp"
 #include "core/bounds.hpp"
-#include "core/limits.hpp"
 #include "core/pace.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
+#include "core/words.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
@@ -585,10 +585,14 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
 
 } // namespace
 
-std::vector<stroke> read_strokes_file(std::string_view text, const std::string& name, double intensity_max)
+std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file)
 {
-    const std::filesystem::path folder = std::filesystem::path(name).parent_path();
-    return read_strokes(text, name, {&folder, intensity_max});
+    const std::string extension = in_small_letters(file.extension().string());
+    for (const std::string_view format : {"svg", "csv", "toml"})
+        if (extension == fmt::format(".{}", format))
+            return format;
+    const std::string_view form = find_text_form(text);
+    return form == "json" ? "toml" : form; // the reader of TOML explains what it is
 }
 
 } // namespace tactor::detail
@@ -599,6 +603,31 @@ inline namespace v0 {
 std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max)
 {
     return detail::read_strokes(text, name, {nullptr, intensity_max});
+}
+
+std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
+{
+    const std::string_view format = detail::find_stroke_format(text, {});
+    return format == "svg"   ? parse_strokes_svg(text, name)
+           : format == "csv" ? parse_strokes_csv(text, name, intensity_max)
+                             : parse_strokes_toml(text, name, intensity_max);
+}
+
+std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
+{
+    const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
+    const std::string name = file.string();
+    const std::filesystem::path folder = file.parent_path();
+    const std::string_view format = detail::find_stroke_format(text, file);
+    return format == "svg"   ? parse_strokes_svg(text, name)
+           : format == "csv" ? parse_strokes_csv(text, name, intensity_max)
+                             : detail::read_strokes(text, name, {&folder, intensity_max});
+}
+
+std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)
+{
+    detail::note_input(fmt::format("/dev/fd/{}", descriptor));
+    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name, intensity_max);
 }
 
 } // namespace v0

@@ -13,8 +13,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bounds.hpp"
 #include "core/kind_names.hpp"
-#include "core/limits.hpp"
 #include "core/path/impl.hpp"
 #include "core/suggest.hpp"
 #include "files/svg/document.hpp"

@@ -13,7 +13,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/owned.hpp"
 #include "core/refused.hpp"
 #include "core/split.hpp"

@@ -24,7 +24,7 @@
 #include "files/plan/plan_members.hpp"
 #include "session/device.hpp"
 #include "session/environment.hpp"
-#include "session/interrupt.hpp"
+#include "session/process.hpp"
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/definition.hpp"

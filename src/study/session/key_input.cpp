@@ -19,7 +19,7 @@
 #include <tactor/error.hpp>
 
 #include "rt/clock.hpp"
-#include "session/pipes.hpp"
+#include "session/process.hpp"
 #include "session/say.hpp"
 
 namespace tactor::study {

@@ -12,7 +12,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/limits.hpp"
+#include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "core/start_times.hpp"
 #include "core/words.hpp"

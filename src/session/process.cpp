@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "session/own_memory.hpp"
+#include "session/process.hpp"
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -11,19 +12,34 @@
 #include <string_view>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <tactor/error.hpp>
 #include <tactor/tactor.hpp>
 
+#include "core/owned.hpp"
 #include "rt/thread.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
 namespace {
+
+volatile std::sig_atomic_t ending_signal = 0;
+
+// Runs in a signal's handler: makes system calls only.
+extern "C" void end_now(int)
+{
+    constexpr char text[] = "tactor: the device does not answer: ended all the same\n";
+    static_cast<void>(!write(STDERR_FILENO, text, sizeof text - 1));
+    _exit(interrupt::status(ending_signal));
+}
 
 // For stacks of threads and what is allocated later: with MCL_FUTURE all of it counts, and beyond the limit
 // allocations fail.
@@ -92,7 +108,77 @@ void limit_runaway_threads()
     setrlimit(RLIMIT_RTTIME, &l);
 }
 
+namespace fs = std::filesystem;
+
+// A pipe of the shell's, <(...) or /dev/stdin, has its other end already.
+bool is_named_pipe(const std::string& file)
+{
+    std::error_code ignored;
+    return fs::is_fifo(fs::symlink_status(file, ignored));
+}
+
+bool is_descriptor(const struct stat& s, int fd)
+{
+    struct stat out {};
+    return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
+}
+
+// A folder has no text. A terminal, or a pipe that this process writes to, would be read for ever; a file
+// would grow by what is made of it.
+void refuse_unreadable(const std::string& file)
+{
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0)
+        return;
+    if (S_ISDIR(s.st_mode))
+        throw error(error_kind::bad_input, source_place{file}, "is a folder", "name a file in it")
+            .with_os_code(EISDIR);
+    if ((S_ISFIFO(s.st_mode) || S_ISREG(s.st_mode)) &&
+        (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
+        throw error(error_kind::bad_input, file, "is where this program writes to",
+                    "name a file to read, or - for standard input");
+    if (!S_ISCHR(s.st_mode))
+        return;
+    const detail::owned_fd fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+    if (fd && ::isatty(fd.get()) == 1)
+        throw error(error_kind::bad_input, file, "is a terminal", "name a file to read");
+}
+
 } // namespace
+
+interrupt::interrupt(unsigned grace_s) : grace_s_(grace_s)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    for (int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
+        sigaddset(&set, s);
+    pthread_sigmask(SIG_BLOCK, &set, &before_);
+    fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+    if (fd_ < 0)
+        throw error(error_kind::runtime, "signals", std::generic_category().message(errno));
+}
+
+interrupt::~interrupt()
+{
+    alarm(0);
+    ending_signal = 0;
+    close(fd_);
+    if (!last_)
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+int interrupt::poll() noexcept
+{
+    signalfd_siginfo info{};
+    if (read(fd_, &info, sizeof info) != sizeof info)
+        return 0;
+    const auto signal = static_cast<int>(info.ssi_signo);
+    if (ending_signal == 0 && std::signal(SIGALRM, end_now) != SIG_ERR) {
+        ending_signal = signal;
+        alarm(grace_s_);
+    }
+    return signal;
+}
 
 std::uint64_t memory_to_lock()
 {
@@ -130,6 +216,40 @@ void warn_of_rights(bool realtime, bool locked)
         "in limits.d, group audio)\n",
         realtime ? "" : "no real-time priority", realtime || locked ? "" : ", ",
         locked ? "" : "memory is not locked");
+}
+
+void check_readable(const std::string& file)
+{
+    refuse_unreadable(file);
+    if (is_named_pipe(file))
+        say(stderr, "tactor: {}: is a pipe: waiting for a program that writes to it (Ctrl-C ends)\n", file);
+}
+
+bool is_standard_output(const std::string& file)
+{
+    struct stat s {};
+    return ::stat(file.c_str(), &s) == 0 && is_descriptor(s, STDOUT_FILENO);
+}
+
+void refuse_standard_input(int code)
+{
+    const bool wrong = code == EBADF || code == EISDIR;
+    throw error(wrong ? error_kind::bad_input : error_kind::runtime, "standard input",
+                std::generic_category().message(code), "give lines from a terminal, a file or a pipe")
+        .with_os_code(code);
+}
+
+void check_standard_input()
+{
+    char none = 0;
+    if (::read(STDIN_FILENO, &none, 0) < 0)
+        refuse_standard_input(errno);
+}
+
+void tell_of_pipe_to_write(const std::string& file)
+{
+    if (is_named_pipe(file))
+        say(stderr, "tactor: {}: is a pipe: waiting for a program that reads it (Ctrl-C ends)\n", file);
 }
 
 } // namespace tactor::session

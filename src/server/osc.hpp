@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Senders of OSC as clients of the service. Knows no socket: packets come in and go out by functions.
+/// OSC: messages as requests in the words of the protocol, and senders as clients of the service. Knows no
+/// socket: packets come in and go out by functions.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +19,27 @@
 #include <boost/asio/ip/udp.hpp>
 
 #include "net/osc.hpp"
-#include "server/osc/request.hpp"
+#include "net/rpc.hpp"
 #include "server/service.hpp"
 
 namespace tactor::server {
+
+struct osc_request {
+    std::string method; ///< method of the protocol; empty: a button's release, which asks for nothing
+    net::json params = net::json::object();
+    std::int32_t number = 0; ///< the sender's number for its stroke; 0: none
+    std::uint16_t port = 0;  ///< port at which a subscriber listens; 0: the port that it sends from
+};
+
+/// Returns true for messages that a server sends: they are never answered, so that two servers do not talk
+/// for ever.
+bool is_servers_own(std::string_view address);
+
+/// Address of the message that fades everything out.
+constexpr std::string_view osc_stop = "/tactor/stop";
+
+/// Reads a message. \throws fault_error for addresses that are not known, and for wrong values.
+osc_request read_osc(const net::osc_message& m);
 
 /// Server of all senders. Each address and port is a client while it has strokes, requests without an answer,
 /// messages for later or a subscription. Then it is forgotten. Members are called in the context's thread.
