@@ -36,7 +36,7 @@ PUBLIC = {
     "api": None, "error": None, "version": None, "lines": None, "tactor": "engine",
     "array": "core", "path": "core", "stroke": "core", "choices": "core", "waveform": "core", "setup": "files",
     "phantom": "plan", "plan": "plan", "percept": "percept", "render": "synth",
-    "sink": None, "alsa": "sink/alsa", "player": "engine", "live": "engine", "asio": "engine", "report": "engine",
+    "sink": None, "alsa": "sink/alsa", "player": "engine", "asio": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "session", "study"}
 # Inner headers of the library that the tool may include: no program that embeds it needs these.
@@ -44,7 +44,7 @@ INSIDE = {
     "cli": {"core/kind_names.hpp", "core/members.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "rt/system_files.hpp", "rt/thread.hpp", "synth/score/score_view.hpp"},
     "study": {"core/marks.hpp", "core/owned.hpp", "core/path/shape.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/score/score_view.hpp"},
-    "server": {"core/bounds.hpp", "core/start_times.hpp", "core/trajectory/recorded_points.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp"},
+    "server": {"core/bounds.hpp", "core/split.hpp", "core/start_times.hpp", "core/trajectory/recorded_points.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp"},
     "python": {"core/access.hpp", "core/path/impl.hpp", "core/trajectory/impl.hpp", "core/trajectory/recorded_points.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "plan/curve_impl.hpp"},
 }
 # Header prefix: the only places that may include it.
@@ -69,7 +69,6 @@ IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future",
 
 # Exceptions: reading and writing files that a user named, by descriptors, with a record of inputs; and a guess where to look
 # first, which threads share and no answer depends on.
-# threads share and no answer depends on.
 IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/text_file.cpp": {"mutex", "unistd.h"}, "src/files/output_file.cpp": {"unistd.h", "poll.h"},
              "src/plan/faces/layout_impl.hpp": {"atomic"}}
 

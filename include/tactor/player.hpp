@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The engine, which plays scores on a sink in real time, strokes that a program feeds point by point while
-/// they sound (from a sensor, a finger, a simulation), and reports about strokes and streams that have ended.
+/// The engine: it plays scores on a sink in real time, and strokes that a program feeds point by point while
+/// they sound (from a sensor, a finger, a simulation), and it reports about strokes and streams that ended.
 #pragma once
 
 #include <compare>

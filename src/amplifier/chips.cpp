@@ -73,6 +73,9 @@ std::string words(int code)
     return std::generic_category().message(code);
 }
 
+constexpr const char* without_gpio = "tactor was built without GPIO";
+constexpr const char* build_with_gpio = "build it anew with -Dgpio=enabled, where libgpiod is";
+
 std::string open_reason(const chip& c)
 {
     const std::string& path = c.info.path;
@@ -86,7 +89,7 @@ std::string open_reason(const chip& c)
     case ENOENT: // the node exists, but libgpiod also reads sysfs
         return fmt::format("{} is not a GPIO chip, or /sys is not mounted", path);
     case ENOSYS:
-        return fmt::format("{} cannot be opened: tactor was built without GPIO", path);
+        return fmt::format("{} cannot be opened: {}", path, without_gpio);
     default:
         return fmt::format("{} cannot be opened: {}", path, words(c.code));
     }
@@ -95,7 +98,7 @@ std::string open_reason(const chip& c)
 std::string open_hint(const chip& c)
 {
     if (c.code == ENOSYS)
-        return "build it anew with -Dgpio=enabled, where libgpiod is";
+        return build_with_gpio;
     if (c.code != EACCES && c.code != EPERM)
         return "{command:devices} lists the chips";
     if (c.group == "root")
@@ -288,8 +291,7 @@ std::string find_group(const std::string& path)
 gpio_line_place look_up(const gpio_line_name& wanted)
 {
     if (!built_in())
-        throw error(error_kind::not_available, thing(wanted), "tactor was built without GPIO",
-                    "build it anew with -Dgpio=enabled, where libgpiod is");
+        throw error(error_kind::not_available, thing(wanted), without_gpio, build_with_gpio);
     std::vector<chip> chips = read_chips();
     gpio_line_name by = wanted;
     if (wanted.chip.starts_with('/')) {

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"

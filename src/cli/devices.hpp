@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+/// \file
+/// Texts about devices, from values.
 #pragma once
 
 #include <string>

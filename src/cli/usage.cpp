@@ -398,9 +398,8 @@ std::optional<error> find_late_command(const words_type& words, const words_type
     const auto is_command = [&](const std::string& w) {
         return std::find(commands.begin(), commands.end(), w) != commands.end();
     };
-    const std::vector<std::string_view> names(commands.begin(), commands.end());
     const auto at = std::find_if(words.begin(), words.end(), is_command);
-    if (at == words.begin() || at == words.end() || !detail::nearest_name(words.front(), names).empty())
+    if (at == words.begin() || at == words.end() || !nearest(words.front(), commands).empty())
         return {};
     std::string line = "tactor " + *at;
     for (auto w = words.begin(); w != words.end(); ++w)

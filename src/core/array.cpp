@@ -60,13 +60,13 @@ void check_values(const array& a, std::size_t i)
         refuse(a, i, fmt::format("is on channel {}", t.channel), "channels count from 0", "channel");
     if (!(t.gain_db >= detail::min_db && t.gain_db <= detail::max_gain_db))
         refuse(a, i, fmt::format("has a gain of {} dB", t.gain_db), "allowed: -200 to 60", "gain_db");
-    if (!(t.max_dbfs >= detail::min_db && t.max_dbfs <= 0.0))
+    if (!detail::bounds_of::level_dbfs.holds(t.max_dbfs))
         refuse(a, i, fmt::format("has a limit of {} dBFS", t.max_dbfs),
                "0 dBFS is full scale; allowed: -200 to 0", "max_dbfs");
     for (std::size_t k = 0; k < t.thresholds.size(); ++k) {
         const threshold_point& p = t.thresholds[k];
         const bool ascends = p.hz > (k == 0 ? 0.0 : t.thresholds[k - 1].hz) && std::isfinite(p.hz);
-        if (!ascends || !(p.dbfs >= detail::min_db && p.dbfs <= 0.0))
+        if (!ascends || !detail::bounds_of::level_dbfs.holds(p.dbfs))
             refuse(a, i, fmt::format("has a threshold of {} dBFS at {} Hz", p.dbfs, p.hz),
                    "allowed: -200 to 0, in order of frequency", "thresholds");
     }
@@ -77,7 +77,7 @@ void check_values(const array& a, std::size_t i)
         refuse(a, i, fmt::format("has a displacement of {} um", *t.displacement_um_at_0dbfs),
                fmt::format("allowed: above 0 to {}", detail::max_displacement_um),
                "displacement_um_at_0dbfs");
-    if (t.threshold_dbfs && !(*t.threshold_dbfs >= detail::min_db && *t.threshold_dbfs <= 0.0))
+    if (t.threshold_dbfs && !detail::bounds_of::level_dbfs.holds(*t.threshold_dbfs))
         refuse(a, i, fmt::format("has a threshold of {} dBFS", *t.threshold_dbfs), "allowed: -200 to 0",
                "threshold_dbfs");
     if (t.polarity != 1 && t.polarity != -1)

@@ -99,24 +99,24 @@ std::vector<profile_point>::const_iterator first_after(const std::vector<profile
                             [](double v, const profile_point& p) noexcept { return v < p.part; });
 }
 
-/// Refuses a profile unless parts ascend within 0 to 1 and values are within low ... high; `above_low`
-/// excludes low itself.
-void check_profile_points(std::string_view what, const std::vector<profile_point>& points, double low,
-                          double high, bool above_low)
+/// Refuses a profile unless parts ascend within 0 to 1 and values are within `allowed`.
+void check_profile_points(std::string_view what, const std::vector<profile_point>& points,
+                          const bounds& allowed)
 {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto refuse = [&](std::string_view why, std::string_view hint) {
             throw bad_field(what, fmt::format("point {}: {}", i + 1, why), hint);
         };
         const auto [part, value] = points[i];
-        if (!(part >= 0.0 && part <= 1.0))
+        if (!bounds_of::part.holds(part))
             refuse(fmt::format("part {}", part), "0 is the path's start, 1 its end");
         if (i > 0 && !(part > points[i - 1].part))
             refuse(fmt::format("part {} does not come after {}", part, points[i - 1].part), "parts ascend");
-        if (!(value <= high && (above_low ? value > low : value >= low)))
+        if (!allowed.holds(value))
             refuse(fmt::format("{}", value),
-                   above_low ? fmt::format("it is more than {:g} and at most {:g}", low, high)
-                             : fmt::format("it is from {:g} to {:g}", low, high));
+                   allowed.above_low
+                       ? fmt::format("it is more than {:g} and at most {:g}", allowed.low, allowed.high)
+                       : fmt::format("it is from {:g} to {:g}", allowed.low, allowed.high));
     }
 }
 
@@ -158,14 +158,14 @@ double time_at_speeds_s(const movement& m, double length_mm)
 
 void check_movement(const movement& m)
 {
-    check_profile_points("speed_mm_s", m.speed_mm_s, least_speed_mm_s, max_mm, false);
-    check_profile_points("intensity", m.intensity, 0.0, max_intensity, false);
+    check_profile_points("speed_mm_s", m.speed_mm_s, {least_speed_mm_s, max_mm});
+    check_profile_points("intensity", m.intensity, {0.0, max_intensity});
     std::vector<profile_point> times;
     for (const rest& r : m.rests)
         times.push_back({r.part, r.time_s});
-    check_profile_points("pauses", times, 0.0, longest_stroke_s, true);
+    check_profile_points("pauses", times, {0.0, longest_stroke_s, true});
     for (const rest& r : m.rests)
-        if (!(r.intensity >= 0.0 && r.intensity <= 1.0))
+        if (!bounds_of::part.holds(r.intensity))
             throw bad_field("pauses", fmt::format("intensity {:g}", r.intensity),
                             "it is a factor from 0 to 1");
 }

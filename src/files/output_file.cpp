@@ -283,4 +283,11 @@ void output_file::commit()
     sync_folder(parent_folder(target_));
 }
 
+void write_file(const std::filesystem::path& file, std::string_view bytes, owner_kind writer)
+{
+    output_file out(file, {}, writer);
+    out.write(bytes.data(), static_cast<std::int64_t>(bytes.size()));
+    out.commit();
+}
+
 } // namespace tactor::detail

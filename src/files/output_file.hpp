@@ -75,4 +75,8 @@ private:
     bool given_up_ = false;
 };
 
+/// Writes a file whole or not at all. \throws error as output_file.
+void write_file(const std::filesystem::path& file, std::string_view bytes,
+                owner_kind writer = owner_kind::user);
+
 } // namespace tactor::detail

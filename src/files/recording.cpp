@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// WAV files as waveforms, and the words for all of these.
+// WAV files as waveforms, and the words by which waveforms are named.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -68,22 +68,13 @@ constexpr bounds limit_db{min_db, 0.0};
 constexpr bounds spread_db{0.0, -min_db};
 constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 
-calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*>& entries)
+// Notes the entry of a tactor. Refuses a second one.
+void note_entry(const toml_table& t, unsigned i, std::vector<const toml_table*>& entries, const char* hint)
 {
-    t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right",
-            "check_below_right", "staircases"});
-    const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
     if (entries[i] != nullptr)
         t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, entries[i]->where().text()),
-               "it is measured once in a calibration");
+               hint);
     entries[i] = &t;
-    for (const char* key : {"check_right", "check_below_right", "staircases"})
-        t.whole(key, 0, any_number);
-    if (const toml::array* all = t.list("reversals_dbfs", "levels"))
-        for (const toml::node& n : *all)
-            t.to_number(n, "reversals_dbfs", limit_db);
-    return {i, t.number("threshold_dbfs", limit_db), t.number("sd_db", spread_db),
-            t.need(t.whole("trials", 0, any_number), "trials")};
 }
 
 constexpr unsigned longest_chain = 16;
@@ -236,11 +227,7 @@ void adjust_tactors(const std::vector<toml_table>& entries, std::string_view bas
             e.fail("[[tactor]] does not say which tactor it is",
                    fmt::format("add tactor = INDEX, 0 to {}", last));
         const unsigned i = *e.whole("tactor", 0, last);
-        if (by_tactor[i])
-            e.fail("tactor",
-                   fmt::format("tactor {} has an entry already ({})", i, by_tactor[i]->where().text()),
-                   "join the two");
-        by_tactor[i] = &e;
+        note_entry(e, i, by_tactor, "join the two");
         read_tactor(e, a.tactors[i]);
     }
 }
@@ -436,6 +423,21 @@ void read_serve(const toml_table& t, located_setup& out)
             out.contents.serve.push_back(read_value(t, e, *e.value, false));
 }
 
+calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const toml_table*>& entries)
+{
+    t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right",
+            "check_below_right", "staircases"});
+    const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
+    note_entry(t, i, entries, "it is measured once in a calibration");
+    for (const char* key : {"check_right", "check_below_right", "staircases"})
+        t.whole(key, 0, any_number);
+    if (const toml::array* all = t.list("reversals_dbfs", "levels"))
+        for (const toml::node& n : *all)
+            t.to_number(n, "reversals_dbfs", limit_db);
+    return {i, t.number("threshold_dbfs", limit_db), t.number("sd_db", spread_db),
+            t.need(t.whole("trials", 0, any_number), "trials")};
+}
+
 // Reads and checks [calibration] and [[calibration.tactor]], which say how thresholds were measured, after
 // the array. Keeps the participant and the carrier.
 void read_calibration(const toml_table& t, located_setup& out)
@@ -459,7 +461,7 @@ void read_calibration(const toml_table& t, located_setup& out)
     const std::vector<toml_table> entries = t.tables("tactor");
     std::vector<const toml_table*> seen(out.contents.array->tactors.size());
     for (const toml_table& e : entries)
-        r.tactors.push_back(read_tactor(e, seen));
+        r.tactors.push_back(read_calibrated_tactor(e, seen));
     out.contents.calibration = std::move(r);
 }
 

@@ -20,6 +20,7 @@
 #include "core/owned.hpp"
 #include "core/refused.hpp"
 #include "core/split.hpp"
+#include "core/words.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -230,6 +231,16 @@ std::string_view find_text_form(std::string_view text)
     if (line.starts_with('{'))
         return "json";
     return looks_like_csv(line) ? "csv" : "toml";
+}
+
+std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file)
+{
+    const std::string extension = in_small_letters(file.extension().string());
+    for (const std::string_view format : {"svg", "csv", "toml"})
+        if (extension == fmt::format(".{}", format))
+            return format;
+    const std::string_view form = find_text_form(text);
+    return form == "json" ? "toml" : form; // the reader of TOML explains what it is
 }
 
 void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,

@@ -17,8 +17,6 @@
 #include <fmt/format.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <poll.h>
-#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -58,6 +56,14 @@ sockaddr_un unix_address(const std::string& path)
 const sockaddr* generic(const sockaddr_un& a)
 {
     return reinterpret_cast<const sockaddr*>(&a); // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+}
+
+// Returns "tactor, process 1234"; only the number if the process has no name.
+std::string process_name(pid_t pid)
+{
+    std::string name;
+    std::getline(std::ifstream(fmt::format("/proc/{}/comm", pid)), name);
+    return name.empty() ? fmt::format("process {}", pid) : fmt::format("{}, process {}", name, pid);
 }
 
 // Removes a socket at which no process listens, so that its name is free. Throws if a process does, or for
@@ -348,13 +354,6 @@ void notify_manager(std::string_view text) noexcept
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + std::strlen(to));
     [[maybe_unused]] const ssize_t sent =
         ::sendto(fd.get(), text.data(), text.size(), MSG_NOSIGNAL, generic(a), size);
-}
-
-std::string process_name(pid_t pid)
-{
-    std::string name;
-    std::getline(std::ifstream(fmt::format("/proc/{}/comm", pid)), name);
-    return name.empty() ? fmt::format("process {}", pid) : fmt::format("{}, process {}", name, pid);
 }
 
 std::string find_port_holder(std::uint16_t port, bool stream)

@@ -28,7 +28,7 @@ struct osc_message {
     std::string fault = {}; ///< why its values cannot be read; empty: they can
 };
 
-/// Returns true if this build has OSC. If not, the functions below throw.
+/// Returns true if this build has OSC. If not, parse_osc() throws and packets are empty.
 bool osc_is_built() noexcept;
 
 /// Returns all messages of a packet, in order, also those whose values cannot be read.

@@ -59,7 +59,7 @@ void refuse_both(const setup& says, const written_value& d, const option* rival)
 bool takes_default(const wishes& w, const option& o)
 {
     const option* rival = find(o.rival);
-    return (o.where & w.place) != 0 && !w.given[index(o)] && (rival == nullptr || !w.given[index(*rival)]);
+    return (o.where & w.place) != 0 && !w.gives(o) && (rival == nullptr || !w.gives(*rival));
 }
 
 error at_place(const source_place& at, const option& o, const error& e)
@@ -75,7 +75,7 @@ error at_place(const source_place& at, const option& o, const error& e)
 void give(wishes& w, const option& o, const value& v)
 {
     if (const option* rival = find(o.rival)) {
-        if (w.given[index(*rival)])
+        if (w.gives(*rival))
             throw refusal(o, fmt::format("there is also {{{}}}", rival->name), "give one of them");
         forget(w, *rival);
     }
@@ -126,13 +126,13 @@ void apply_defaults(wishes& w, const setup& says)
 void settle(wishes& w)
 {
     for (const option& o : all())
-        if (w.given[index(o)] && o.used != nullptr && !o.used(w))
+        if (w.gives(o) && o.used != nullptr && !o.used(w))
             throw refusal(o, "nothing here uses it", needed(w, o));
     if (w.render.envelope.kind == envelope_kind::tukey)
         for (const char* ramp : {"attack", "release", "ramp"})
             if (w.gives(ramp))
                 throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave one of them out");
-    const auto is_set = [&w](const option& o) { return w.given[index(o)] || w.in_file.contains(index(o)); };
+    const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
     if (is_set(*find("slope")) || is_set(*find("intercept")))
         law.max_soa_s = law.intercept_s / (1.0 - law.slope);
@@ -147,7 +147,7 @@ void settle(wishes& w)
 void refuse_planning(const wishes& w, const std::string& what)
 {
     for (const option& o : all())
-        if ((o.where & planning) != 0 && w.given[index(o)])
+        if ((o.where & planning) != 0 && w.gives(o))
             throw refusal(o, fmt::format("{} is planned already", what),
                           "plan the stroke anew with it, or leave it out");
 }

@@ -22,6 +22,7 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/faces/layout_impl.hpp"
+#include "plan/faces/plane.hpp"
 #include "plan/job.hpp"
 
 namespace tactor::detail {
@@ -100,8 +101,8 @@ std::vector<point> pushed(std::span<const double> give, std::span<const point> f
     for (std::size_t i = 0; i + 1 < felt.size(); ++i) {
         const point pull{(felt[i + 1].x_mm - felt[i].x_mm) / give[i],
                          (felt[i + 1].y_mm - felt[i].y_mm) / give[i]};
-        m[i] = {m[i].x_mm - pull.x_mm, m[i].y_mm - pull.y_mm};
-        m[i + 1] = {m[i + 1].x_mm + pull.x_mm, m[i + 1].y_mm + pull.y_mm};
+        m[i] = m[i] - pull;
+        m[i + 1] = m[i + 1] + pull;
     }
     return m;
 }
@@ -114,13 +115,12 @@ std::optional<point> find_centre(const array& a, const burst& b, std::span<const
     point moment;
     for (const drive& d : b.drives) {
         if (d.tactor >= a.tactors.size())
-            throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
-                        fmt::format("\"{}\" has {}", a.name, counted(a.tactors.size(), "tactor")));
+            refuse_tactor(a, d.tactor);
         const point& at = a.tactors[d.tactor].position;
         const double felt = d.amplitude * (gains.empty() ? 1.0 : gains[d.tactor]);
         const double e = felt * felt;
         energy += e;
-        moment = {moment.x_mm + e * at.x_mm, moment.y_mm + e * at.y_mm};
+        moment = moment + e * at;
     }
     if (!(energy > 0.0))
         return {};
@@ -129,14 +129,20 @@ std::optional<point> find_centre(const array& a, const burst& b, std::span<const
 
 } // namespace
 
+void refuse_tactor(const array& a, unsigned tactor)
+{
+    throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", tactor),
+                fmt::format("\"{}\" has {}", a.name, counted(a.tactors.size(), "tactor")));
+}
+
 array felt_array(const array& a, const person& who)
 {
     check_count(a, "shift", who.shift.size());
     array felt = a;
     for (std::size_t i = 0; i < who.shift.size(); ++i) {
         point& p = felt.tactors[i].position;
-        p = {p.x_mm + who.shift[i].x_mm, p.y_mm + who.shift[i].y_mm};
-        if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
+        p = p + who.shift[i];
+        if (!finite(p))
             throw bad_field("shift", fmt::format("that of tactor {} is not finite", i));
     }
     return felt;
@@ -168,7 +174,7 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
                                 fmt::format("there are {}, and {} places", onsets_s.size(), alone.size()),
                                 "one for each");
     for (const point& p : alone)
-        if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
+        if (!detail::finite(p))
             throw error(error_kind::bad_input, "place of a tap", "is not finite");
     return detail::pulled(give, alone);
 }

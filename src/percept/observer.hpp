@@ -19,6 +19,9 @@ array felt_array(const array& a, const person& who);
 /// \throws error (bad_input) as predict_percept() does.
 std::vector<double> person_gains(const array& a, const person& who);
 
+/// Refuses a plan that drives a tactor which the array does not have. \throws error (bad_input).
+[[noreturn]] void refuse_tactor(const array& a, unsigned tactor);
+
 /// Returns summarise() of predict_percept() for each plan, equal to the last bit. Stores no samples, and
 /// looks the target up once for all plans. Passes the samples of each plan to `each`, without their speeds.
 /// \throws error (bad_input) as predict_percept().

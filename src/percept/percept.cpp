@@ -109,8 +109,7 @@ private:
     {
         for (const drive& d : b.drives) {
             if (d.tactor >= parts_.size())
-                throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
-                            fmt::format("\"{}\" has {}", tactors_.name, counted(parts_.size(), "tactor")));
+                refuse_tactor(tactors_, d.tactor);
             part& x = parts_[d.tactor];
             if (x.bursts == 0)
                 touched_.push_back(d.tactor);

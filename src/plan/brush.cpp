@@ -175,7 +175,7 @@ class in_array {
 public:
     explicit in_array(const job& j) : job_(j) {}
 
-    point held(point p) const { return job_.faces.contains(p) ? p : job_.faces.nearest(p); }
+    point held(point p) const { return held_in(job_.faces, p); }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
     /// Returns true for two at one place that the target does not leave in between.

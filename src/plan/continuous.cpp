@@ -102,7 +102,7 @@ public:
             drives_of_same(*three_, faces_, seen, p, a_v, out.drives);
             return;
         }
-        out.position = faces_.contains(p) ? p : faces_.nearest(p);
+        out.position = held_in(faces_, p);
         drives_at(*model_, faces_, out.position, a_v, out.drives);
         if (three_ != nullptr)
             look_around(*three_, faces_, out.position, seen);

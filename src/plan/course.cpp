@@ -11,8 +11,6 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "core/trajectory/spans.hpp"
@@ -127,7 +125,7 @@ void check_profile(const std::vector<carrier_part>& profile)
 {
     double before = -1.0;
     for (const carrier_part& p : profile) {
-        if (!(p.part >= 0.0 && p.part <= 1.0 && p.part > before))
+        if (!(bounds_of::part.holds(p.part) && p.part > before))
             throw detail::bad_field("carrier_profile",
                                     fmt::format("the part {} is out of order or range", p.part),
                                     "give parts of the path from 0 to 1, ascending");

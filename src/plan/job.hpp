@@ -112,6 +112,12 @@ burst make_burst(const job& j, double onset_s, double duration_s, point p, doubl
 /// are ordered by onset.
 std::vector<conflict> find_conflicts(const std::vector<burst>& bursts);
 
+/// Returns p, or for a point outside the array its nearest one.
+inline point held_in(const layout& l, point p)
+{
+    return l.contains(p) ? p : l.nearest(p);
+}
+
 /// Places along the stroke, in the array as plan_options::outside says.
 class follower {
 public:

@@ -268,7 +268,7 @@ double intensity_scale::amplitude(double intensity) const
     if (kind == scale_kind::linear)
         return intensity;
     if (kind == scale_kind::stevens) {
-        if (!(exponent >= 0.1 && exponent <= 3.0))
+        if (!detail::bounds_of::stevens_exponent.holds(exponent))
             throw detail::bad_field(
                 "stevens_exponent", fmt::format("{} is not one", exponent),
                 "give 0.1 to 3; 0.95 at 60 Hz and 0.6 at 250 Hz on the finger (Stevens 1968)");

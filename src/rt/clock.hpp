@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// CLOCK_MONOTONIC, the clock of everything that plays, and CLOCK_BOOTTIME, which goes on in sleep.
-/// Async-signal-safe.
+/// CLOCK_MONOTONIC, the clock of everything that plays, CLOCK_BOOTTIME, which goes on in sleep, and the time
+/// of day. Async-signal-safe.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,14 @@ inline std::int64_t boottime_ns() noexcept
 {
     timespec t{};
     ::clock_gettime(CLOCK_BOOTTIME, &t);
+    return to_ns(t);
+}
+
+/// Returns the time of day (CLOCK_REALTIME), ns since 1970.
+inline std::int64_t unix_ns() noexcept
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_REALTIME, &t);
     return to_ns(t);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Threads with options that std::thread lacks: stack size, policy, name, signals; and what to do where the
-/// system refuses them.
+/// Threads with options that std::thread lacks: stack size, policy, name, signals; a limit on a real-time
+/// thread's own work; and what to do where the system refuses them.
 #pragma once
 
 #include <cstddef>

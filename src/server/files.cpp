@@ -35,6 +35,9 @@
 namespace tactor::server {
 namespace {
 
+// Most bytes of an exported file, and of the result of an import.
+constexpr std::size_t most_file_bytes = 64U << 20;
+
 using net::json;
 using options::option;
 

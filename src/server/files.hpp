@@ -13,9 +13,6 @@ namespace tactor::server {
 
 struct service_options;
 
-/// Most bytes of an exported file, and of the result of an import.
-inline constexpr std::size_t most_file_bytes = 64U << 20;
-
 /// Returns the result of `import` as JSON on one line. Opens no file. \throws fault_error.
 std::string import_strokes(const planning& with, const layout& faces, const net::json& params);
 

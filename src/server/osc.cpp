@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Messages of senders: handled at once, but for a live stroke that begins later.
+// Messages are read as requests, and handled at once, but for a live stroke that begins later.
 #include "server/osc.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
+#include "core/split.hpp"
 #include "core/words.hpp"
 #include "net/access.hpp"
 #include "server/faults.hpp"
@@ -111,10 +111,8 @@ void read_option(const std::string& word, json& into)
     const std::string value = word.substr(equals + 1);
     if (into.contains(name))
         bad_param("options." + name, "it is there twice");
-    double x = 0.0;
-    const auto r = std::from_chars(value.data(), value.data() + value.size(), x);
-    if (r.ec == std::errc() && r.ptr == value.data() + value.size() && std::isfinite(x))
-        into[name] = x;
+    if (const auto x = detail::number_in<double>(value); x && std::isfinite(*x))
+        into[name] = *x;
     else if (value == "true" || value == "false")
         into[name] = value == "true";
     else
@@ -210,6 +208,7 @@ void read_subscribe(value_list& v, osc_request& r)
 }
 
 constexpr std::string_view osc_root = "/tactor/";
+constexpr std::string_view osc_stop = "/tactor/stop"; // fades everything out
 constexpr std::pair<std::string_view, void (*)(value_list& v, osc_request& r)> readers[] = {
     {"play", read_play},         {"begin", read_begin}, {"to", read_to},       {"end", read_own_stroke},
     {"cancel", read_own_stroke}, {"stop", read_stop},   {"drive", read_drive}, {"subscribe", read_subscribe},

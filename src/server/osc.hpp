@@ -35,9 +35,6 @@ struct osc_request {
 /// for ever.
 bool is_servers_own(std::string_view address);
 
-/// Address of the message that fades everything out.
-constexpr std::string_view osc_stop = "/tactor/stop";
-
 /// Reads a message. \throws fault_error for addresses that are not known, and for wrong values.
 osc_request read_osc(const net::osc_message& m);
 

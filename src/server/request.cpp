@@ -18,6 +18,7 @@
 #include "core/words.hpp"
 #include "options/option.hpp"
 #include "options/settle.hpp"
+#include "rt/clock.hpp"
 #include "server/faults.hpp"
 #include "server/view.hpp"
 
@@ -289,8 +290,8 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
         bad_param(what, "it is not known", forms);
     std::int64_t at = std::llround(number(value, what, {0.0, most_s}) * 1e9);
     if (name == "unix_s")
-        at += now_ns - unix_ns();
-    if (static_cast<double>(at - now_ns) * 1e-9 > longest_wait_s)
+        at += now_ns - rt::unix_ns();
+    if (seconds(at - now_ns) > longest_wait_s)
         bad_param(what, "it is more than a day ahead", forms);
     return {false, at};
 }
@@ -414,10 +415,10 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
         static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
 }
 
-planned make_planned(const planning& with, const layout& faces, const json& params, const go_on_check& go_on)
+planned make_planned(const planning& with, const layout& faces, const json& params, const options::wishes& s,
+                     const go_on_check& go_on)
 {
     const std::string source = find_source(params);
-    const options::wishes s = settle_options(with.owner, params);
     try {
         planned p{{source, read_strokes(source, params[source], s)}, s.render};
         p.observer = {s.observer, s.low_speed};

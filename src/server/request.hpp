@@ -3,7 +3,6 @@
 /// Parameters of requests: options, a start, and strokes, of which they make plans and scores.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -27,14 +26,6 @@ namespace tactor::server {
 inline double seconds(std::int64_t ns) noexcept
 {
     return static_cast<double>(ns) * 1e-9;
-}
-
-/// Returns the time of day, ns since 1970.
-inline std::int64_t unix_ns() noexcept
-{
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::system_clock::now().time_since_epoch())
-        .count();
 }
 
 /// Strokes that are planned ahead know more options than live ones.
@@ -111,9 +102,11 @@ using go_on_check = std::function<void()>;
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
                   const std::string& source, const go_on_check& go_on, bool picture = false);
 
-/// Reads and plans. \throws fault_error, and what settle_options() and `go_on` throw.
+/// Reads and plans. `s`: what settle_options() returned for these parameters. \throws fault_error, and what
+/// `go_on` throws.
 planned make_planned(
-    const planning& with, const layout& faces, const net::json& params, const go_on_check& go_on = [] {});
+    const planning& with, const layout& faces, const net::json& params, const options::wishes& s,
+    const go_on_check& go_on = [] {});
 
 /// Returns a plan that drives one tactor for a time. \throws fault_error.
 planned make_drive(const planning& with, const net::json& params);

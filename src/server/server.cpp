@@ -26,11 +26,9 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
-#include <boost/asio/socket_base.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
 
@@ -94,26 +92,17 @@ std::string why_given_up(connection_fault f, const service_limits& l, bool admit
 
 using udp = asio::ip::udp;
 
-udp find_protocol(int fd)
-{
-    sockaddr_storage at{};
-    socklen_t size = sizeof at;
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as sockets want it
-    const bool known = ::getsockname(fd, reinterpret_cast<sockaddr*>(&at), &size) == 0;
-    return known && at.ss_family == AF_INET6 ? udp::v6() : udp::v4();
-}
-
 /// OSC over UDP: a socket for all senders.
 class osc_endpoint {
 public:
     /// Uses `fd`, a bound socket, which stays its owner's. Accepts only `peers` of other machines.
     osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers)
-        : socket_(io, find_protocol(fd), fd),
+        : socket_(io, net::local_address(fd).starts_with('[') ? udp::v6() : udp::v4(), fd),
           due_(io),
           peers_(std::move(peers)),
           clients_(io, s,
                    {[this](const udp::endpoint& to, const std::string& packet) { send(to, packet); },
-                    rt::monotonic_ns, unix_ns})
+                    rt::monotonic_ns, rt::unix_ns})
     {
         socket_.non_blocking(true);
     }

@@ -28,7 +28,6 @@
 #include "net/connection.hpp"
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
-#include "server/files.hpp"
 #include "server/planners.hpp"
 #include "server/request.hpp"
 #include "server/stream.hpp"
@@ -49,8 +48,7 @@ struct allowance {
     /// Takes `n` of at most `per_s`. Returns false if fewer are left.
     bool take(double n, double per_s, std::int64_t now_ns) noexcept
     {
-        left =
-            std::min(per_s, left + static_cast<double>(now_ns - std::exchange(at_ns, now_ns)) * 1e-9 * per_s);
+        left = std::min(per_s, left + seconds(now_ns - std::exchange(at_ns, now_ns)) * per_s);
         if (left < n)
             return false;
         left -= n;
@@ -229,7 +227,8 @@ private:
         answer to;
         std::string method; ///< "play", "plan", "import" or "export"
         std::size_t bytes = 0;
-        net::json params = {}; ///< freed when they are planned or made
+        net::json params = {};        ///< freed when they are planned or made
+        options::wishes settled = {}; ///< options of play and plan: the owner's, and the request's over them
         net::json start = "now";
         double gain_db = 0.0;     ///< of all its strokes
         std::uint64_t rounds = 1; ///< 0: until they are cancelled
@@ -278,7 +277,7 @@ private:
 
     // service_jobs.cpp
     void add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
-    void read_job(plan_job& j, std::int64_t now_ns) const;
+    void read_job(plan_job& j) const;
     void work_on(plan_job& j);
     std::string make_text(const plan_job& j, const go_on_check& go_on);
     void make_scores(plan_job& j, const go_on_check& go_on);
@@ -312,6 +311,7 @@ private:
     void begin_now(client& c, const live_options& o, double intensity_max, const answer& to);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
+    stroke_record& own_stroke(const client& c, std::uint32_t number);
     stroke_record& own_live(client& c, std::uint32_t number);
 
     stroke_record& add_record(client_number owner);

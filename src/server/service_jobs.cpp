@@ -10,6 +10,7 @@
 
 #include "core/words.hpp"
 #include "server/faults.hpp"
+#include "server/files.hpp"
 
 namespace tactor::server {
 namespace {
@@ -44,7 +45,7 @@ net::rpc_fault outdated()
 void service::add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
 {
     plan_job made{to, r.method, bytes, std::move(r.params)};
-    read_job(made, options_.now_ns());
+    read_job(made);
     if (ending_)
         no_stream("the server ends");
     check_free_place(c);
@@ -66,7 +67,7 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
 }
 
 // Reads the parameters of play and plan, except for their strokes. The planner reads those, and all of files.
-void service::read_job(plan_job& j, std::int64_t now_ns) const
+void service::read_job(plan_job& j) const
 {
     const json& params = j.params;
     if (j.plays())
@@ -78,9 +79,9 @@ void service::read_job(plan_job& j, std::int64_t now_ns) const
     else
         return;
     static_cast<void>(find_source(params));
-    static_cast<void>(settle_options(options_.plans.owner, params));
+    j.settled = settle_options(options_.plans.owner, params);
     if (const json* start = member(params, "start")) {
-        static_cast<void>(read_start(start, now_ns));
+        static_cast<void>(read_start(start, options_.now_ns()));
         j.start = *start;
     }
     if (const json* draft = member(params, "draft"))
@@ -119,7 +120,7 @@ void service::work_on(plan_job& j)
 
 void service::make_scores(plan_job& j, const go_on_check& go_on)
 {
-    j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, go_on));
+    j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, j.settled, go_on));
     j.made->rounds = count_rounds(j, *j.made);
     for (std::size_t i = 0; i < j.made->plans.size(); ++i) {
         go_on();
@@ -134,7 +135,7 @@ std::string service::make_text(const plan_job& j, const go_on_check& go_on)
     if (j.method == "export")
         return export_strokes(options_, faces_, j.params, go_on);
     const std::size_t most = options_.limits.max_unread_bytes / 2;
-    const planned p = make_planned(options_.plans, faces_, j.params, go_on);
+    const planned p = make_planned(options_.plans, faces_, j.params, j.settled, go_on);
     return j.view.kind == view_kind::full ? on_one_line(options_.plan_text(p, most))
                                           : view_text(p, options_.plans.tactors, j.view, most);
 }

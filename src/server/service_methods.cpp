@@ -18,6 +18,7 @@
 #include <tactor/stroke.hpp>
 
 #include "core/words.hpp"
+#include "rt/clock.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {
@@ -44,10 +45,8 @@ bool same_secret(const std::string& a, const std::string& b)
 // Returns true for a name without a letter, and for those by which pages call their own reader and the owner.
 bool is_taken_name(std::string_view name)
 {
-    std::string small;
-    for (const char c : name)
-        if (c != ' ')
-            small += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+    std::string small = in_small_letters(std::string(name));
+    std::erase(small, ' ');
     return small.empty() || small == "you" || small == "theowner";
 }
 
@@ -72,7 +71,7 @@ reply_json service::hello_result(const client& c)
               {"pcm", s.name}}},
             {"presets", stroke_presets()},
             {"shapes", stroke_shapes()},
-            {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(unix_ns())}}},
+            {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(rt::unix_ns())}}},
             {"max_level_dbfs", options_.plans.max_level_dbfs},
             {"client", c.number}};
 }
@@ -221,7 +220,7 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
                                                 {"reason", how.why},
                                                 {"frames", how.frames},
                                                 {"started_s", from(0)},
-                                                {"started_unix_s", from(unix_ns() - options_.now_ns())},
+                                                {"started_unix_s", from(rt::unix_ns() - options_.now_ns())},
                                                 {"late_s", how.late_s},
                                                 {"held_points", how.held_points},
                                                 {"outside_points", how.outside_points}});

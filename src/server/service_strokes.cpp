@@ -221,10 +221,7 @@ void service::level(client& c, const json& params, const answer& to)
     allow_only(params, {"db", "stroke"});
     const double db = need_number(params, "db", {player::least_level_db, 0.0});
     if (params.contains("stroke")) {
-        const std::uint32_t n = need_stroke(params);
-        if (!c.strokes.contains(n))
-            no_such_stroke(n);
-        set_level(strokes_.at(n), db);
+        set_level(own_stroke(c, need_stroke(params)), db);
     } else {
         c.level_db = db;
         for (const std::uint32_t n : c.strokes)
@@ -246,11 +243,9 @@ void service::cancel(client& c, const json& params, const answer& to)
                 cancel(found->second, cancelled_by_client);
         return to.result(reply_json::object());
     }
-    const std::uint32_t n = need_stroke(params);
-    if (!c.strokes.contains(n))
-        no_such_stroke(n);
+    stroke_record& r = own_stroke(c, need_stroke(params));
     to.result(reply_json::object());
-    cancel(strokes_.at(n), cancelled_by_client);
+    cancel(r, cancelled_by_client);
 }
 
 void service::cancel(stroke_record& r, const char* why)
@@ -348,7 +343,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     r.started_ns = at_ns.value_or(now);
     stroke_report how;
     if (r.asked_ns)
-        how.late_s = std::max(0.0, static_cast<double>(*r.started_ns - *r.asked_ns) * 1e-9);
+        how.late_s = std::max(0.0, seconds(*r.started_ns - *r.asked_ns));
     tell_stroke(r, "started", how);
     start_followers(r, *r.started_ns);
     submit_next(r);
@@ -548,11 +543,16 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
     to.result({{"stroke", r.number}}, {r.number});
 }
 
-service::stroke_record& service::own_live(client& c, std::uint32_t number)
+service::stroke_record& service::own_stroke(const client& c, std::uint32_t number)
 {
     if (!c.strokes.contains(number))
         no_such_stroke(number);
-    stroke_record& r = strokes_.at(number);
+    return strokes_.at(number);
+}
+
+service::stroke_record& service::own_live(client& c, std::uint32_t number)
+{
+    stroke_record& r = own_stroke(c, number);
     if (!r.live)
         no_such_stroke(number, "it is no live stroke");
     return r;

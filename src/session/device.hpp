@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// The PCM that a session plays on: its name, its opening, the limits of the array on it, and sound servers
-/// in between.
+/// in between; and the list of all devices.
 #pragma once
 
 #include <memory>

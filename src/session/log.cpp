@@ -23,13 +23,6 @@
 namespace tactor::session {
 namespace {
 
-std::int64_t unix_ns()
-{
-    timespec now{};
-    clock_gettime(CLOCK_REALTIME, &now);
-    return rt::to_ns(now);
-}
-
 std::string time_text(std::int64_t at_ns)
 {
     const std::time_t s = at_ns / rt::ns_per_s;
@@ -75,7 +68,7 @@ std::string stroke_text(std::string_view name, const stroke_report& r, unsigned 
 {
     const std::string began = r.started_ns
                                   ? fmt::format("began {} ({:.6f} s by CLOCK_MONOTONIC)",
-                                                time_text(unix_ns() - rt::monotonic_ns() + *r.started_ns),
+                                                time_text(rt::unix_ns() - rt::monotonic_ns() + *r.started_ns),
                                                 static_cast<double>(*r.started_ns) * 1e-9)
                                   : "did not begin";
     return fmt::format("stroke {}: {}, {} after {:.3f} s{}{}", name, began, to_string(r.state),
@@ -121,7 +114,7 @@ log_function session_log::function()
 
 void session_log::write(log_kind k, std::string_view text)
 {
-    const std::string line = fmt::format("{} {} {}\n", time_text(unix_ns()), to_string(k), shown(text));
+    const std::string line = fmt::format("{} {} {}\n", time_text(rt::unix_ns()), to_string(k), shown(text));
     if (verbose_)
         say_text(stderr, goes_to_journal(stderr) ? shown(text) + "\n" : line, k);
     if (!fd_)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The process of a command: the signals that end it, its real-time settings and memory, and pipes that it
-/// waits for.
+/// The process of a command: the signals that end it, its real-time settings and memory, and checks of the
+/// files, pipes and standard streams that it reads and writes.
 #pragma once
 
 #include <csignal>
@@ -55,8 +55,8 @@ void give_memory_back();
 void warn_of_rights(bool realtime, bool locked);
 
 /// Says on standard error that the tool waits for a program that writes to a named pipe; call it before a
-/// file is read. \throws error (bad_input) for a folder, a terminal, and a pipe that this program itself
-/// writes to.
+/// file is read. \throws error (bad_input) for a folder, a terminal, and a pipe or file that this program
+/// itself writes to.
 void check_readable(const std::string& file);
 
 /// Returns true if a name is one of this process's standard output (/dev/stdout, /dev/fd/1).

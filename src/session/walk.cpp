@@ -74,14 +74,12 @@ walk_verdict judge(const array& a, const walk_answers& felt)
     return v;
 }
 
-bounds find_bounds(const array& a)
+detail::box find_bounds(const array& a)
 {
-    bounds b{a.tactors.front().position, a.tactors.front().position};
-    for (const tactor_spec& t : a.tactors) {
-        b.low = {std::min(b.low.x_mm, t.position.x_mm), std::min(b.low.y_mm, t.position.y_mm)};
-        b.high = {std::max(b.high.x_mm, t.position.x_mm), std::max(b.high.y_mm, t.position.y_mm)};
-    }
-    return b;
+    std::vector<point> places;
+    for (const tactor_spec& t : a.tactors)
+        places.push_back(t.position);
+    return detail::box_around(places);
 }
 
 std::string numbered_map(const array& a)

@@ -9,6 +9,8 @@
 
 #include <tactor/tactor.hpp>
 
+#include "core/path/shape.hpp"
+
 namespace tactor::session {
 
 /// Returns three bursts on one tactor.
@@ -30,14 +32,8 @@ struct walk_verdict {
 /// A map is made only of answers that name each tactor once.
 walk_verdict judge(const array& a, const walk_answers& felt);
 
-/// A rectangle on the skin.
-struct bounds {
-    point low;
-    point high;
-};
-
 /// Returns the smallest rectangle with all tactors.
-bounds find_bounds(const array& a);
+detail::box find_bounds(const array& a);
 
 /// Returns the numbers of the tactors, about where these are; no line longer than 79 columns.
 std::string numbered_map(const array& a);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Prints in a JSON array the tool's output on machines with cards, chips and trouble, for test_json.py.
-#include <cstdio>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "cli/check/check.hpp"
-#include "cli/devices.hpp"
 #include "cli/play/play.hpp"
+#include "session/device.hpp"
 
 namespace {
 

@@ -115,10 +115,7 @@ system_needs card_and_amplifier()
 
 finding judged(const system_facts& f, const system_needs& n, const std::string& check)
 {
-    const auto all = check_system(f, n);
-    const auto x = std::find_if(all.begin(), all.end(), [&](const finding& y) { return y.check == check; });
-    REQUIRE_MESSAGE(x != all.end(), check);
-    return *x;
+    return named(check_system(f, n), check);
 }
 
 } // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "files/output_file.hpp"
 
-#include <cerrno>
 #include <csignal>
 #include <fstream>
 #include <string>

@@ -2,7 +2,6 @@
 // Packets of OSC: their values, and their faults.
 #include "net/osc.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>

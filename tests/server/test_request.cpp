@@ -37,6 +37,13 @@ planning palm()
     return p;
 }
 
+// Reads and plans, with the options settled first, as the service does.
+planned make_planned(
+    const planning& with, const layout& faces, const json& params, const go_on_check& go_on = [] {})
+{
+    return server::make_planned(with, faces, params, settle_options(with.owner, params), go_on);
+}
+
 std::string fault_what(const json& params)
 {
     const planning p = palm();

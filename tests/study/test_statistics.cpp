@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Statistics where R has no figure, and the analysis of a study; test_analyze.py compares with
-// R.
+// Statistics where R has no figure, and the analysis of a study; test_analyze.py compares with R.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

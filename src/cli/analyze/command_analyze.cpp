@@ -17,6 +17,7 @@
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/process.hpp"
+#include "study/bids/disk.hpp"
 #include "study/data/dataset.hpp"
 #include "study/report/report.hpp"
 
@@ -148,8 +149,7 @@ int analyze(const analyze_options& o)
         draw(o, a);
     print_warnings(a);
     if (o.format == "json")
-        fmt::print("{}\n",
-                   make_analysis_json(a).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}", study::json_text(make_analysis_json(a)));
     else if (o.format == "tsv")
         print_trials(d);
     else

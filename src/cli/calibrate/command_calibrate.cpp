@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
@@ -25,6 +24,7 @@
 #include "core/words.hpp"
 #include "files/setup_text.hpp"
 #include "options/option.hpp"
+#include "rt/clock.hpp"
 #include "session/device.hpp"
 #include "session/process.hpp"
 #include "study/bids/study_folder.hpp"
@@ -299,7 +299,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     c.simulate = o.simulate.value_or("");
     c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::default_seed(c.participant)));
     constexpr std::size_t day = 10; // 2026-11-21
-    c.date = study::acq_time_text(study::utc_now_ns()).substr(0, day);
+    c.date = study::acq_time_text(rt::unix_ns()).substr(0, day);
     return c;
 }
 

@@ -17,9 +17,7 @@
 #include <tactor/error.hpp>
 #include <tactor/tactor.hpp>
 
-#include "cli/input.hpp"
 #include "cli/settings.hpp"
-#include "session/device.hpp"
 #include "session/play_session.hpp"
 #include "session/walk.hpp"
 

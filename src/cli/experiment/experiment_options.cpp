@@ -24,6 +24,7 @@
 #include "options/option.hpp"
 #include "session/process.hpp"
 #include "study/analysis/analysis.hpp"
+#include "study/bids/disk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
@@ -155,7 +156,7 @@ void print_power_json(const study::prepared_experiment& e, const std::vector<stu
     for (const study::run_power& p : all)
         j["runs"].push_back(run_power_json(p, d.runs[p.run].outline));
     j["warnings"] = e.warnings;
-    fmt::print("{}\n", j.dump(2, ' ', false, json::error_handler_t::replace));
+    fmt::print("{}", study::json_text(j));
 }
 
 // Returns nothing where a signal ends it.

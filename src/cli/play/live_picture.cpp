@@ -59,7 +59,7 @@ struct terminal_size {
 // Grid of characters, which are about twice as high as wide.
 class grid {
 public:
-    grid(const session::bounds& b, unsigned columns, unsigned rows) : low_(b.low)
+    grid(const detail::box& b, unsigned columns, unsigned rows) : low_(b.low)
     {
         const double wide = b.high.x_mm - b.low.x_mm;
         const double tall = b.high.y_mm - b.low.y_mm;
@@ -157,7 +157,7 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
     const unsigned columns = size.columns - 1;
     const unsigned rows = size.rows - 1;
     const unsigned gap = rows >= 6 ? 1 : 0; // between array and status
-    const session::bounds b = session::find_bounds(a);
+    const detail::box b = session::find_bounds(a);
     // A single line for several rows of an array would show touches at wrong places.
     const unsigned least_rows = b.high.y_mm - b.low.y_mm > natural_mm ? 2 : 1;
 

@@ -17,12 +17,12 @@
 
 #include <tactor/version.hpp>
 
-#include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "files/plan/plan_members.hpp"
+#include "net/rpc.hpp"
 #include "options/option.hpp"
 #include "rt/clock.hpp"
 #include "rt/system_files.hpp"
@@ -192,15 +192,14 @@ void warn_of_access(const server::endpoints& at, const std::string& token)
 
 void print_endpoints(const server::endpoints& at, const std::string& format)
 {
-    using json = nlohmann::ordered_json;
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
     if (format == "json") {
-        const json all{{"event", "listening"},
-                       {"socket", or_null(at.socket_path)},
-                       {"tcp", or_null(at.tcp_address)},
-                       {"osc", or_null(at.osc_address)},
-                       {"http", or_null(http)}};
-        fmt::print("{}\n", all.dump(-1, ' ', false, json::error_handler_t::replace));
+        const nlohmann::ordered_json all{{"event", "listening"},
+                                         {"socket", or_null(at.socket_path)},
+                                         {"tcp", or_null(at.tcp_address)},
+                                         {"osc", or_null(at.osc_address)},
+                                         {"http", or_null(http)}};
+        fmt::print("{}\n", net::json_line(all));
     } else {
         for (const auto& [kind, address] : {std::pair("socket ", &at.socket_path),
                                             {"tcp ", &at.tcp_address},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Contents of a path: its vertices and curves, and the arc length of each piece with its inverse.
+/// Contents of a path; the outline from which it is made, also of SVG path data; and its meetings with lines.
 #pragma once
 
 #include <cmath>

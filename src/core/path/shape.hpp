@@ -3,6 +3,7 @@
 // from 0 to 1 and by their length.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -33,6 +34,29 @@ inline point operator-(point a, point b) noexcept
 inline point operator*(double k, point a) noexcept
 {
     return {k * a.x_mm, k * a.y_mm};
+}
+
+struct box {
+    point low;
+    point high;
+
+    /// Returns true if p is in it, or within a margin of it.
+    bool holds(point p, double margin_mm) const noexcept
+    {
+        return p.x_mm >= low.x_mm - margin_mm && p.x_mm <= high.x_mm + margin_mm &&
+               p.y_mm >= low.y_mm - margin_mm && p.y_mm <= high.y_mm + margin_mm;
+    }
+};
+
+/// Returns the smallest box round some points (at least one).
+inline box box_around(const std::vector<point>& points)
+{
+    box b{points.front(), points.front()};
+    for (const point& p : points) {
+        b.low = {std::min(b.low.x_mm, p.x_mm), std::min(b.low.y_mm, p.y_mm)};
+        b.high = {std::max(b.high.x_mm, p.x_mm), std::max(b.high.y_mm, p.y_mm)};
+    }
+    return b;
 }
 
 inline double dot(point a, point b) noexcept

@@ -159,6 +159,7 @@ public:
 private:
     static constexpr std::size_t most_fields = 1000;
     static constexpr std::size_t most_lines = 10'000'000;
+    static constexpr std::size_t most_named = 5; ///< columns
     static constexpr std::string_view header_hint =
         "the first line names the columns: t_s,x_mm,y_mm,intensity";
 
@@ -242,7 +243,6 @@ private:
         if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())
             fail(f.column, fmt::format("unknown column {}", detail::quoted(f.text)),
                  detail::meant_name(f.text, near));
-        constexpr std::size_t most_named = 5;
         if (++left_out_ <= most_named)
             left_out_names_ += fmt::format("{}{}", left_out_ == 1 ? "" : ", ", detail::quoted(f.text));
         header_line_ = line_number_;
@@ -255,7 +255,7 @@ private:
             all.insert(all.begin(),
                        fmt::format("{}: {} left out: {}{}", source_place{name_, header_line_, 0}.text(),
                                    left_out_ == 1 ? "this column is" : "these columns are", left_out_names_,
-                                   left_out_ > 5 ? ", ..." : ""));
+                                   left_out_ > most_named ? ", ..." : ""));
         return all;
     }
 

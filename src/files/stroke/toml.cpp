@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stroke files: how their format is found, and those in TOML, [stroke] or [[stroke]].
+// Stroke files: the reader of each format, and that of TOML, [stroke] or [[stroke]].
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
@@ -21,7 +21,6 @@
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
-#include "core/words.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
@@ -583,17 +582,16 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
     return read_all(tables, false, stem(name), r, 0).strokes;
 }
 
-} // namespace
-
-std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file)
+// Reads strokes of a format that find_stroke_format() returned.
+std::vector<stroke> read_any(std::string_view format, std::string_view text, const std::string& name,
+                             const reading& r)
 {
-    const std::string extension = in_small_letters(file.extension().string());
-    for (const std::string_view format : {"svg", "csv", "toml"})
-        if (extension == fmt::format(".{}", format))
-            return format;
-    const std::string_view form = find_text_form(text);
-    return form == "json" ? "toml" : form; // the reader of TOML explains what it is
+    return format == "svg"   ? parse_strokes_svg(text, name)
+           : format == "csv" ? parse_strokes_csv(text, name, r.intensity_max)
+                             : read_strokes(text, name, r);
 }
+
+} // namespace
 
 } // namespace tactor::detail
 
@@ -607,10 +605,7 @@ std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string&
 
 std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
 {
-    const std::string_view format = detail::find_stroke_format(text, {});
-    return format == "svg"   ? parse_strokes_svg(text, name)
-           : format == "csv" ? parse_strokes_csv(text, name, intensity_max)
-                             : parse_strokes_toml(text, name, intensity_max);
+    return detail::read_any(detail::find_stroke_format(text, {}), text, name, {nullptr, intensity_max});
 }
 
 std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
@@ -618,10 +613,7 @@ std::vector<stroke> load_strokes(const std::filesystem::path& file, double inten
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
     const std::filesystem::path folder = file.parent_path();
-    const std::string_view format = detail::find_stroke_format(text, file);
-    return format == "svg"   ? parse_strokes_svg(text, name)
-           : format == "csv" ? parse_strokes_csv(text, name, intensity_max)
-                             : detail::read_strokes(text, name, {&folder, intensity_max});
+    return detail::read_any(detail::find_stroke_format(text, file), text, name, {&folder, intensity_max});
 }
 
 std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)

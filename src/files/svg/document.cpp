@@ -223,7 +223,7 @@ std::vector<outline> rectangle(const element& e)
 std::vector<outline> path_element(const element& e)
 {
     const std::string_view d = e.node.attribute("d").value();
-    if (d == "none" || d.find_first_not_of(" \t\r\n\f") == std::string_view::npos)
+    if (d == "none" || without_blanks(d).empty())
         return {};
     return *e.doc.read(e.node, "d", [](std::string_view text) {
         return parse_path_data(text, max_user_units, subpaths::any);
@@ -240,7 +240,7 @@ svg_length parse_svg_length(std::string_view text)
     std::size_t at = 0;
     skip_blanks(text, at);
     const double v = number_at(text, at);
-    const std::string unit = in_small_letters(std::string(without_blanks(text.substr(at))));
+    const std::string unit = tidy(text.substr(at));
     if (unit.empty())
         return {v};
     for (const auto& [name, mm] : units)

@@ -51,29 +51,6 @@ inline double triangle_distance_mm(point a, point b, point c, point p) noexcept
         {segment_distance_mm(a, b, p), segment_distance_mm(b, c, p), segment_distance_mm(c, a, p)});
 }
 
-struct box {
-    point low;
-    point high;
-
-    /// Returns true if p is in it, or within a margin of it.
-    bool holds(point p, double margin_mm) const noexcept
-    {
-        return p.x_mm >= low.x_mm - margin_mm && p.x_mm <= high.x_mm + margin_mm &&
-               p.y_mm >= low.y_mm - margin_mm && p.y_mm <= high.y_mm + margin_mm;
-    }
-};
-
-/// Returns the smallest box round some points (at least one).
-inline box box_around(const std::vector<point>& points)
-{
-    box b{points.front(), points.front()};
-    for (const point& p : points) {
-        b.low = {std::min(b.low.x_mm, p.x_mm), std::min(b.low.y_mm, p.y_mm)};
-        b.high = {std::max(b.high.x_mm, p.x_mm), std::max(b.high.y_mm, p.y_mm)};
-    }
-    return b;
-}
-
 inline bool finite(point p) noexcept
 {
     return std::isfinite(p.x_mm) && std::isfinite(p.y_mm);

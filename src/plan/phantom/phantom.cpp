@@ -42,7 +42,7 @@ void check_intensity(double a_v)
 point check_request(const layout& l, point p, double a_v)
 {
     check_intensity(a_v);
-    return l.contains(p) ? p : l.nearest(p);
+    return held_in(l, p);
 }
 
 /// Adds a drive of the tactor of that rank if its amplitude is above 0. Drives stay in order of tactor.

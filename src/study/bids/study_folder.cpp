@@ -2,7 +2,6 @@
 #include "study/bids/study_folder.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <string_view>
 #include <utility>
@@ -339,12 +338,6 @@ std::optional<std::int64_t> acq_time_ns(const std::string& text)
     if (!microseconds || fraction.size() != fraction_digits + (text.ends_with('Z') ? 1 : 0))
         return {};
     return ::timegm(&utc) * second_ns + *microseconds * microsecond_ns;
-}
-
-std::int64_t utc_now_ns() noexcept
-{
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
 } // namespace tactor::study

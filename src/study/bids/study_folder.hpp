@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The folder of a study (BIDS), as tactor writes it: its descriptions, and the lists of people and runs.
+/// The folder of a study (BIDS), as tactor writes it: its descriptions, the lists of people and runs, and
+/// times as it has them.
 #pragma once
 
 #include <cstdint>
@@ -44,8 +45,7 @@ public:
     /// one of each run's tables. Call it after session.json is written. \throws error (runtime).
     void describe() const;
 
-    /// Lists the files that the session makes: descriptions and lists, without plans and
-    /// trials.
+    /// Lists the files that the session makes: descriptions and lists, without plans and trials.
     std::vector<std::filesystem::path> list_files() const;
 
     /// Reads participants.tsv and sub-CODE_scans.tsv, if they are there. \throws error (bad_input) with file
@@ -88,8 +88,5 @@ std::string acq_time_text(std::int64_t utc_ns);
 
 /// Reads such a text, with or without the Z. Returns nothing for any other text.
 std::optional<std::int64_t> acq_time_ns(const std::string& text);
-
-/// Returns CLOCK_REALTIME, ns.
-std::int64_t utc_now_ns() noexcept;
 
 } // namespace tactor::study

@@ -64,6 +64,35 @@ void take_beginning(const fs::path& file, calibration_settings& s)
                         "a session goes on as it was begun");
 }
 
+// Returns the name of the file with the settings: that of the log with the extension .json.
+fs::path settings_file(const fs::path& log)
+{
+    return fs::path(log).replace_extension(".json");
+}
+
+const std::string not_there = "n/a";
+
+std::string truth(bool b)
+{
+    return b ? "true" : "false";
+}
+
+// Returns the cells of a line, in the order of a new log's columns.
+named_cells log_cells(const calibration_record& r)
+{
+    const calibration_trial& t = r.trial;
+    return {{"trial", fmt::format("{}", t.number)},
+            {"tactor", fmt::format("{}", t.tactor)},
+            {"level_dbfs", fmt::format("{}", t.level_dbfs)},
+            {"interval", t.interval != 0 ? fmt::format("{}", t.interval) : not_there},
+            {"response", r.response},
+            {"correct", r.correct ? truth(*r.correct) : not_there},
+            {"reversal", truth(r.reversal)},
+            {"practice", truth(t.practice)},
+            {"response_time_s", r.response_time_s ? fmt::format("{:.3f}", *r.response_time_s) : not_there},
+            {"onset_frame", r.onset_frame ? fmt::format("{}", *r.onset_frame) : not_there}};
+}
+
 std::string new_log()
 {
     return header_line(log_cells({}));
@@ -75,13 +104,7 @@ bool lacks_header(const std::string& log)
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
-const std::string not_there = "n/a";
 constexpr double most_frame = 9e15; // a double counts them up to there
-
-std::string truth(bool b)
-{
-    return b ? "true" : "false";
-}
 
 // Reads any answer of a line; replay() compares it afterwards with what the line should say.
 calibration_answer answer_in(const text_table& log, std::size_t row)
@@ -145,11 +168,6 @@ constexpr double most_above_median_db = 12.0;
 
 } // namespace
 
-fs::path settings_file(const fs::path& log)
-{
-    return fs::path(log).replace_extension(".json");
-}
-
 void check_beginning(const fs::path& log, calibration_settings& s)
 {
     const fs::path beginning = settings_file(log);
@@ -179,12 +197,8 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         if (!begun && lines_.rows() > 0)
             throw error(error_kind::bad_input, beginning.string(),
                         "it is missing, which says how the log was begun", "begin another, with another log");
-        if (!begun || !resume) {
-            const std::string text = settings_text(s);
-            detail::output_file out(beginning, {}, detail::owner_kind::program);
-            out.write(text.data(), static_cast<std::int64_t>(text.size()));
-            out.commit();
-        }
+        if (!begun || !resume)
+            detail::write_file(beginning, settings_text(s), detail::owner_kind::program);
         if (synced_)
             detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
     } catch (...) {
@@ -262,21 +276,6 @@ void calibration_log::append(const calibration_record& r)
 {
     append_text(file_, lines_.line(log_cells(r)), synced_);
     made_ = false;
-}
-
-named_cells log_cells(const calibration_record& r)
-{
-    const calibration_trial& t = r.trial;
-    return {{"trial", fmt::format("{}", t.number)},
-            {"tactor", fmt::format("{}", t.tactor)},
-            {"level_dbfs", fmt::format("{}", t.level_dbfs)},
-            {"interval", t.interval != 0 ? fmt::format("{}", t.interval) : not_there},
-            {"response", r.response},
-            {"correct", r.correct ? truth(*r.correct) : not_there},
-            {"reversal", truth(r.reversal)},
-            {"practice", truth(t.practice)},
-            {"response_time_s", r.response_time_s ? fmt::format("{:.3f}", *r.response_time_s) : not_there},
-            {"onset_frame", r.onset_frame ? fmt::format("{}", *r.onset_frame) : not_there}};
 }
 
 std::string settings_text(const calibration_settings& s)

@@ -19,14 +19,8 @@
 
 namespace tactor::study {
 
-/// Returns the cells of a line, in the order of a new log's columns.
-named_cells log_cells(const calibration_record& r);
-
 /// Returns the settings with which a session begins, as JSON.
 std::string settings_text(const calibration_settings& s);
-
-/// Returns the name of the file with these settings: that of the log with the extension .json.
-std::filesystem::path settings_file(const std::filesystem::path& log);
 
 /// Compares a session with the settings with which one began, and takes its date. \throws error (bad_input)
 /// if these are missing or differ.
@@ -77,11 +71,11 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
 ///         system refuses.
 void check_new_output(const std::filesystem::path& file);
 
+/// Writes such a file whole or not at all. Throws as above.
+void write_new_output(const std::filesystem::path& file, const std::string& text);
+
 /// Checks that an array file is the result of a session. \throws error (bad_input) with the file's name.
 void check_finished(const std::filesystem::path& file, const calibration_settings& s);
-
-/// Writes it whole or not at all. Throws as above.
-void write_new_output(const std::filesystem::path& file, const std::string& text);
 
 /// Returns true if an earlier calibration is somebody else's, or only one of the two was simulated.
 bool is_foreign(const calibration_origin& earlier, const calibration_settings& s);

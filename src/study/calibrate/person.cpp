@@ -15,7 +15,6 @@ namespace {
 
 constexpr double lead_s = 0.5; // from the answer before to interval 1, so that nobody is surprised
 constexpr int most_attempts = 5;
-constexpr const char* go_on = "what was answered is kept; --resume goes on";
 
 // In the order of adjust_screen()'s choices.
 constexpr const char* level_keys = "-<>+an";
@@ -83,7 +82,7 @@ given_stimulus person::play(const calibration_trial& t, const score& s,
         if (g.flaw.empty())
             return g;
         if (stage_.lost() || attempt == most_attempts)
-            throw error(error_kind::runtime, name, g.flaw, go_on);
+            throw error(error_kind::runtime, name, g.flaw, resume_hint);
         session::show(fmt::format("interrupted ({}): once more\n", g.flaw));
         make_room(s);
     }

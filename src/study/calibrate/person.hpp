@@ -4,8 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <string>
-#include <vector>
 
 #include "study/calibrate/calibration.hpp"
 #include "study/experiment/definition.hpp"

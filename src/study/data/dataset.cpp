@@ -82,6 +82,19 @@ std::string_view read_code(std::string_view id)
     return make_file_name(id) == id ? id : std::string_view{};
 }
 
+// Lists a folder, in no order. Throws error (bad_input) if it cannot be read.
+std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder)
+{
+    std::vector<std::filesystem::path> all;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed))
+        all.push_back(i->path());
+    if (failed)
+        throw error(error_kind::bad_input, folder.string(), failed.message(),
+                    "it must be readable as a whole");
+    return all;
+}
+
 // Refuses data of somebody who is not in the list: the analysis would pass over them in silence.
 void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
 {

@@ -90,6 +90,9 @@ std::filesystem::path table_path(std::string_view code, const run_outline& run);
 /// Returns the path of what describes a run's tables: task-NAME_beh.json.
 std::filesystem::path description_path(const run_outline& run);
 
+/// Schema of the sessions that tactor experiment holds.
+inline constexpr std::string_view own_schema = "tactor-session/1";
+
 struct session_data {
     bool simulated = false;
     std::string text; ///< of the experiment, TOML
@@ -202,11 +205,10 @@ std::vector<std::string> read_participants(const text_table& t);
 run_data read_run(const text_table& t, const run_outline& run);
 
 /// Reads the folder; of participants who are not selected nothing is opened.
-/// \throws error (bad_input) with file and line for what is not as above: a code that is not known, nobody
-/// left,
-///         a folder of somebody who is not in participants.tsv, experiments that differ, real and simulated
-///         sessions together, names that the experiment does not know, answers out of range, a trial that
-///         counts twice.
+/// \throws error (bad_input) with file and line for what is not as the head of this file says: a code that is
+///         not known, nobody left, a folder of somebody who is not in participants.tsv, experiments that
+///         differ, real and simulated sessions together, names that the experiment does not know, answers out
+///         of range, a trial that counts twice.
 dataset read_dataset(const std::filesystem::path& folder, const selection& who);
 
 } // namespace tactor::study

@@ -144,18 +144,6 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
     return true;
 }
 
-std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder)
-{
-    std::vector<std::filesystem::path> all;
-    std::error_code failed;
-    for (std::filesystem::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed))
-        all.push_back(i->path());
-    if (failed)
-        throw error(error_kind::bad_input, folder.string(), failed.message(),
-                    "it must be readable as a whole");
-    return all;
-}
-
 std::string header_line(const named_cells& cells)
 {
     std::string header;

@@ -43,9 +43,6 @@ std::string read_file(const std::filesystem::path& file);
 /// searched, a part of the path that is no folder.
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
 
-/// Lists a folder, in no order. \throws error (bad_input) if it cannot be read.
-std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
-
 /// Cells by the names of their columns.
 using named_cells = std::vector<std::pair<std::string_view, std::string>>;
 

@@ -42,6 +42,46 @@ constexpr int masking_priority = 60; // below the array's audio thread
 
 } // namespace
 
+double greatest_noise_dbfs(noise_color c) noexcept
+{
+    return c == noise_color::white ? -5.0 : -15.0;
+}
+
+noise::noise(noise_color c, double level_dbfs, std::string_view seed)
+    : color_(c),
+      gain_(std::pow(10.0, level_dbfs / 20.0) *
+            std::numbers::sqrt3), // a uniform number between -1 and 1 has 1 / sqrt 3
+      r_(seed)
+{
+    if (c == noise_color::white)
+        return;
+    double energy = 0.0;
+    for (int i = 0; i < response_samples; ++i) {
+        const double y = shaped(i == 0 ? 1.0 : 0.0);
+        energy += y * y;
+    }
+    gain_ /= std::sqrt(energy);
+    poles_ = {};
+    late_ = 0.0;
+}
+
+double noise::shaped(double white) noexcept
+{
+    double y = direct * white + late_;
+    for (std::size_t i = 0; i < sections.size(); ++i) {
+        poles_[i] = sections[i].pole * poles_[i] + sections[i].gain * white;
+        y += poles_[i];
+    }
+    late_ = delayed * white;
+    return y;
+}
+
+double noise::next() noexcept
+{
+    const double white = 2.0 * r_.unit() - 1.0;
+    return std::clamp(gain_ * (color_ == noise_color::white ? white : shaped(white)), -1.0, 1.0);
+}
+
 masking_stream::masking_stream(sink& s, const masking_options& o)
     : sink_(s),
       noise_(o.color, o.level_dbfs, o.seed),
@@ -152,46 +192,6 @@ masking_state masking_stream::state() noexcept
     if (full_from_ && p.played > *full_from_)
         return masking_state::full;
     return silent_from_ && p.played >= *silent_from_ ? masking_state::silent : masking_state::fading;
-}
-
-double greatest_noise_dbfs(noise_color c) noexcept
-{
-    return c == noise_color::white ? -5.0 : -15.0;
-}
-
-noise::noise(noise_color c, double level_dbfs, std::string_view seed)
-    : color_(c),
-      gain_(std::pow(10.0, level_dbfs / 20.0) *
-            std::numbers::sqrt3), // a uniform number between -1 and 1 has 1 / sqrt 3
-      r_(seed)
-{
-    if (c == noise_color::white)
-        return;
-    double energy = 0.0;
-    for (int i = 0; i < response_samples; ++i) {
-        const double y = shaped(i == 0 ? 1.0 : 0.0);
-        energy += y * y;
-    }
-    gain_ /= std::sqrt(energy);
-    poles_ = {};
-    late_ = 0.0;
-}
-
-double noise::shaped(double white) noexcept
-{
-    double y = direct * white + late_;
-    for (std::size_t i = 0; i < sections.size(); ++i) {
-        poles_[i] = sections[i].pole * poles_[i] + sections[i].gain * white;
-        y += poles_[i];
-    }
-    late_ = delayed * white;
-    return y;
-}
-
-double noise::next() noexcept
-{
-    const double white = 2.0 * r_.unit() - 1.0;
-    return std::clamp(gain_ * (color_ == noise_color::white ? white : shaped(white)), -1.0, 1.0);
 }
 
 masker::masker(std::unique_ptr<sink> s, const masking_options& o)

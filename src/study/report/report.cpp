@@ -55,7 +55,7 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
     const auto at = std::find_if(s.stimuli.begin(), s.stimuli.end(), same);
     if (at == s.stimuli.end() || at->hash != *t.cell(row, plan))
         t.refuse(row, fmt::format("{} is no plan of its motion by its method in session.json", plan),
-                 "it was changed");
+                 changed_file);
 }
 
 // Checks the plans in a run's table. Returns the number of void trials with gaps in the sound, if it is
@@ -193,9 +193,7 @@ void write_report(const fs::path& file, const std::string& text, bool force)
     detail::check_replaced(file, force, [](std::string_view begin, std::string_view) {
         return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
     });
-    detail::output_file out(file);
-    out.write(text.data(), static_cast<std::int64_t>(text.size()));
-    out.commit();
+    detail::write_file(file, text);
 }
 
 std::string escape_markdown(std::string_view text)

@@ -38,9 +38,6 @@ struct planned_stimulus {
     json_value facts() const { return {plan, file, changed_file}; }
 };
 
-/// Schema of the sessions that tactor experiment held.
-inline constexpr std::string_view own_schema = "tactor-session/1";
-
 struct session_facts {
     std::string code;
     std::string file; ///< session.json

@@ -27,6 +27,7 @@
 #include "session/process.hpp"
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
+#include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
 #include "synth/score/drive_room.hpp"
 
@@ -34,6 +35,9 @@ namespace tactor::study {
 namespace {
 
 using files::or_null;
+
+// Threshold of an unmeasured tactor in a session that nobody feels.
+constexpr double assumed_threshold_dbfs = -40.0;
 
 // Sets thresholds that nobody measured at any frequency, in a session that nobody feels. Returns true if it
 // set any. A real session needs measured ones.
@@ -418,7 +422,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     for (const run_sequence& r : p.runs)
         order.push_back(p.definition.runs[r.run].outline.name);
     const experiment_definition& d = p.definition;
-    json j{{"schema", "tactor-session/1"}, {"participant", p.participant}};
+    json j{{"schema", own_schema}, {"participant", p.participant}};
     j["simulated"] = simulate.has_value();
     j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
     j["seed"] = p.seed;

@@ -62,9 +62,6 @@ struct prepared_experiment {
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }
 };
 
-/// Threshold of an unmeasured tactor in a session that nobody feels.
-inline constexpr double assumed_threshold_dbfs = -40.0;
-
 /// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, a stimulus
 /// cannot be planned or played, or a session with a person has no thresholds.
 prepared_experiment prepare(const session_request& r, session::settings& s);

@@ -132,7 +132,7 @@ std::optional<char> keypad::next()
             return {};
         if (n != static_cast<ssize_t>(sizeof e))
             throw error(error_kind::runtime, device_, n < 0 ? std::strerror(errno) : "it has ended",
-                        "what was answered is kept; --resume goes on");
+                        resume_hint);
         // 1: pressed; 0 and 2: let go, and repeated.
         if (e.type == EV_KEY && e.value == 1)
             if (const auto answer = find_answer(e.code))
@@ -259,8 +259,7 @@ session_key session_keys::wait(const std::string& subject)
             return *std::move(k);
         if (ended()) {
             session::show("\n");
-            throw error(error_kind::runtime, subject, "there is no answer any more",
-                        "what was answered is kept; --resume goes on");
+            throw error(error_kind::runtime, subject, "there is no answer any more", resume_hint);
         }
         stage_.wait_for(any_ ? any_.get() : STDIN_FILENO);
     }

@@ -45,6 +45,9 @@ private:
     std::int64_t last_ns_ = 0;
 };
 
+/// Hint of an error that ends a session with a person.
+inline constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
+
 /// A keypad, whose keys no other program gets while this lives. One thread.
 class keypad {
 public:

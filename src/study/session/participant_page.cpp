@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/participant_page.hpp"
+#include "net/rpc.hpp"
 
 #include <utility>
 
@@ -9,11 +10,6 @@ namespace tactor::study {
 namespace {
 
 using ordered = nlohmann::ordered_json;
-
-std::string message_text(const ordered& j)
-{
-    return j.dump(-1, ' ', false, ordered::error_handler_t::replace);
-}
 
 // Returns a member that is a whole number; 0 for anything else.
 std::uint64_t whole_number(const ordered& j, const char* key)
@@ -76,7 +72,7 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["lasts_s"] = screen_.lasts_s;
         j["passed_s"] = static_cast<double>(now_ns - since_ns_) * 1e-9;
     }
-    return message_text(j);
+    return net::json_line(j);
 }
 
 std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int64_t now_ns)
@@ -99,9 +95,9 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
     heard h;
     if (received.contains("hello")) {
         if (theirs_ && *theirs_ != from)
-            h.replies.push_back({*theirs_, message_text({{"screen", "elsewhere"}}), true});
+            h.replies.push_back({*theirs_, net::json_line({{"screen", "elsewhere"}}), true});
         theirs_ = from;
-        h.replies.push_back({from, message_text(facts_)});
+        h.replies.push_back({from, net::json_line(facts_)});
         h.replies.push_back({from, state(now_ns)});
         return h;
     }

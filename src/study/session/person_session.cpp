@@ -22,12 +22,13 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
-
 // Points of a path on the page: nobody sees the straight lines between them.
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
 constexpr double picture_points = 60.0;
+
+// Name, in messages, of the person who ends a session with q.
+constexpr std::string_view experimenter = "the experimenter (q)";
 
 std::vector<point> sample_way(const stroke& target, const array& a, double parts)
 {
@@ -212,7 +213,7 @@ void person_session::note_stream()
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
     all.push_back(
         {{"stream", stream_},
-         {"opened", acq_time_text(utc_now_ns())},
+         {"opened", acq_time_text(rt::unix_ns())},
          {"device", devices_.pcm},
          {"masker", files::or_null(devices_.masker)},
          {"masking", devices_.masker.empty() ? json(nullptr) : masking_facts(p_.definition.masking)},
@@ -472,7 +473,7 @@ void person_session::trial(const session_step& s)
         session::show((s.practice ? "" : w["later"]) + "\n");
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
-    const std::int64_t started_ns = utc_now_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
+    const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     tables_->at(s).add(row, started_ns, p_.render.rate);
     flow_.took(row.is_void);
     find_device();
@@ -533,7 +534,7 @@ void person_session::ask_consent()
         if (k.text == "n")
             throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
                         "there are no data of the session");
-        agreed_at_ = acq_time_text(utc_now_ns());
+        agreed_at_ = acq_time_text(rt::unix_ns());
         return flow_.agree();
     }
 }
@@ -564,7 +565,7 @@ void person_session::walk(unsigned tactor)
             continue;
         session::show(k.text + "\n");
         if (k.text == "y") {
-            walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(utc_now_ns())}});
+            walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(rt::unix_ns())}});
             flow_.felt();
         } else if (k.text == "b") {
             flow_.walk_back();
@@ -582,7 +583,7 @@ void person_session::begin_store()
 {
     if (std::exchange(begun_, true))
         return;
-    const std::string now = acq_time_text(utc_now_ns());
+    const std::string now = acq_time_text(rt::unix_ns());
     store_.begin(p_.stimuli.all());
     if (store_.facts()["date"].is_null()) // new, or it ended before the date was written
         store_.note("date", now);

@@ -39,12 +39,9 @@ struct session_devices {
     std::string masker_server = {};
 };
 
-/// Name, in messages, of the person who ends a session with q.
-inline constexpr std::string_view experimenter = "the experimenter (q)";
-
 class person_session {
 public:
-    /// `page` (null: the terminal) is the participant's. All must live as long.
+    /// `with` has the participant's page (null: the terminal). All must live as long.
     person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
                    target_display display, session_devices devices);
 
