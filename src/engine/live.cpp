@@ -25,6 +25,9 @@
 namespace tactor::engine {
 namespace {
 
+constexpr std::size_t live_knots = 33;    // most of a course
+constexpr double least_live_soa_s = 0.01; // of bursts
+
 // Adds one more point with its delay.
 void count(live_delay& d, std::int64_t ns) noexcept
 {
@@ -432,7 +435,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
         return false;
-    const point place = faces.contains(p) ? p : faces.nearest(p);
+    const point place = detail::held_in(faces, p);
     const bool inside = distance_mm(p, place) <= edge_tolerance_mm;
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
@@ -500,7 +503,7 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
     for (std::size_t k = course.knots; k-- > 0;) {
         const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
         const auto mean = next.at(course.start + after);
-        const point q = faces.contains(mean.at) ? mean.at : faces.nearest(mean.at);
+        const point q = detail::held_in(faces, mean.at);
         const bool held = amplitudes_at(q, mean.intensity, all.subspan(k * channels, channels));
         limited = limited || held;
     }

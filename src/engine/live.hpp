@@ -62,12 +62,6 @@ struct live_course {
     std::vector<double> amplitudes; ///< by knot and channel; has space for all
 };
 
-/// Most knots of a course.
-inline constexpr std::size_t live_knots = 33;
-
-/// Shortest SOA of live bursts.
-inline constexpr double least_live_soa_s = 0.01;
-
 /// Returns the drives of the mixer that are reserved for live strokes.
 std::size_t live_reserve(const stream_setup& s) noexcept;
 

@@ -119,7 +119,7 @@ try {
 
 } // namespace
 
-// These are here because alsa/ and engine/ both build on rt/.
+// These are here because alsa/ and engine/ both build on this folder.
 sink::~sink() = default;
 
 std::int64_t sink::xrun_ns() noexcept

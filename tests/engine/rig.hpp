@@ -116,6 +116,14 @@ public:
     stroke_id next_id() { return {++last_id}; }
     stroke_id last() const { return {last_id}; }
 
+    /// Submits a live stroke.
+    std::shared_ptr<live_stroke::impl> begin_live(const array& a, const live_options& o)
+    {
+        auto s = std::make_shared<live_stroke::impl>(next_id(), a, layout(a), out->setup(), o);
+        feed.submit(last(), std::shared_ptr<engine::live_voice>(s, &s->voice));
+        return s;
+    }
+
     stroke_id submit(const score& s, std::uint64_t frame) { return submit(s, start_at::frame(frame)); }
     stroke_id submit(const score& s, start_at at = start_at::now())
     {
@@ -283,8 +291,7 @@ public:
     std::shared_ptr<live_stroke::impl> add(const live_options& o = {})
     {
         const array a = palm();
-        auto s = std::make_shared<live_stroke::impl>(next_id(), a, layout(a), out->setup(), o);
-        feed.submit(last(), std::shared_ptr<engine::live_voice>(s, &s->voice));
+        auto s = begin_live(a, o);
         feed.pump(status().written, link.clock.load());
         return s;
     }

@@ -103,8 +103,7 @@ private:
     {
         const array a = make_grid("pair", 1, 2, 20.0, 20.0);
         live_options o{.timeout_s = 3600.0};
-        live_ = std::make_shared<live_stroke::impl>(r_.next_id(), a, layout(a), r_.out->setup(), o);
-        r_.feed.submit(r_.last(), std::shared_ptr<engine::live_voice>(live_, &live_->voice));
+        live_ = r_.begin_live(a, o);
     }
 
     void half_second(unsigned i, std::mt19937_64& random, work& w)
@@ -383,10 +382,7 @@ private:
         o.plan.algorithm = random_() % 2 == 0 ? algorithm_kind::continuous : algorithm_kind::park2016;
         o.render = levels_;
         o.timeout_s = 0.05;
-        const array a = row();
-        auto s = std::make_shared<live_stroke::impl>(r_.next_id(), a, layout(a), r_.out->setup(), o);
-        r_.feed.submit(r_.last(), std::shared_ptr<engine::live_voice>(s, &s->voice));
-        live_.push_back(std::move(s));
+        live_.push_back(r_.begin_live(row(), o));
     }
 
     void feed_live(std::size_t i)

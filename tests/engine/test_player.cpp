@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <ctime>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -26,6 +25,7 @@
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
+#include "rt/clock.hpp"
 #include "scores.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 
@@ -63,13 +63,6 @@ public:
 
     stream_setup own;
 };
-
-std::int64_t now_ns()
-{
-    timespec t{};
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
 
 // Edges through a pipe.
 class pipe_edges : public edge_input {
@@ -306,7 +299,7 @@ TEST_CASE("an edge fires all armed strokes at once, at its time and the delay, a
         const stroke_id a = p.submit(tone(0.01), start_at::trigger());
         const stroke_id b = p.submit(tone(0.01, 3), start_at::trigger());
         CHECK_FALSE(p.wait(a, 0.0));
-        const std::int64_t t = now_ns();
+        const std::int64_t t = rt::monotonic_ns();
         trigger.edges({t, t + 1'000'000'000}); // the second has nothing left to start
         const auto ra = p.wait(a);
         const auto rb = p.wait(b);
@@ -318,12 +311,12 @@ TEST_CASE("an edge fires all armed strokes at once, at its time and the delay, a
     trigger.break_off();
     const stroke_id d = p.submit(tone(0.01));
     CHECK(p.wait(d)->state == state_kind::finished);
-    CHECK(p.fire(now_ns()) == 1);
+    CHECK(p.fire(rt::monotonic_ns()) == 1);
     CHECK(p.wait(c)->state == state_kind::finished);
     const stroke_id e = p.submit(tone(0.01), start_at::trigger());
     p.stop();
     CHECK(p.wait(e)->state == state_kind::cancelled);
-    CHECK(p.fire(now_ns()) == 0);
+    CHECK(p.fire(rt::monotonic_ns()) == 0);
     CHECK_THROWS_AS(p.begin(), error);
 }
 
@@ -362,12 +355,12 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
                 for (unsigned i = 0; i < 40; ++i) {
                     shared.to(10.0 * t, 1.0 * i, 0.1);
                     const start_at when = i % 4 == 0   ? start_at::now()
-                                          : i % 4 == 1 ? start_at::time(now_ns())
+                                          : i % 4 == 1 ? start_at::time(rt::monotonic_ns())
                                           : i % 4 == 2 ? start_at::frame(p.position().played + 1000)
                                                        : start_at::trigger();
                     const stroke_id id = p.submit(tone(0.002, t), when);
                     if (i % 4 == 3)
-                        p.fire(now_ns());
+                        p.fire(rt::monotonic_ns());
                     if (i % 5 == 0)
                         p.cancel(id);
                     live_stroke own = p.begin({.timeout_s = 86400.0});
@@ -424,7 +417,7 @@ TEST_CASE("on_end works in time, late, for unknown strokes, and several times fo
     CHECK(p.on_end(id, count));
     CHECK(p.on_end(id, count));
     CHECK_FALSE(p.on_end({77}, count));
-    p.fire(now_ns());
+    p.fire(rt::monotonic_ns());
     for (int n = calls; n < 2; n = calls)
         calls.wait(n);
     CHECK(p.on_end(id, count)); // its report has not been taken

@@ -54,17 +54,19 @@ drive_event make_line(std::uint64_t start, std::uint32_t length, std::uint32_t c
     return e;
 }
 
+constexpr std::size_t channels = 2;
+
 mixer make_mixer(std::size_t capacity = 64)
 {
-    return {std::vector<double>(2, 1.0), format_kind::float32, capacity};
+    return {std::vector<double>(channels, 1.0), format_kind::float32, capacity};
 }
 
 std::vector<float> take(mixer& m, std::size_t frames, std::size_t block = 48)
 {
-    std::vector<float> x(frames * m.channels(), 7.0F);
+    std::vector<float> x(frames * channels, 7.0F);
     for (std::size_t done = 0; done < frames;) {
         const std::size_t n = std::min(block, frames - done);
-        m.process(n, reinterpret_cast<std::byte*>(x.data() + done * m.channels()));
+        m.process(n, reinterpret_cast<std::byte*>(x.data() + done * channels));
         done += n;
     }
     return x;

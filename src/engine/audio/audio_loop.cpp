@@ -69,12 +69,7 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
         break;
     case phase::running:
         take_commands();
-        // After two idle wake-ups, write anyway: one may have been lost, or the state may have changed
-        // without one.
-        if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
-            write_periods(now);
-        else if (ready != io_kind::again)
-            broken(ready, 0, now);
+        write_if_ready(ready, now);
         break;
     }
     if (phase_ == phase::running) {
@@ -200,6 +195,16 @@ io_result audio_loop::write_pending() noexcept
     return {r.status, taken, r.code};
 }
 
+void audio_loop::write_if_ready(io_kind ready, std::int64_t now) noexcept
+{
+    // After two idle wake-ups, write anyway: one may have been lost, or the state may have changed without
+    // one.
+    if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
+        write_periods(now);
+    else if (ready != io_kind::again)
+        broken(ready, 0, now);
+}
+
 void audio_loop::write_periods(std::int64_t now) noexcept
 {
     const io_result available = sink_.available();
@@ -207,8 +212,10 @@ void audio_loop::write_periods(std::int64_t now) noexcept
         return broken(available.status, available.code, now);
     std::size_t room = available.frames;
     if (room > setup_.period_frames)
-        link_.count.late_frames =
-            std::max<std::uint64_t>(link_.count.late_frames, room - setup_.period_frames);
+        link_.count.late_frames.store(
+            std::max<std::uint64_t>(link_.count.late_frames.load(std::memory_order_relaxed),
+                                    room - setup_.period_frames),
+            std::memory_order_relaxed);
 
     // This is a bound even if a device claims more space than its buffer has.
     room = std::min<std::size_t>(room, setup_.buffer_frames);
@@ -218,7 +225,10 @@ void audio_loop::write_periods(std::int64_t now) noexcept
                 break;
             take_commands();
             if (scores_.being_fed())
-                link_.count.low_water = std::min<std::uint64_t>(link_.count.low_water, mixer_.size());
+                link_.count.low_water.store(
+                    std::min<std::uint64_t>(link_.count.low_water.load(std::memory_order_relaxed),
+                                            mixer_.size()),
+                    std::memory_order_relaxed);
             mix_period();
         }
         const io_result r = write_pending();
@@ -473,12 +483,8 @@ void audio_loop::close_step(io_kind ready, std::int64_t now) noexcept
     if (link_.amplifier.off.load(std::memory_order_seq_cst) ||
         link_.amplifier.stuck.load(std::memory_order_seq_cst) || now - closing_ns_ >= options_.off_ns)
         return end();
-    if (!end_runs_)
-        return;
-    if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
-        write_periods(now);
-    else if (ready != io_kind::again)
-        end_runs_ = false;
+    if (end_runs_)
+        write_if_ready(ready, now);
 }
 
 void audio_loop::end() noexcept

@@ -220,6 +220,7 @@ private:
 
     io_result begin_epoch() noexcept;
     io_result write_pending() noexcept;
+    void write_if_ready(io_kind ready, std::int64_t now) noexcept;
     void write_periods(std::int64_t now) noexcept;
     void mix_period() noexcept;
     void look_at_position(std::int64_t now) noexcept;

@@ -66,13 +66,17 @@ bool feeder::cancel(stroke_id id)
 {
     if (cancel_waiting(id))
         return true;
-    for (const std::uint32_t place : in_use_) {
-        if (slots_[place].use->id != id || slots_[place].use->cancelled)
-            continue;
-        cancel_playing(place);
-        return true;
-    }
-    return false;
+    const auto playing = find_playing(id);
+    if (playing == in_use_.end() || slots_[*playing].use->cancelled)
+        return false;
+    cancel_playing(*playing);
+    return true;
+}
+
+std::vector<std::uint32_t>::const_iterator feeder::find_playing(stroke_id id) const
+{
+    return std::find_if(in_use_.begin(), in_use_.end(),
+                        [&](std::uint32_t place) { return slots_[place].use->id == id; });
 }
 
 void feeder::cancel_playing(std::uint32_t place) noexcept
@@ -86,8 +90,7 @@ void feeder::cancel_playing(std::uint32_t place) noexcept
 
 bool feeder::set_gain(stroke_id id, float gain)
 {
-    const auto playing = std::find_if(in_use_.begin(), in_use_.end(),
-                                      [&](std::uint32_t place) { return slots_[place].use->id == id; });
+    const auto playing = find_playing(id);
     if (playing == in_use_.end() && !waits(id))
         return false;
     gains_[id] = gain;
@@ -139,9 +142,15 @@ void feeder::end_waiting(stroke_id last, End end)
     while (!waiting_live_.empty() && waiting_live_.begin()->first <= last) {
         const auto w = waiting_live_.begin();
         end(w->first);
-        w->second->close();
-        ended_live_.insert(waiting_live_.extract(w));
+        end_live(w);
     }
+}
+
+// Moves a live stroke that waits to those that have ended.
+void feeder::end_live(live_map::iterator w)
+{
+    w->second->close();
+    ended_live_.insert(waiting_live_.extract(w));
 }
 
 void feeder::pump(std::uint64_t written, const clock_line& clock)
@@ -350,9 +359,7 @@ void feeder::end_all(const report& r)
 
 bool feeder::knows(stroke_id id) const
 {
-    return waits(id) ||
-           std::any_of(in_use_.begin(), in_use_.end(),
-                       [&](std::uint32_t place) { return slots_[place].use->id == id; }) ||
+    return waits(id) || find_playing(id) != in_use_.end() ||
            std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; });
 }
 
@@ -414,8 +421,7 @@ void feeder::look_at_waiting_live(std::uint64_t written)
             ++next;
             continue;
         }
-        v.close();
-        ended_live_.insert(waiting_live_.extract(next++));
+        end_live(next++);
     }
 }
 
@@ -440,8 +446,7 @@ bool feeder::cancel_waiting(stroke_id id)
     report_end({.id = id, .state = state_kind::cancelled, .frames = 0});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
-        live->second->close();
-        ended_live_.insert(waiting_live_.extract(live));
+        end_live(live);
         return true;
     }
     return erase_task(waiting_, id) || erase_task(timed_, id) || erase_task(armed_, id);

@@ -126,6 +126,8 @@ private:
         return place + voices * slots_[place].generation;
     }
     bool cancel_waiting(stroke_id id);
+    void end_live(live_map::iterator w);
+    std::vector<std::uint32_t>::const_iterator find_playing(stroke_id id) const;
     void cancel_playing(std::uint32_t place) noexcept;
     void end_cancelled();
     template <typename End>

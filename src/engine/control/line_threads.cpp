@@ -12,6 +12,18 @@
 #include "rt/clock.hpp"
 
 namespace tactor::engine {
+namespace {
+
+// Sleeps until a signal, at most so many ns, and consumes it.
+void await_signal(rt::event_fd& e, std::int64_t ns) noexcept
+{
+    const timespec timeout = rt::to_timespec(ns);
+    pollfd fd{.fd = e.fd(), .events = POLLIN, .revents = 0};
+    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
+        e.consume();
+}
+
+} // namespace
 
 amplifier_driver::amplifier_driver(link& l, enable_line& line, const driver_options& o,
                                    std::function<std::int64_t()> clock)
@@ -225,10 +237,7 @@ void amplifier_thread::run() noexcept
 
 void amplifier_thread::sleep() noexcept
 {
-    const timespec timeout = rt::to_timespec(driver_.next_ns());
-    pollfd fd{.fd = link_.amplifier.wake.fd(), .events = POLLIN, .revents = 0};
-    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
-        link_.amplifier.wake.consume();
+    await_signal(link_.amplifier.wake, driver_.next_ns());
 }
 
 namespace {
@@ -242,6 +251,10 @@ constexpr std::int64_t idle_ns = 60 * rt::ns_per_s;
 // Longest wait on one line of the clock: the line improves with time, and an xrun ends it.
 constexpr std::int64_t longest_wait_ns = 100'000'000;
 constexpr std::int64_t no_clock_ns = 2'000'000;
+// Delay after which a pulse is not sent any more: a wrong time is worse than none.
+constexpr std::int64_t latest_pulse_ns = 20'000'000;
+// Time before a pulse is due at which the emitter starts to sleep for this pulse alone.
+constexpr std::int64_t pulse_lead_ns = 2'000'000;
 
 class system_time final : public pulse_time {
 public:
@@ -379,7 +392,7 @@ pulse_stats trigger_thread::stats() noexcept
 void trigger_thread::run() noexcept
 {
     while (!over_.load(std::memory_order_acquire))
-        wait(step());
+        await_signal(wake_, step());
     line_.set(false);
 }
 
@@ -407,14 +420,6 @@ std::int64_t trigger_thread::step() noexcept
     stats_.store(emitter_.stats());
     link_.to_control.signal();
     return 0;
-}
-
-void trigger_thread::wait(std::int64_t ns) noexcept
-{
-    const timespec timeout = rt::to_timespec(ns);
-    pollfd fd{.fd = wake_.fd(), .events = POLLIN, .revents = 0};
-    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
-        wake_.consume();
 }
 
 void pulse_plan::forget(stroke_id id, bool was_played)

@@ -199,11 +199,6 @@ public:
     virtual void sleep_until(std::int64_t time_ns) noexcept = 0;
 };
 
-/// Delay after which a pulse is not sent any more: a wrong time is worse than none.
-inline constexpr std::int64_t latest_pulse_ns = 20'000'000;
-/// Time before a pulse is due at which the emitter starts to sleep for this pulse alone.
-inline constexpr std::int64_t pulse_lead_ns = 2'000'000;
-
 /// Sender of pulses, one after the other.
 class pulse_emitter {
 public:
@@ -252,7 +247,6 @@ public:
 private:
     void run() noexcept;
     std::int64_t step() noexcept;
-    void wait(std::int64_t ns) noexcept;
 
     link& link_;
     enable_line& line_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The two threads of a player, and the state that they share with its callers.
+/// State of a player that its threads and its callers share, and its control thread.
 #pragma once
 
 #include <condition_variable>

@@ -65,7 +65,7 @@ private:
     library_messages* outer_;
 };
 
-/// Returns "text (detail)", or "text" without a detail.
+/// Returns "text: detail", or "text" without a detail.
 std::string with_detail(const std::string& text, const std::string& detail);
 
 /// The system around a PCM that cannot be opened.

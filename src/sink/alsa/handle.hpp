@@ -18,7 +18,9 @@
 
 namespace tactor::alsa {
 
-using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_delete>>;
+using detail::deleter;
+
+using configuration = std::unique_ptr<snd_config_t, deleter<snd_config_delete>>;
 
 /// Reads a configuration: the text, or without one the system's files, as they are now. libasound's own copy
 /// of these belongs to the host program, and keeps what ~/.asoundrc was when it was first read.
@@ -28,8 +30,6 @@ using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_d
 configuration read_configuration(const std::string& text = {});
 
 inline constexpr unsigned most_channels = max_pcm_channels;
-
-using detail::deleter;
 
 /// Closes a PCM and keeps a plugin's messages off standard error.
 struct closer {

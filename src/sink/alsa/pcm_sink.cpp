@@ -22,6 +22,27 @@
 #include "sink/alsa/handle.hpp"
 
 namespace tactor::alsa {
+namespace {
+
+// Returns the outcome that a PCM's state means. A negative state is an error number (the device is gone).
+io_kind classify_state(int state) noexcept
+{
+    if (state < 0)
+        return io_kind::lost;
+    switch (state) {
+    case SND_PCM_STATE_PREPARED:
+    case SND_PCM_STATE_RUNNING:
+        return io_kind::ok;
+    case SND_PCM_STATE_SUSPENDED:
+        return io_kind::suspended;
+    case SND_PCM_STATE_DISCONNECTED:
+        return io_kind::lost;
+    default:
+        return io_kind::xrun; // stopped for some reason: only prepare() helps
+    }
+}
+
+} // namespace
 
 pcm_sink::pcm_sink(handle h, stream_setup s, bool on_card)
     : handle_(std::move(h)),
@@ -242,23 +263,6 @@ void pcm_sink::drop() noexcept
 {
     const quiet silent;
     snd_pcm_drop(handle_.get());
-}
-
-io_kind classify_state(int state) noexcept
-{
-    if (state < 0)
-        return io_kind::lost;
-    switch (state) {
-    case SND_PCM_STATE_PREPARED:
-    case SND_PCM_STATE_RUNNING:
-        return io_kind::ok;
-    case SND_PCM_STATE_SUSPENDED:
-        return io_kind::suspended;
-    case SND_PCM_STATE_DISCONNECTED:
-        return io_kind::lost;
-    default:
-        return io_kind::xrun; // stopped for some reason: only prepare() helps
-    }
 }
 
 io_kind classify_error(long code, int state) noexcept

@@ -70,9 +70,6 @@ private:
     int poll_error_ = 0; ///< error of the latest descriptors()
 };
 
-/// Returns the outcome that a PCM's state means. A negative state is an error number (the device is gone).
-io_kind classify_state(int state) noexcept;
-
 /// Returns the outcome that a negative return value means in a state.
 io_kind classify_error(long code, int state) noexcept;
 

@@ -231,11 +231,6 @@ mixer::mixer(std::span<const double> limits, format_kind format, std::size_t cap
 
 mixer::~mixer() = default;
 
-std::size_t mixer::channels() const noexcept
-{
-    return impl_->strips.size();
-}
-
 std::size_t mixer::available() const noexcept
 {
     impl_->let_go();

@@ -35,7 +35,6 @@ public:
           const guard_settings& guards = {});
     ~mixer();
 
-    std::size_t channels() const noexcept;
     /// Returns the number of drives that can be added now.
     std::size_t available() const noexcept;
 

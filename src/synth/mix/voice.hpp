@@ -269,7 +269,7 @@ public:
     /// Returns the samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid
     /// until the next call for the same wave. `f`, `g`: null: none.
     const double* get(const voice& v, const fade* f, const score_gain* g, std::uint64_t at, unsigned n,
-                      wave w = wave::sine) noexcept;
+                      wave w) noexcept;
     /// Returns true if `s`, which get() returned for the sine, has no window, fade or gain.
     bool is_plain(const double* s) const noexcept { return s == entries_[0].plain.data(); }
     void forget() noexcept;

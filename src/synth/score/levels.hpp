@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Levels of the tactors, and their limits.
+/// Levels of the tactors, their limits, and the boost of actuators that rise slowly.
 #pragma once
 
 #include <cstddef>

@@ -57,14 +57,10 @@ pcm.hinted { type null hint { type "file" } }
 pcm.desk { type plug slave.pcm { type pipewire } }
 )";
 
-struct configuration {
-    snd_config_t* top = nullptr;
-    configuration() { REQUIRE(snd_config_load_string(&top, definitions, 0) == 0); }
-    ~configuration() { snd_config_delete(top); }
-    configuration(const configuration&) = delete;
-    configuration& operator=(const configuration&) = delete;
-    types operator()(const std::string& name) const { return alsa::find_route(top, name); }
-};
+types route(const std::string& name)
+{
+    return alsa::find_route(alsa::read_configuration(definitions).get(), name);
+}
 
 std::string complaint(const std::string& name)
 {
@@ -265,7 +261,6 @@ TEST_CASE("names with more than a device are not plain, and have a reason")
 
 TEST_CASE("the route of a name is ALSA's, in any spelling")
 {
-    const configuration route;
     CHECK(route("hw:CARD=Tactor,DEV=1") == types{"hw"});
     CHECK(route("plug:'hw:0,1'") == types{"plug", "hw"});
     CHECK(route("palm") == types{"route", "hw"});
@@ -286,7 +281,6 @@ TEST_CASE("the route of a name is ALSA's, in any spelling")
 
 TEST_CASE("a definition that leads to itself, or doubles at each step, ends and is not safe")
 {
-    const configuration route;
     for (const char* name : {"round", "wide"}) {
         CAPTURE(name);
         CHECK(alsa::unsafe_type(route(name)) == "?");
@@ -296,7 +290,6 @@ TEST_CASE("a definition that leads to itself, or doubles at each step, ends and 
 
 TEST_CASE("an unknown type is not safe, and sound servers are named")
 {
-    const configuration route;
     CHECK(alsa::unsafe_type(route("odd")) == "ladspa");
     CHECK(alsa::unsafe_type(route("desk")) == "");
     CHECK(alsa::find_server(route("desk")) == "PipeWire");

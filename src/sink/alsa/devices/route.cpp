@@ -18,12 +18,14 @@
 #include <tactor/error.hpp>
 
 #include "sink/alsa/error_text.hpp"
+#include "sink/alsa/handle.hpp"
 
 namespace tactor::alsa {
 namespace {
 
 using types = std::vector<std::string>;
 
+constexpr int deepest = 32;              // of plugins that are followed: a definition may name itself
 constexpr std::size_t most_types = 1024; // of one PCM; also stops definitions that double at each step
 
 // These affect only the device at their end.
@@ -31,6 +33,65 @@ constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "cop
                               "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
 // These start a card's mixer, set it ("ctl_elems" is the type of hooks), or talk to a server.
 constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
+
+using c_text = std::unique_ptr<char, deleter<std::free>>;
+
+// Returns the member of a compound with that name, or null. Takes null and other nodes.
+snd_config_t* member(snd_config_t* compound, const char* id)
+{
+    snd_config_t* found = nullptr;
+    return compound != nullptr && snd_config_get_type(compound) == SND_CONFIG_TYPE_COMPOUND &&
+                   snd_config_search(compound, id, &found) == 0
+               ? found
+               : nullptr;
+}
+
+// Returns a value as text; empty for null and for a compound.
+std::string value_text(snd_config_t* value)
+{
+    char* text = nullptr;
+    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
+        return {};
+    const c_text freed(text);
+    return text;
+}
+
+// Returns a string's text, which the node owns; null for other nodes and for none.
+const char* string_value(snd_config_t* value)
+{
+    const char* text = nullptr;
+    return value != nullptr && snd_config_get_string(value, &text) >= 0 ? text : nullptr;
+}
+
+// Returns the definition of a name under `base`; null if there is none.
+configuration look_up(snd_config_t* top, const char* base, const std::string& name)
+{
+    snd_config_t* definition = nullptr;
+    snd_config_search_definition(top, base, name.c_str(), &definition);
+    return configuration(definition);
+}
+
+// Returns a slave, or the definition of the one that it names, which `named` then owns. Null if there is
+// none.
+snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named)
+{
+    const char* name = string_value(slave);
+    if (name == nullptr)
+        return slave;
+    named = look_up(top, "pcm_slave", name);
+    return named.get();
+}
+
+// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
+// device has.
+std::optional<unsigned> channel_number(const std::string& s)
+{
+    char* end = nullptr;
+    const long n = std::strtol(s.c_str(), &end, 0);
+    if (s.empty() || *end != '\0')
+        return {};
+    return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
+}
 
 // Returns the number of channels of a slave by its definition or its name; most_channels if it gives none.
 unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
@@ -130,7 +191,6 @@ private:
 };
 
 using hints = std::unique_ptr<void*, deleter<snd_device_name_free_hint>>;
-using c_text = std::unique_ptr<char, deleter<std::free>>;
 
 std::string one_line(const char* lines)
 {
@@ -196,55 +256,6 @@ std::string find_fault(snd_config_t* top, const std::string& name)
     return w.fault();
 }
 
-snd_config_t* member(snd_config_t* compound, const char* id)
-{
-    snd_config_t* found = nullptr;
-    return compound != nullptr && snd_config_get_type(compound) == SND_CONFIG_TYPE_COMPOUND &&
-                   snd_config_search(compound, id, &found) == 0
-               ? found
-               : nullptr;
-}
-
-std::string value_text(snd_config_t* value)
-{
-    char* text = nullptr;
-    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
-        return {};
-    const c_text freed(text);
-    return text;
-}
-
-const char* string_value(snd_config_t* value)
-{
-    const char* text = nullptr;
-    return value != nullptr && snd_config_get_string(value, &text) >= 0 ? text : nullptr;
-}
-
-configuration look_up(snd_config_t* top, const char* base, const std::string& name)
-{
-    snd_config_t* definition = nullptr;
-    snd_config_search_definition(top, base, name.c_str(), &definition);
-    return configuration(definition);
-}
-
-snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named)
-{
-    const char* name = string_value(slave);
-    if (name == nullptr)
-        return slave;
-    named = look_up(top, "pcm_slave", name);
-    return named.get();
-}
-
-std::optional<unsigned> channel_number(const std::string& s)
-{
-    char* end = nullptr;
-    const long n = std::strtol(s.c_str(), &end, 0);
-    if (s.empty() || *end != '\0')
-        return {};
-    return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
-}
-
 std::string unsafe_type(const std::vector<std::string>& route)
 {
     const auto bad = std::find_if_not(route.begin(), route.end(), [](const std::string& t) {
@@ -262,7 +273,7 @@ std::string lasting_type(const std::vector<std::string>& route)
 
 bool writes(const std::vector<std::string>& route)
 {
-    return std::find(route.begin(), route.end(), "file") != route.end();
+    return contains(route, "file");
 }
 
 std::string find_server(const std::vector<std::string>& route)
@@ -270,7 +281,7 @@ std::string find_server(const std::vector<std::string>& route)
     constexpr std::array<std::pair<std::string_view, const char*>, 3> servers{
         {{"pipewire", "PipeWire"}, {"pulse", "PulseAudio"}, {"jack", "JACK"}}};
     for (const auto& [type, server] : servers)
-        if (std::find(route.begin(), route.end(), type) != route.end())
+        if (contains(route, type))
             return server;
     return {};
 }

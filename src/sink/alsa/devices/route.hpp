@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +12,6 @@
 
 #include <tactor/alsa.hpp>
 #include <tactor/sink.hpp>
-
-#include "sink/alsa/handle.hpp"
 
 namespace tactor::alsa {
 
@@ -32,29 +29,6 @@ void each_member(snd_config_t* compound, Visit visit)
             visit(std::string(id), member);
     }
 }
-
-/// Returns the member of a compound with that name, or null. Takes null and other nodes.
-snd_config_t* member(snd_config_t* compound, const char* id);
-
-/// Returns a value as text; empty for null and for a compound.
-std::string value_text(snd_config_t* value);
-
-/// Returns a string's text, which the node owns; null for other nodes and for none.
-const char* string_value(snd_config_t* value);
-
-/// Returns the definition of a name under `base`; null if there is none.
-configuration look_up(snd_config_t* top, const char* base, const std::string& name);
-
-/// Returns a slave, or the definition of the one that it names, which `named` then owns. Null if there is
-/// none.
-snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named);
-
-/// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
-/// device has.
-std::optional<unsigned> channel_number(const std::string& s);
-
-/// Deepest nesting of plugins that is followed: a definition may name itself.
-inline constexpr int deepest = 32;
 
 template <typename Names>
 bool contains(const Names& names, std::string_view type)
