@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Holds that every public function that may throw is tried without descriptors and without memory.
 
-What is declared in a public header and not noexcept stands in one of the tables tests/engine/exhaustion_*.cpp, each
+What is declared in a public header and not noexcept stands in one of the tables tests/engine/exhaustion_calls.cpp, each
 overload in a separate row: under its name, with that of its class before it ("path::meets_x"), and is called in that
 row. Further rows for the same have more to say after a comma ("path::from_svg, no path"). from_string() has one row for
 all, which names each enumeration. UNTRIED has the others, with the reason.

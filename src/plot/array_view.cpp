@@ -22,6 +22,8 @@ namespace {
 constexpr double legend_height = 13.0;
 constexpr double least_spacing = 3.6; // of bursts on the page, pt
 constexpr std::size_t always_shown = 24;
+// Most bursts that are drawn; if there are more, or they would overlap, every n-th is drawn.
+constexpr std::size_t most_shown_bursts = 120;
 constexpr double close_pitch = 24.0; // of tactors on the page, pt
 constexpr double taller = 0.3;       // of the width
 constexpr std::size_t few_paths = 20;

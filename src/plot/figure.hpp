@@ -92,9 +92,6 @@ std::string describe_sound(const plan& p);
 /// Returns the phantom model, and its faces if they are not Delaunay's: "inverse-distance (faces nearest)".
 std::string describe_phantom(const plan& p);
 
-/// Most bursts that are drawn; if there are more, or they would overlap, every n-th is drawn.
-inline constexpr std::size_t most_shown_bursts = 120;
-
 inline constexpr std::size_t most_array_notes = 6; ///< lines
 
 /// Draws the array, the path, the phantoms and their tactors (as figure 3 of Park et al. 2016) into the upper

@@ -338,7 +338,7 @@ private:
     {
         std::size_t row = rows_.rows.size();
         for (const drive& d : b.drives)
-            row = std::min(row, static_cast<std::size_t>(rows_.row_by_tactor[d.tactor]));
+            row = std::min(row, find_row(d.tactor));
         return top_ + rows_.top(row);
     }
 

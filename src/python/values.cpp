@@ -222,9 +222,7 @@ py::array_t<double> places(const numbers& all, F&& find)
 void write_text(const std::string& file, const std::string& text)
 {
     const without_lock free;
-    detail::output_file out(file, {}, detail::owner_kind::caller);
-    out.write(text.data(), static_cast<std::int64_t>(text.size()));
-    out.commit();
+    detail::write_file(file, text, detail::owner_kind::caller);
 }
 
 std::string read_text(const std::string& file)

@@ -110,7 +110,7 @@ class Play(StudioTest):
 
     def test_playing_again_begins_anew(self):
         p, watcher = self.ready(self.serve())
-        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.add_example(p)
         self.planned(p)
         p.key("KeyL", "l")
         numbers = [self.play(p, watcher) for _ in range(4)]
@@ -136,7 +136,7 @@ class Play(StudioTest):
 
     def test_what_plays_follows_the_level(self):
         p, watcher = self.ready(self.serve())
-        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.add_example(p)
         number = self.loop(p, watcher)
         loudest = "Math.max(...tactor.state.dbfs.filter(v => v !== null))"
         p.until(f"{loudest} > -30")
@@ -165,7 +165,7 @@ class Play(StudioTest):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 5]))
         first = p.value("tactor.state.current")
-        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.add_example(p)
         self.loop(p, watcher)
         p.until("tactor.state.at_s > 0")
         p.value("document.querySelectorAll('#takes .take')[1].click()")

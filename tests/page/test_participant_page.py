@@ -67,7 +67,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
     def picture(self, p, name):
         """Checks each size: nothing outside the screen and no button too small. Pictures are light and dark."""
         for width, height in SIZES:
-            p.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+            p.resize((width, height))
             self.assertLessEqual(p.value("document.documentElement.scrollWidth"), width, name)
             for x, y, w, h in p.value("[...document.querySelectorAll('#answers button')].map(b => { const r ="
                                       " b.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })"):

@@ -120,7 +120,7 @@ def pages(tmp_path_factory):
 
 
 def test_each_module_has_a_page(pages):
-    public = {p.stem for p in pathlib.Path(tactor.__file__).parent.glob("[a-z]*.py")}
+    public = {p.stem for p in FOLDER.glob("[a-z]*.py")}
     assert {"index.html", "tactor.html"} | {f"{name}.html" for name in public} <= set(pages)
 
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -170,12 +171,13 @@ extent shown_extent(const array& a, const std::vector<stroke>& strokes)
     extent e{first.x_mm, first.y_mm, first.x_mm, first.y_mm};
     for (const tactor_spec& t : a.tactors)
         e.add(t.position);
-    const double space = std::max({pitch_mm(a), 0.5 * (e.x1 - e.x0), 0.5 * (e.y1 - e.y0)});
+    const double pitch = pitch_mm(a);
+    const double space = std::max({pitch, 0.5 * (e.x1 - e.x0), 0.5 * (e.y1 - e.y0)});
     const extent most{e.x0 - space, e.y0 - space, e.x1 + space, e.y1 + space};
     for (const stroke& s : strokes)
         for (const point& p : sample(s.motion))
             e.add({std::clamp(p.x_mm, most.x0, most.x1), std::clamp(p.y_mm, most.y0, most.y1)});
-    if (e.x1 - e.x0 < 0.3 * pitch_mm(a) && e.y1 - e.y0 < 0.3 * pitch_mm(a)) // a lone tactor
+    if (e.x1 - e.x0 < 0.3 * pitch && e.y1 - e.y0 < 0.3 * pitch) // a lone tactor
         e = {e.x0 - 0.2 * space, e.y0 - 0.2 * space, e.x1 + 0.2 * space, e.y1 + 0.2 * space};
     return e;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Axes, line charts, dimensions as on technical drawings; headings over a picture and notes under it.
+/// Axes, line charts, parts of lines and lines of fewer points; headings over a picture and notes under it.
 #pragma once
 
 #include <string>

@@ -24,6 +24,18 @@ namespace {
 constexpr std::size_t most_instants = 24; // of `continuous`, shown as positions
 constexpr std::size_t looked_at = 4000;   // instants of `continuous` at which playing tactors are looked up
 
+// Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for other strokes.
+std::string find_repeated_name(const std::string& name)
+{
+    constexpr std::string_view digits = "0123456789";
+    const std::size_t open = name.rfind(" (");
+    const std::size_t number = open == std::string::npos ? open : name.find_first_not_of(digits, open + 2);
+    if (number == std::string::npos || number == open + 2 || name.compare(number, 4, " of ") != 0)
+        return {};
+    const std::size_t end = name.find_first_not_of(digits, number + 4);
+    return end + 1 == name.size() && name[end] == ')' && end > number + 4 ? name.substr(0, open) : "";
+}
+
 class maker {
 public:
     explicit maker(const scene& s) : scene_(s), plays_(s.tactors.tactors.size(), false) {}
@@ -171,17 +183,6 @@ std::string join_runs(const std::vector<std::size_t>& numbers)
 }
 
 } // namespace
-
-std::string find_repeated_name(const std::string& name)
-{
-    constexpr std::string_view digits = "0123456789";
-    const std::size_t open = name.rfind(" (");
-    const std::size_t number = open == std::string::npos ? open : name.find_first_not_of(digits, open + 2);
-    if (number == std::string::npos || number == open + 2 || name.compare(number, 4, " of ") != 0)
-        return {};
-    const std::size_t end = name.find_first_not_of(digits, number + 4);
-    return end + 1 == name.size() && name[end] == ')' && end > number + 4 ? name.substr(0, open) : "";
-}
 
 timeline make_timeline(const scene& s)
 {

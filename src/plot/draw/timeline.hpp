@@ -65,9 +65,6 @@ struct timeline {
 
 timeline make_timeline(const scene& s);
 
-/// Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for other strokes.
-std::string find_repeated_name(const std::string& name);
-
 /// Draws a strip of the colours of time, along x; in an animated picture a mark moves over it.
 void draw_time_strip(canvas& c, box where);
 

@@ -242,10 +242,7 @@ void check_output(const fs::path& file, bool force)
 void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)
 {
     check_output(file, force);
-    const std::string bytes = to_bytes(c, find_format(file), dpi);
-    detail::output_file to(file);
-    to.write(bytes.data(), static_cast<std::int64_t>(bytes.size()));
-    to.commit();
+    detail::write_file(file, to_bytes(c, find_format(file), dpi));
 }
 
 } // namespace tactor::plot

@@ -11,7 +11,7 @@ export const state = {
   fault: null,           // what failed, for the banner
   stopped: null,         // {name, at}
   stopping: null,        // a stop that was not answered yet: {since_ms, sent_ms}
-  touches: new Map(),    // of other people, by stroke: {x, y, at}
+  touches: new Map(),    // of other people, by stroke: {x_mm, y_mm, client, at}
   dbfs: [],              // of each tactor, as it is driven
   options: [],           // the rows of the table of options that a client may give
   // Takes.
@@ -22,10 +22,10 @@ export const state = {
   stroke: 0,             // the one that is edited
   knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
   // Drawing, prediction and play.
-  drawing: null,         // {began, tracks}
+  drawing: null,         // {began, before, tracks, kind, append}
   plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
   outside: [],           // places of strokes that are farthest from the array
-  playing: null,         // {began_ms, total_s, numbers, felt, loop}
+  playing: null,         // {take, began_ms, numbers, felt, waits, again, next} and its round, see service/player.js
   at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   compare: null,         // of two methods, see settings/compare.js

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
+// And the definition of a study of both.
 import {state, changed, on_change, current_take, current_stroke, level_dbfs, say} from "../state.js";
 import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {row, value, with_side, request_options} from "../takes/takes.js";
@@ -100,6 +101,7 @@ on_change(() => {
 });
 
 // The definition of a study of both, for `tactor experiment`.
+
 // Options of a method, see tactor-experiment(5).
 const OF_METHOD = "algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap carrier".split(" ");
 const form = by_id("study"), study_name = () => file_name({name: form.elements.name.value});

@@ -68,7 +68,7 @@ export function file_name(take) {
   while (new TextEncoder().encode(name).length > 90) name = [...name].slice(0, -1).join("");
   return name || "take";
 }
-export function give(name, type, ...parts) {
+function give(name, type, ...parts) {
   const a = make("a", {download: name, href: URL.createObjectURL(new Blob(parts, {type}))});
   a.click();
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);

@@ -2,7 +2,7 @@
 // The list of takes.
 import {state, on_change} from "../state.js";
 import {by_id, make, all_of, listen, set_text} from "../../../net/page/dom.js";
-import {icon, is_dark, colour} from "../look.js";
+import {icon, is_dark, colour, disc, plot} from "../look.js";
 import {BIN_DAYS, DAY_MS} from "./keeping.js";
 import {choose_take, rename_take, duplicate_take, delete_take, bring_back, fit_take, take_s} from "./takes.js";
 import {total_s} from "./stroke.js";
@@ -28,7 +28,7 @@ function draw(c, strokes) {
   const at = (x, y) => [SIZE + (x - array.box.middle[0]) * scale, SIZE + (y - array.box.middle[1]) * scale];
   p.clearRect(0, 0, c.width, c.height);
   p.fillStyle = colour("line2");
-  for (const q of array.places) { p.beginPath(); p.arc(...at(...q), 3.5, 0, 7); p.fill(); }
+  for (const q of array.places) { disc(p, at(...q), 3.5); p.fill(); }
   p.lineWidth = 5; p.lineCap = "round";
   const total = Math.max(0.01, total_s(strokes));
   for (const s of strokes) {
@@ -36,7 +36,7 @@ function draw(c, strokes) {
     for (let i = 0; i + 1 < s.timed.length; i += step) {
       const a = s.timed[i], b = s.timed[Math.min(s.timed.length - 1, i + step)];
       p.strokeStyle = viridis((s.start_s + a[0]) / total, is_dark());
-      p.beginPath(); p.moveTo(...at(a[1], a[2])); p.lineTo(...at(b[1] + 1e-3, b[2])); p.stroke();
+      plot(p, at(a[1], a[2]), at(b[1] + 1e-3, b[2])); p.stroke();
     }
   }
 }
