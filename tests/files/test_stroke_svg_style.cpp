@@ -87,11 +87,16 @@ TEST_CASE("a drawing as Illustrator exports it plays without a warning")
         before + "\n.cls-2,\n.cls-3{opacity:1; DISPLAY : none!important}" + behind, "d.svg");
     CHECK(names(hidden) == list{"a"});
     CHECK(hidden.front().warnings.empty());
-    // Other rules are not followed.
-    const auto ruled = parse_strokes_svg(before + "g .cls-2, .cls-1{display:none}" + behind, "d.svg");
+    const auto unseen = parse_strokes_svg(before + ".cls-2{visibility:hidden}" + behind, "d.svg");
+    CHECK(names(unseen) == list{"a"});
+    // Other rules that hide are refused, and those that move are warned of.
+    CHECK(refusal(before + "g .cls-2, .cls-1{display:none}" + behind) ==
+          "a.svg:3:8: a rule hides what 'g .cls-2, .cls-1' selects, which is not understood (delete what is "
+          "hidden, or export presentation attributes)");
+    const auto ruled = parse_strokes_svg(before + "g .cls-2{transform:scale(2)}" + behind, "d.svg");
     CHECK(names(ruled) == list{"a", "b"});
     CHECK(ruled.front().warnings ==
-          list{"d.svg:3:8: display in <style> is not followed: what it hides or moves plays as if it were "
+          list{"d.svg:3:8: transform in <style> is not followed: what it hides or moves plays as if it were "
                "not there (export presentation attributes)"});
 }
 
@@ -198,12 +203,15 @@ TEST_CASE("of a switch its first child plays")
 
 TEST_CASE("rules and styles that do not end, end")
 {
-    for (const char* css : {"{", "}", "a{", "a{display", "@", "@media{", "/*", "a{display:none", "a{b:\"",
-                            ".{display:none}", "*", "a{}}}b{", ",{display:none}", ":", ";;", "!", "&amp;"}) {
+    for (const char* css : {"{", "}", "a{", "a{display", "@", "@media{", "/*", "a{fill:none", "a{b:\"",
+                            ".{fill:none}", "*", "a{}}}b{", ",{fill:none}", ":", ";;", "!", "&amp;"}) {
         CAPTURE(css);
         CHECK(strokes("<style>" + std::string(css) + "</style><line x2='9'/>").size() == 1);
         CHECK(strokes("<line x2='8' style='" + std::string(css) + "'/><line x2='9'/>").size() >= 1);
     }
+    for (const char* css : {"a{display:none", ".{display:none}", ",{display:none}"})
+        CHECK(refusal("<svg><style>" + std::string(css) + "</style><line x2='9'/></svg>").find("hides") !=
+              std::string::npos);
 }
 
 TEST_CASE("faults of an SVG file are named by line and column")

@@ -420,6 +420,7 @@ void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std:
 }
 
 // Rules are nearly always paint, which does not decide what plays; Illustrator hides layers by their class.
+// Refuses other selectors that hide: it is not known what, and that must not play.
 void svg_document::note_rules(pugi::xml_node style)
 {
     has_rules_ = true;
@@ -430,8 +431,17 @@ void svg_document::note_rules(pugi::xml_node style)
             const std::size_t close = std::min(css.find('}', open), css.size() - 1);
             for_each_declaration(
                 css.substr(open + 1, close - open), [&](std::size_t property, std::string_view v) {
-                    const bool hides = property == svg_display && tidy(v.substr(0, v.find('!'))) == "none";
-                    if (property < svg_paints || (hides && add_hidden(selectors)) || notes_.contains("style"))
+                    const std::string value = tidy(v.substr(0, v.find('!')));
+                    if ((property == svg_display && value == "none") ||
+                        (property == svg_visibility && value == "hidden")) {
+                        if (!add_hidden(selectors))
+                            fail(style,
+                                 fmt::format("a rule hides what {} selects, which is not understood",
+                                             quoted(without_blanks(selectors))),
+                                 "delete what is hidden, or export presentation attributes");
+                        return;
+                    }
+                    if (property < svg_paints || notes_.contains("style"))
                         return;
                     note(offset(style), "style",
                          fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",

@@ -62,6 +62,7 @@ inline constexpr std::array<std::string_view, 27> svg_properties{
     "x", "y", "cx", "cy", "r", "rx", "ry", "d"};
 inline constexpr std::size_t svg_paints = 3;      ///< those before only paint
 inline constexpr std::size_t svg_display = 3;     ///< "display"
+inline constexpr std::size_t svg_visibility = 4;  ///< "visibility"
 inline constexpr std::size_t svg_followed = 6;    ///< those before are followed
 inline constexpr std::size_t svg_attributes = 11; ///< those before are presentation attributes
 
