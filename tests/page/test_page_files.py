@@ -174,6 +174,17 @@ class Files(StudioTest):
         self.banner(p, "“notes.exe” was not opened")
         self.assertEqual(p.value("tactor.state.takes.length"), 0)
 
+    def test_of_a_recording_in_per_cent_it_asks_for_the_full_level(self):
+        p, _ = self.ready(self.serve())
+        p.value("window.prompt = text => { window.question = text; return '200'; }")
+        self.drop(p, "cent.csv", "t_s,x_mm,y_mm,intensity\n0,5,5,100\n1,35,5,50\n")
+        p.until("tactor.state.takes.length === 1")
+        self.assertIn("“cent.csv”: intensity 100 is above 1", p.value("window.question"))
+        self.assertEqual(p.value("tactor.state.takes[0].strokes[0].timed.map(point => point[3])"), [0.5, 0.25])
+        p.value("window.prompt = () => null")
+        self.drop(p, "cent.csv", "t_s,x_mm,y_mm,intensity\n0,5,5,100\n1,35,5,50\n")
+        self.banner(p, "“cent.csv” was not opened: line 2: intensity 100 is above 1")
+
     def test_each_of_several_bad_files_is_told_in_one_sentence(self):
         p, _ = self.ready(self.serve())
         self.choose_files(p, {"a.toml": "[[stroke]]\npath = 'M 5 5 L 35 5'\ncolour = 3\n", "b.csv": LINE, "c.jpg": b"\xff\xd8\xff\xe0\0\x10JFIF",

@@ -23,7 +23,7 @@ async function open_files(files) {
   let message = "";
   for (const file of files) {
     try {
-      const r = await call("import", await what_to_import(file));
+      const r = await import_file(file);
       const strokes = r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
       add_take(strokes, {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
       message = r.warnings[0] ?? `Opened “${file.name}”`;
@@ -33,6 +33,16 @@ async function open_files(files) {
   if (!faults.length) return;
   // After the changes of the takes, which end the faults of former ones.
   requestAnimationFrame(() => { state.fault = faults.join(" "); changed("link"); });
+}
+// Of a recording with values above 1 it asks which value means the level, as --intensity-max does.
+async function import_file(file) {
+  const source = await what_to_import(file);
+  try { return await call("import", source); } catch (e) {
+    if (!e.data?.hint?.includes("intensity_max")) throw e;
+    const most = Number(prompt(`“${file.name}”: ${e.data.why}. ` + "Which value is the full level? 100 is per cent, 127 MIDI, 255 8 bits.", "127"));
+    if (!most) throw e;
+    return call("import", {...source, intensity_max: most});
+  }
 }
 // Returns the name and the text of the strokes of a file; throws what it is instead.
 async function what_to_import(file) {
