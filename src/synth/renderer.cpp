@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "synth/score/frames.hpp"
 #include "synth/score/score.hpp"
 #include "synth/tone/make_timbre.hpp"
+#include "synth/tone/timbre.hpp"
 
 namespace tactor::synth {
 
@@ -68,19 +70,20 @@ struct score_mixer {
     std::size_t frame_bytes;
 };
 
-limits_met find_limits_met(const score& s)
+bool power_acts(const score& s)
 {
     constexpr std::uint64_t most_frames = 4096;
+    const score::impl& own = detail::access::of(s);
+    const double reached =
+        std::inner_product(own.asked.begin(), own.asked.end(), own.asked.begin(), own.marker ? 1.0 : 0.0);
+    if (!own.boosted && reached * most_power < own.guards.power)
+        return false;
     score_mixer m(s, format_kind::float32);
     std::vector<std::byte> unused(most_frames * m.frame_bytes);
-    const auto acting = [&] {
-        const mixer_counts c = m.mix.counts();
-        return limits_met{c.power_limited != 0, c.drives_cut != 0};
-    };
-    while (m.mix.position() < s.frames() && !acting().power && !acting().time)
+    while (m.mix.position() < s.frames() && m.mix.counts().power_limited == 0)
         m.process(static_cast<std::size_t>(std::min(most_frames, s.frames() - m.mix.position())),
                   unused.data());
-    return acting();
+    return m.mix.counts().power_limited != 0;
 }
 
 } // namespace tactor::synth

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -395,6 +397,26 @@ TEST_CASE("a piece waits until the level leaves room for it, counting its own ta
     synth::drive_room s(2, short_rest, rate);
     s.played(piece({one(0.0, 4.0)}, -12.0), 0);
     CHECK(wait_s(s, three, 4.0) == doctest::Approx(0.75).epsilon(1e-3));
+}
+
+TEST_CASE("a limit on power is found to act where it changes samples")
+{
+    const auto acts = [](std::vector<burst> bursts, double power_dbfs, std::optional<double> rise_s = {}) {
+        array a = row(2);
+        for (tactor_spec& t : a.tactors)
+            t.rise_s = rise_s;
+        const render_options o{
+            .rate = rate, .level_dbfs = -12.0, .limits = drive_limits{.power_dbfs = power_dbfs}};
+        return synth::power_acts(score(a, make_plan(std::move(bursts)), o));
+    };
+    const std::vector<burst> together{one(0.0, 0.2), one(0.0, 0.2, 1)}; // 2 x -12 dB
+    CHECK(acts(together, -9.1));
+    CHECK_FALSE(acts(together, -8.8));
+    CHECK_FALSE(acts(together, -5.0));
+    CHECK_FALSE(acts({one(0.0, 0.2), one(0.3, 0.2, 1)}, -11.5));
+    // A boost goes up to full scale.
+    CHECK_FALSE(acts(together, 0.0));
+    CHECK(acts(together, 0.0, 0.1));
 }
 
 TEST_CASE("the mixer's guard never changes a piece that has waited as long as computed")

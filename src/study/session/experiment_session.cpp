@@ -82,36 +82,37 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
                                            fmt::format("motion \"{}\"", m.name));
 }
 
-void check(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
-           const drive_limits& l)
+// Checks that no limit changes a trial on an array that has rested: it would always be void.
+void check_limits(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
+                  const drive_limits& l, unsigned rate)
 {
-    const synth::limits_met met = synth::find_limits_met(stimuli.make_score(t, l));
-    if (!met.power && !met.time)
+    const score s = stimuli.make_score(t, l);
+    const bool too_long = !synth::drive_room(s.channels(), l, rate).wait(s, 0);
+    if (!too_long && !synth::power_acts(s))
         return;
-    const bool of_time = !met.power;
     const motion_definition& m = d.motions[t.motion];
     std::string by = fmt::format("method \"{}\"", d.methods[t.method_1].name);
     if (t.method_2)
         by += fmt::format(" and then by \"{}\"", d.methods[*t.method_2].name);
     throw error(error_kind::bad_input, m.where,
                 fmt::format("motion \"{}\" by {}: {} would change it", m.name, by,
-                            of_time ? fmt::format("[limits] max_drive_s, {} s in {} s for one tactor,",
-                                                  l.max_drive_s, l.window_s)
-                                    : fmt::format("[limits] power_dbfs, {:.4g} dB,", l.power_dbfs)),
-                of_time ? "shorter strokes, or other limits where the actuators bear them"
-                        : "a lower level, or other limits where the actuators bear them");
+                            too_long ? fmt::format("[limits] max_drive_s, {} s in {} s for one tactor,",
+                                                   l.max_drive_s, l.window_s)
+                                     : fmt::format("[limits] power_dbfs, {:.4g} dB,", l.power_dbfs)),
+                too_long ? "shorter strokes, or other limits where the actuators bear them"
+                         : "a lower level, or other limits where the actuators bear them");
 }
 
-// Checks that no limit changes a trial, practice too, on an array that has rested: it would always be void.
+// Checks the trials of all runs, practice too.
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
-                  const stimulus_set& stimuli, const drive_limits& l)
+                  const stimulus_set& stimuli, const drive_limits& l, unsigned rate)
 {
     std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
     for (const run_sequence& r : runs)
         for (const auto* list : {&r.practice, &r.trials})
             for (const planned_trial& t : *list)
                 if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
-                    check(d, t, stimuli, l);
+                    check_limits(d, t, stimuli, l, rate);
 }
 
 // Lists doubts about the calibration of a session whose level is above the thresholds.
@@ -307,7 +308,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     if (r.who != audience::observer)
         for (unsigned i = 0; i < e.tactors.tactors.size(); ++i)
             static_cast<void>(walk_score(d, e.tactors, render, i));
-    check_limits(d, runs, stimuli, session::settle_limits({}, e));
+    check_limits(d, runs, stimuli, session::settle_limits({}, e), render.rate);
     std::vector<std::string> doubts;
     if (!d.level_dbfs)
         doubts = calibration_doubts(r.participant, e, stimuli);
@@ -532,7 +533,11 @@ const planned_trial& find_trial(const prepared_experiment& p, const session_step
 run_table::run_table(session_store& store, const run_definition& r, bool practice)
     : store_(store), run_(r), practice_(practice)
 {
-    const std::vector<trial_row> rows = practice ? store.practice_rows(r) : store.rows(r);
+    std::vector<trial_row> rows;
+    if (!practice)
+        rows = store.rows(r);
+    else if (store.resumed())
+        rows = store.practice_rows(r);
     if (rows.empty())
         return;
     empty_ = false;

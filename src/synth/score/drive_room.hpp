@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Limits on drive time and power as they concern a whole score: the time that it must wait so that no drive
-/// is cut, and which limits act on it.
+/// is cut, and whether its power is limited.
 #pragma once
 
 #include <cstddef>
@@ -46,13 +46,8 @@ private:
     unsigned rate_;
 };
 
-/// Limits that change the samples of a score on an array that has rested.
-struct limits_met {
-    bool power = false;
-    bool time = false; ///< of a drive
-};
-
-/// Renders a score and returns which of its own limits act; none if the score has none.
-limits_met find_limits_met(const score& s);
+/// Returns true if the score's own limit on power changes its samples. Renders it, unless its tactors all at
+/// their loudest would stay below the limit.
+bool power_acts(const score& s);
 
 } // namespace tactor::synth

@@ -301,7 +301,8 @@ score score_builder::take()
         place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
     sort_by_start(s.list.items);
     std::vector<double> peaks = synth::check_peaks(s, done->a, o);
-    if (synth::boost_rises(s, done->a, peaks))
+    s.boosted = synth::boost_rises(s, done->a, peaks);
+    if (s.boosted)
         sort_by_start(s.list.items);
     s.asked = std::move(peaks);
     measure(s);
