@@ -222,6 +222,18 @@ TEST_CASE("a wait tells a time-out, a report taken before, and an unknown stroke
     p.stop();
 }
 
+TEST_CASE("a level is set of a stroke that waits or sounds, and of no other")
+{
+    clocked_player p;
+    const stroke_id id = p.submit(tone(0.05), start_at::trigger());
+    CHECK(p.set_level(id, -6.0));
+    CHECK_FALSE(p.set_level({77}, -6.0));
+    CHECK_THROWS_AS(p.set_level(id, 0.1), error);
+    p.fire(rt::monotonic_ns());
+    CHECK(p.wait(id));
+    CHECK_FALSE(p.set_level(id, -6.0));
+}
+
 TEST_CASE("a device that does not start and a missing sink are errors")
 {
     fake_dac broken;

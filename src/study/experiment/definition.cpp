@@ -45,8 +45,7 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     } catch (const error& e) {
         const error worded = options::spell(e, {write_key});
         throw error(e.kind(), t.where(key), fmt::format("{}: {}", worded.subject(), worded.why()),
-                    worded.hint())
-            .with_field(key);
+                    worded.hint());
     }
 }
 
