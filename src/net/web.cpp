@@ -201,7 +201,6 @@ void web_connection::upgrade()
     // for it.
     ws_->auto_fragment(true);
     ws_->write_buffer_bytes(large_message);
-    ws_->text(true);
     ws_->set_option(websocket::stream_base::decorator(
         [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
     // A peer that sends a close frame has a second to hang up.

@@ -118,6 +118,7 @@ class AtTheTerminal(PersonTest):
         self.assertEqual(t.end(), 0, t.said())
         self.assertEqual(self.answers(), [("1", "1", "true", "n/a"), ("2", "1", "true", "n/a"), ("1", "2", "true", "2"),
                                           ("2", "2", "false", "2"), ("1", "3", "true", "1"), ("1", "4", "false", "2")])
+        self.assertEqual(self.rows("01", "pairs")[0]["frame_2"], "n/a")  # its second stimulus never began
         self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "1"), ("2", "1", "true", "2"), ("2", "2", "false", "3")])
         self.assertEqual(t.said().count("is void: the experimenter repeats it"), 2)
         self.assertEqual(t.said().count("is void: the experimenter says so"), 3)
