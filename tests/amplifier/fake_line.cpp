@@ -7,6 +7,7 @@
 #include <ctime>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -19,18 +20,18 @@
 namespace tactor::test {
 namespace {
 
-bool readable(int fd, int timeout_ms)
+bool readable(const detail::owned_fd& fd, int timeout_ms)
 {
-    pollfd p{fd, POLLIN, 0};
+    pollfd p{fd.get(), POLLIN, 0};
     return ::poll(&p, 1, timeout_ms) > 0;
 }
 
-std::array<int, 2> make_pipe()
+std::array<detail::owned_fd, 2> make_pipe()
 {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0)
         throw std::runtime_error("pipe");
-    return ends;
+    return {detail::owned_fd(ends[0]), detail::owned_fd(ends[1])};
 }
 
 } // namespace
@@ -44,20 +45,14 @@ std::int64_t now_ns() noexcept
 
 fake_line::fake_line()
 {
-    const auto ends = make_pipe();
-    read_ = ends[0];
-    state_.fd = ends[1];
-}
-
-fake_line::~fake_line()
-{
-    ::close(read_);
-    ::close(state_.fd);
+    auto ends = make_pipe();
+    read_ = std::move(ends[0]);
+    state_.fd = std::move(ends[1]);
 }
 
 amplifier::held_line fake_line::held()
 {
-    return {&set, &state_, {state_.fd}};
+    return {&set, &state_, {state_.fd.get()}};
 }
 
 bool fake_line::set(void* line, bool on) noexcept
@@ -70,13 +65,13 @@ bool fake_line::set(void* line, bool on) noexcept
         return false;
     }
     const switched record{on, now_ns()};
-    return ::write(s.fd, &record, sizeof record) == static_cast<ssize_t>(sizeof record);
+    return ::write(s.fd.get(), &record, sizeof record) == static_cast<ssize_t>(sizeof record);
 }
 
 std::optional<switched> fake_line::next(int timeout_ms) const
 {
     switched s;
-    if (!readable(read_, timeout_ms) || ::read(read_, &s, sizeof s) != static_cast<ssize_t>(sizeof s))
+    if (!readable(read_, timeout_ms) || ::read(read_.get(), &s, sizeof s) != static_cast<ssize_t>(sizeof s))
         return std::nullopt;
     return s;
 }
@@ -84,9 +79,9 @@ std::optional<switched> fake_line::next(int timeout_ms) const
 player::player(fake_line& line, const amplifier::holder_limits& limits, const body& b,
                const std::function<void()>& before)
 {
-    const auto ends = make_pipe();
+    auto ends = make_pipe();
     const auto tell = [&](int n) {
-        if (::write(ends[1], &n, sizeof n) != static_cast<ssize_t>(sizeof n))
+        if (::write(ends[1].get(), &n, sizeof n) != static_cast<ssize_t>(sizeof n))
             ::_exit(9);
     };
     pid_ = ::fork();
@@ -101,8 +96,8 @@ player::player(fake_line& line, const amplifier::holder_limits& limits, const bo
                 b(*h, tell);
             ::_exit(0); // like abort(): the link's destructor does not run
         }();
-    ::close(ends[1]);
-    told_ = ends[0];
+    ends[1].close();
+    told_ = std::move(ends[0]);
     holder_ = told();
     const auto s = line.next();
     if (holder_ <= 0 || !s || !s->on)
@@ -114,13 +109,12 @@ player::~player()
     ::kill(pid_, SIGKILL);
     while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
     }
-    ::close(told_);
 }
 
 int player::told() const
 {
     int n = -1;
-    if (!readable(told_, hangs_ms) || ::read(told_, &n, sizeof n) != static_cast<ssize_t>(sizeof n))
+    if (!readable(told_, hangs_ms) || ::read(told_.get(), &n, sizeof n) != static_cast<ssize_t>(sizeof n))
         return -1;
     return n;
 }
@@ -140,16 +134,6 @@ void keep_beating(amplifier::holder_link& h, const std::function<void(int)>&)
     }
 }
 
-void keep_beating_with_a_child(amplifier::holder_link& h, const std::function<void(int)>& tell)
-{
-    const pid_t other = ::fork();
-    if (other == 0)
-        for (;;)
-            ::pause();
-    tell(other);
-    keep_beating(h, tell);
-}
-
 void die_quietly()
 {
     const rlimit no_core{0, 0};
@@ -163,12 +147,12 @@ std::int64_t promised_ms(pid_t holder)
     return ::sched_getscheduler(holder) == SCHED_FIFO ? 200 : 1000;
 }
 
-int open_pidfd(pid_t pid)
+detail::owned_fd open_pidfd(pid_t pid)
 {
-    return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0U));
+    return detail::owned_fd(static_cast<int>(::syscall(SYS_pidfd_open, pid, 0U)));
 }
 
-bool ends(int pidfd)
+bool ends(const detail::owned_fd& pidfd)
 {
     return readable(pidfd, hangs_ms);
 }

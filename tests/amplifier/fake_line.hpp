@@ -11,6 +11,7 @@
 #include <sys/types.h>
 
 #include "amplifier/holder.hpp"
+#include "core/owned.hpp"
 
 namespace tactor::test {
 
@@ -33,9 +34,6 @@ struct switched {
 class fake_line {
 public:
     fake_line();
-    ~fake_line();
-    fake_line(const fake_line&) = delete;
-    fake_line& operator=(const fake_line&) = delete;
 
     amplifier::held_line held();
     /// Blocks until the line is switched, or for that long.
@@ -44,18 +42,17 @@ public:
     void break_it() { state_.broken = true; }
     /// Makes the holder's first so many tries to switch off fail. Call before it starts.
     void refuse_off(int times) { state_.refusals = times; }
-    int descriptor() const { return state_.fd; }
 
 private:
     struct state {
-        int fd = -1;
+        detail::owned_fd fd = {};
         bool broken = false;
         int refusals = 0;
     };
     static bool set(void* line, bool on) noexcept;
 
     state state_;
-    int read_ = -1;
+    detail::owned_fd read_;
 };
 
 /// A process with a holder and the line on. Killed when destroyed.
@@ -82,15 +79,11 @@ public:
 private:
     pid_t pid_ = -1;
     pid_t holder_ = -1;
-    int told_ = -1;
+    detail::owned_fd told_;
 };
 
 /// Beats every 50 ms for ever.
 void keep_beating(amplifier::holder_link& h, const std::function<void(int)>& tell);
-
-/// The same, with another process that has all of the player's descriptors: sends its number, and waits to be
-/// killed.
-void keep_beating_with_a_child(amplifier::holder_link& h, const std::function<void(int)>& tell);
 
 /// For a new process: no core file, and none of the handlers with which doctest reports a crash.
 void die_quietly();
@@ -99,8 +92,8 @@ void die_quietly();
 std::int64_t promised_ms(pid_t holder);
 
 /// Returns whether the process of a `pidfd` ends.
-bool ends(int pidfd);
-int open_pidfd(pid_t pid);
+bool ends(const detail::owned_fd& pidfd);
+detail::owned_fd open_pidfd(pid_t pid);
 
 /// Returns a line of /proc/PID/status, without its name.
 std::string read_status(pid_t pid, const std::string& field);

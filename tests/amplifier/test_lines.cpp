@@ -242,11 +242,7 @@ TEST_CASE("a missing ability of the chip is reported as such")
 
 TEST_CASE("a listed chip that cannot be opened has a hint")
 {
-    amplifier::chip c;
-    c.info.path = "/dev/gpiochip0";
-    c.code = EACCES;
-    c.group = "gpio";
-    CHECK(amplifier::advice(c) ==
+    CHECK(amplifier::advice(shut_chip(0, EACCES, "gpio")) ==
           "no permission to open /dev/gpiochip0 (sudo usermod -aG gpio $USER, then log in again)");
 }
 

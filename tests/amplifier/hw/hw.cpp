@@ -25,6 +25,7 @@
 #include "../../support/count_allocations.hpp"
 #include "../fake_line.hpp"
 #include "amplifier/line.hpp"
+#include "core/owned.hpp"
 
 namespace hw_test {
 
@@ -37,60 +38,47 @@ namespace {
 class sim_chip {
 public:
     /// `folder`: /sys/devices/platform/<device>/<chip>.
-    explicit sim_chip(const std::string& folder);
+    explicit sim_chip(const std::string& folder) : folder_(folder)
+    {
+        while (folder_.ends_with('/'))
+            folder_.pop_back();
+    }
 
     /// /dev/gpiochipN
-    std::string path() const;
+    std::string path() const { return "/dev/" + folder_.substr(folder_.rfind('/') + 1); }
     /// Returns the driven value of an output, or the pull of an input.
-    int value(unsigned line) const;
+    int value(unsigned line) const
+    {
+        std::ifstream in(folder_ + "/sim_gpio" + std::to_string(line) + "/value");
+        int v = -1;
+        in >> v;
+        return v;
+    }
     /// Pulls an input up or down, like a button.
-    void pull(unsigned line, bool up) const;
+    void pull(unsigned line, bool up) const
+    {
+        std::ofstream out(folder_ + "/sim_gpio" + std::to_string(line) + "/pull");
+        out << (up ? "pull-up" : "pull-down") << std::flush;
+        if (!out)
+            throw std::runtime_error("cannot pull line " + std::to_string(line));
+    }
     /// Polls a line; returns the CLOCK_MONOTONIC time in ns at which it was first low.
-    std::optional<std::int64_t> low_at(unsigned line, std::int64_t within_ms) const;
+    std::optional<std::int64_t> low_at(unsigned line, std::int64_t within_ms) const
+    {
+        const std::int64_t until = now_ns() + within_ms * 1'000'000;
+        while (now_ns() < until) {
+            if (value(line) == 0)
+                return now_ns();
+            ::sched_yield();
+        }
+        return std::nullopt;
+    }
 
 private:
     std::string folder_;
 };
 
 std::unique_ptr<sim_chip> the_chip;
-
-sim_chip::sim_chip(const std::string& folder) : folder_(folder)
-{
-    while (folder_.ends_with('/'))
-        folder_.pop_back();
-}
-
-std::string sim_chip::path() const
-{
-    return "/dev/" + folder_.substr(folder_.rfind('/') + 1);
-}
-
-int sim_chip::value(unsigned line) const
-{
-    std::ifstream in(folder_ + "/sim_gpio" + std::to_string(line) + "/value");
-    int v = -1;
-    in >> v;
-    return v;
-}
-
-void sim_chip::pull(unsigned line, bool up) const
-{
-    std::ofstream out(folder_ + "/sim_gpio" + std::to_string(line) + "/pull");
-    out << (up ? "pull-up" : "pull-down") << std::flush;
-    if (!out)
-        throw std::runtime_error("cannot pull line " + std::to_string(line));
-}
-
-std::optional<std::int64_t> sim_chip::low_at(unsigned line, std::int64_t within_ms) const
-{
-    const std::int64_t until = now_ns() + within_ms * 1'000'000;
-    while (now_ns() < until) {
-        if (value(line) == 0)
-            return now_ns();
-        ::sched_yield();
-    }
-    return std::nullopt;
-}
 
 const sim_chip& chip()
 {
@@ -452,10 +440,9 @@ TEST_CASE("a killed holder leaves the line to the player, which switches it off"
     const auto amp = open_amplifier(s);
     CHECK(amp->set(true));
     const pid_t holder = dynamic_cast<amplifier::holder_link&>(*amp).pid();
-    const int end = open_pidfd(holder);
+    const detail::owned_fd end = open_pidfd(holder);
     ::kill(holder, SIGKILL);
     CHECK(ends(end));
-    ::close(end);
     CHECK(!amp->beat());
     CHECK(chip().value(amplifier_line) == 0);
     CHECK(amp->set(false));

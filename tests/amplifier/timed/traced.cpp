@@ -42,8 +42,8 @@ int wait_any(pid_t pid, int& status)
     }
 }
 
-// Returns whether the thread waits in a read() of the descriptor.
-pid_t start(const std::function<void()>& session, int& go)
+// Forks a process that runs the session once it is told to go; a closed `go` ends it.
+pid_t start(const std::function<void()>& session, detail::owned_fd& go)
 {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0)
@@ -61,7 +61,7 @@ pid_t start(const std::function<void()>& session, int& go)
             ::_exit(0);
         }();
     ::close(ends[0]);
-    go = ends[1];
+    go = detail::owned_fd(ends[1]);
     return pid;
 }
 
@@ -76,18 +76,17 @@ bool seize(pid_t pid)
 
 bool can_trace()
 {
-    int go = -1;
+    detail::owned_fd go;
     const pid_t pid = start([] {}, go);
     bool can = seize(pid);
     if (can) {
         can = trace(PTRACE_SYSCALL, pid) == 0;
-        ::close(go);
+        go.close();
         int status = 0;
         __ptrace_syscall_info info{};
         can = can && wait_any(pid, status) == pid && WIFSTOPPED(status) &&
               ::ptrace(PTRACE_GET_SYSCALL_INFO, pid, sizeof info, &info) > 0;
-    } else
-        ::close(go);
+    }
     ::kill(pid, SIGKILL);
     int status = 0;
     while (wait_any(pid, status) == pid && WIFSTOPPED(status)) {
@@ -102,15 +101,8 @@ traced_session::traced_session(const std::function<void()>& session, counts from
     if (!seize(player_))
         throw std::runtime_error("the player cannot be traced");
     traced_.insert(player_);
-    if (::write(go_, "g", 1) != 1 || trace(PTRACE_SYSCALL, player_) != 0)
+    if (::write(go_.get(), "g", 1) != 1 || trace(PTRACE_SYSCALL, player_) != 0)
         throw std::runtime_error("the player does not go");
-}
-
-traced_session::~traced_session()
-{
-    ::close(go_);
-    if (holder_fd_ >= 0)
-        ::close(holder_fd_);
 }
 
 bool traced_session::stopped_at_entry(pid_t pid, int status) const
@@ -219,7 +211,7 @@ void traced_session::wait_for_all()
     int status = 0;
     while (wait_any(player_, status) == player_ && WIFSTOPPED(status)) {
     }
-    if (holder_fd_ >= 0 && !ends(holder_fd_))
+    if (holder_fd_ && !ends(holder_fd_))
         throw std::runtime_error("the holder does not end");
 }
 

@@ -10,6 +10,8 @@
 
 #include <sys/types.h>
 
+#include "core/owned.hpp"
+
 namespace tactor::test {
 
 enum class party { player, holder, both };
@@ -32,9 +34,6 @@ public:
     enum class counts { all, with_holder };
 
     explicit traced_session(const std::function<void()>& session, counts from = counts::all);
-    ~traced_session();
-    traced_session(const traced_session&) = delete;
-    traced_session& operator=(const traced_session&) = delete;
 
     /// Stops `counted` at the entry of its system call number `nth`, from 0, kills `victim`, lets the others
     /// go untraced, and returns when all have ended.
@@ -53,8 +52,8 @@ private:
     pid_t player_ = -1;
     pid_t between_ = -1; ///< the process that forks the holder and ends
     pid_t holder_ = -1;
-    int holder_fd_ = -1;
-    int go_ = -1;
+    detail::owned_fd holder_fd_;
+    detail::owned_fd go_;
     counts from_;
     std::set<pid_t> threads_; ///< of the player
     std::set<pid_t> traced_;
