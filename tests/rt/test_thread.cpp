@@ -23,11 +23,7 @@ namespace thread_test {
 using namespace tactor;
 using rt::thread;
 
-namespace {
-
 constexpr std::int64_t ms = 1'000'000;
-
-} // namespace
 
 TEST_CASE("a thread has its name, its stack and no signals")
 {

@@ -48,6 +48,11 @@ struct owner {
         policy.begin();
         policy.opened();
     }
+    void fail()
+    {
+        policy.begin();
+        policy.failed("not there");
+    }
     void close(bool left_on = false)
     {
         REQUIRE(step() == act::close);
@@ -142,8 +147,7 @@ TEST_CASE("pauses before a lost device is tried again double from 0.1 s to 5 s, 
     for (const double pause_s : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0, 5.0}) {
         CHECK(o.policy.proves());
         CHECK(o.wait_for(act::open) == doctest::Approx(pause_s));
-        o.policy.begin();
-        o.policy.failed("not there");
+        o.fail();
         CHECK(o.policy.reason() == "not there");
     }
     o.now_s += 86400.0;
@@ -173,8 +177,7 @@ TEST_CASE("a lost device is running when it has held for a second, and the pause
     o.lose();
     for (int i = 0; i < 3; ++i) {
         CHECK(o.wait_for(act::open));
-        o.policy.begin();
-        o.policy.failed("not there");
+        o.fail();
     }
     CHECK(o.wait_for(act::open));
     o.open();
@@ -216,8 +219,7 @@ TEST_CASE("a device is waited for as long as is asked for, with a last attempt t
     std::vector<double> tries_s;
     while (o.wait_for(act::open)) {
         tries_s.push_back(o.now_s - lost_s);
-        o.policy.begin();
-        o.policy.failed("not there");
+        o.fail();
     }
     REQUIRE(tries_s.size() == 5);
     CHECK(tries_s[3] == doctest::Approx(1.5));
