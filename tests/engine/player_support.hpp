@@ -3,8 +3,10 @@
 /// Support for tests of the player.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -45,8 +47,9 @@ struct clock_holder : dac_holder {
 
 /// A player on a fake DAC whose clock runs.
 struct clocked_player : clock_holder, player {
-    explicit clocked_player(const player_options& o = patient(), player_lines lines = {})
-        : player(alsa::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
+    explicit clocked_player(const player_options& o = patient(), player_lines lines = {},
+                            const array& a = palm())
+        : player(alsa::adopt(dac.pcm(), nine()), a, o, std::move(lines))
     {
     }
 };
@@ -63,6 +66,14 @@ inline std::string play_to_failure(player& p, const score& s)
         CHECK(e.kind() == error_kind::runtime);
         return e.what();
     }
+}
+
+/// Blocks until a count, whose changes are notified, is at least `wanted`.
+template <typename N>
+void await(const std::atomic<N>& count, std::type_identity_t<N> wanted)
+{
+    for (N seen = count; seen < wanted; seen = count)
+        count.wait(seen);
 }
 
 /// Returns n bytes from `from` on.

@@ -58,22 +58,20 @@ private:
     std::unique_ptr<sink> inner_;
 };
 
-/// Stamps the device's positions with the test's own time.
-class virtual_time_sink : public forwarding_sink {
+/// Another sink, whose positions a test changes.
+class position_sink final : public forwarding_sink {
 public:
-    virtual_time_sink(std::unique_ptr<sink> s, const std::int64_t& now)
-        : forwarding_sink(std::move(s)), now_(now)
-    {
-    }
+    using change = std::function<void(stream_position&)>;
+    position_sink(std::unique_ptr<sink> s, change c) : forwarding_sink(std::move(s)), change_(std::move(c)) {}
     stream_position position() noexcept override
     {
         stream_position p = forwarding_sink::position();
-        p.time_ns = now_;
+        change_(p);
         return p;
     }
 
 private:
-    const std::int64_t& now_;
+    change change_;
 };
 
 struct rig_options {
@@ -87,7 +85,8 @@ struct rig_options {
     std::function<std::unique_ptr<sink>(std::unique_ptr<sink>)> wrap{};
     engine::loop_options loop{};
     fake_dac_options dac{};
-    bool started = true; ///< by the constructor
+    bool started = true;      ///< by the constructor
+    std::int64_t slow_ns = 0; ///< time that each period takes beyond its frames
 };
 
 class rig {
@@ -144,7 +143,7 @@ public:
             ::poll(fds.data(), n, 0);
             ready = out->ready(std::span(fds).first(n));
         }
-        now += static_cast<std::int64_t>(1e9 * options.period / options.sample_rate);
+        now += static_cast<std::int64_t>(1e9 * options.period / options.sample_rate) + options.slow_ns;
         loop.step(ready, now);
     }
 
@@ -186,6 +185,18 @@ public:
         dac.advance(1000);
         step();
         control();
+    }
+
+    /// Steps both threads until the stream is over, or that often; the DAC stands still. Returns how long
+    /// that took, ns.
+    std::int64_t run_until_over(int steps)
+    {
+        const std::int64_t begun = now;
+        for (int i = 0; i < steps && !loop.over(); ++i) {
+            step();
+            control();
+        }
+        return now - begun;
     }
 
     /// Plays until all strokes have ended; gives up after a while.
@@ -246,7 +257,8 @@ public:
 
     sink& wrapped(const rig_options& o)
     {
-        out = std::make_unique<virtual_time_sink>(std::move(out), now);
+        out =
+            std::make_unique<position_sink>(std::move(out), [this](stream_position& p) { p.time_ns = now; });
         if (o.wrap)
             out = o.wrap(std::move(out));
         return *out;

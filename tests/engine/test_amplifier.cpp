@@ -142,10 +142,7 @@ TEST_CASE("a device that stands still, is unplugged, fails to start again or alw
         }
         if (how > 1)
             r.dac.advance(1000);
-        for (int i = 0; i < 1000 && !r.loop.over(); ++i) {
-            r.step();
-            r.control();
-        }
+        r.run_until_over(1000);
         r.control();
         CHECK(r.loop.over());
         CHECK_FALSE(r.line.is_on);

@@ -31,12 +31,6 @@ rig_options held()
     return o;
 }
 
-live_options with_timeout(double s)
-{
-    live_options o{.timeout_s = s};
-    return o;
-}
-
 state_kind unheard_state(const rig& r, stroke_id id)
 {
     CHECK(r.end(id).frames == 0);
@@ -400,12 +394,11 @@ TEST_CASE("stop reaches strokes that wait for the amplifier")
 
 TEST_CASE("live strokes behind a waiting stroke end, cancel and time out as without it")
 {
-    rig_options o = held();
-    live_rig r(with_timeout(0.2), o);
+    live_rig r({.timeout_s = 0.2}, held());
     const stroke_id before = r.submit(tone(0.1));
-    const auto ended = r.add(with_timeout(0.2));
-    const auto cancelled = r.add(with_timeout(0.2));
-    const auto fed = r.add(with_timeout(0.2));
+    const auto ended = r.add({.timeout_s = 0.2});
+    const auto cancelled = r.add({.timeout_s = 0.2});
+    const auto fed = r.add({.timeout_s = 0.2});
     r.play(960);
     ended->voice.request(engine::live_voice::action::end);
     cancelled->voice.request(engine::live_voice::action::cancel);

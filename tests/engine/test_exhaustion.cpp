@@ -275,8 +275,7 @@ COUNTING_TEST_CASE("the player's thread waits for memory: every stroke ends and 
         if (i % 7 == 0)
             p.cancel(id);
     }
-    for (unsigned n = ended; n < strokes; n = ended)
-        ended.wait(n);
+    await(ended, strokes);
     p.stop();
     CHECK(told.size() == strokes);
     for (const auto& [id, times] : told)

@@ -23,28 +23,21 @@ namespace {
 
 enum class seen { nothing, the_start, where_it_was };
 
-// Takes frames, but gives no position: never, or not once it is blind.
-class blind_sink final : public forwarding_sink {
-public:
-    blind_sink(std::unique_ptr<sink> s, seen what, const bool& blind)
-        : forwarding_sink(std::move(s)), what_(what), blind_(blind)
-    {
-    }
-    stream_position position() noexcept override
-    {
-        stream_position p = forwarding_sink::position();
-        if (!blind_)
-            last_ = p.played;
-        p.valid = what_ != seen::nothing;
-        p.played = what_ == seen::where_it_was ? last_ : 0;
-        return p;
-    }
-
-private:
-    seen what_;
-    const bool& blind_;
-    std::uint64_t last_ = 0;
-};
+// Returns options for a device that takes frames, but gives no position: never, or not once it is blind.
+rig_options without_position(seen what, const bool& blind)
+{
+    rig_options o;
+    o.wrap = [what, &blind](std::unique_ptr<sink> s) {
+        const auto hide = [what, &blind, last = std::uint64_t{0}](stream_position& p) mutable {
+            if (!blind)
+                last = p.played;
+            p.valid = what != seen::nothing;
+            p.played = what == seen::where_it_was ? last : 0;
+        };
+        return std::make_unique<position_sink>(std::move(s), hide);
+    };
+    return o;
+}
 
 // Plays until the stream is over; returns how long that took, ns.
 std::int64_t play_until_over(rig& r)
@@ -52,17 +45,6 @@ std::int64_t play_until_over(rig& r)
     const std::int64_t begun = r.now;
     for (int i = 0; i < 10'000 && !r.loop.over(); ++i)
         r.play(r.options.period);
-    return r.now - begun;
-}
-
-// Steps until the stream is over; returns how long that took, ns.
-std::int64_t run_until_over(rig& r, int steps)
-{
-    const std::int64_t begun = r.now;
-    for (int i = 0; i < steps && !r.loop.over(); ++i) {
-        r.step();
-        r.control();
-    }
     return r.now - begun;
 }
 
@@ -168,7 +150,7 @@ TEST_CASE("an unplugged device ends the stream and every stroke")
     const stroke_id far = r.submit(tone(1.0), 10 * rate);
     r.play(4800);
     r.dac.disconnect();
-    run_until_over(r, 10);
+    r.run_until_over(10);
     r.control();
     CHECK(r.loop.over());
     for (const stroke_id id : {sounding, near, far}) {
@@ -187,7 +169,7 @@ TEST_CASE("a device that stands still is lost after its time, ready or not")
         const stroke_id id = r.submit(tone(1.0));
         r.play(4800);
         r.dac.cry_ready(cries);
-        const std::int64_t took = run_until_over(r, 10'000);
+        const std::int64_t took = r.run_until_over(10'000);
         CHECK(r.loop.over());
         CHECK(took >= 500'000'000);
         CHECK(took <= 520'000'000);
@@ -202,9 +184,7 @@ TEST_CASE("a device that takes frames but gives no position is lost after its ti
     for (const seen what : {seen::nothing, seen::the_start, seen::where_it_was}) {
         CAPTURE(static_cast<int>(what));
         bool blind = false;
-        rig_options o;
-        o.wrap = [&](auto s) { return std::make_unique<blind_sink>(std::move(s), what, blind); };
-        rig r(o);
+        rig r(without_position(what, blind));
         const stroke_id id = r.submit(tone(5.0));
         r.play(9600);
         REQUIRE(r.status().running);
@@ -223,16 +203,14 @@ TEST_CASE("the duration of a start does not count against the device")
 {
     rig r;
     r.now += 600'000'000; // a server woke its card
-    run_until_over(r, 20);
+    r.run_until_over(20);
     CHECK_FALSE(r.loop.over());
 }
 
 TEST_CASE("stop does not wait for a position that never comes")
 {
-    bool blind = true;
-    rig_options o;
-    o.wrap = [&](auto s) { return std::make_unique<blind_sink>(std::move(s), seen::nothing, blind); };
-    rig r(o);
+    const bool blind = true;
+    rig r(without_position(seen::nothing, blind));
     const stroke_id id = r.submit(tone(5.0));
     r.play(960);
     r.stop();
@@ -277,7 +255,7 @@ TEST_CASE("a device that does not prepare or start again ends the stream")
         else
             r.dac.fail_prepare(-EIO);
         r.dac.advance(1000);
-        run_until_over(r, 10);
+        r.run_until_over(10);
         r.control();
         CHECK(r.loop.over());
         CHECK(ending(r.end(id)) == "interrupted, xrun: xrun: the device ran dry");
@@ -360,8 +338,7 @@ TEST_CASE("a stroke that begins in a buffer that is filled and not started ends 
         CAPTURE(static_cast<int>(says));
         rig_options o;
         o.wrap = [&](std::unique_ptr<sink> s) { return std::make_unique<slow_starter>(std::move(s), says); };
-        live_options l{.longest_s = 2.0};
-        live_rig r(l, o);
+        live_rig r({.longest_s = 2.0}, o);
         r.play(960);
         r.dac.suspend();
         r.step();

@@ -49,11 +49,7 @@ public:
 
 constexpr std::uint64_t timeout_frames = 9600;
 
-live_options short_timeout()
-{
-    live_options o{.timeout_s = 0.2};
-    return o;
-}
+const live_options short_timeout{.timeout_s = 0.2};
 
 bool starved(const rig& r, stroke_id id)
 {
@@ -296,8 +292,8 @@ TEST_CASE("a model that fails ends the stroke with its message; one that refuses
 
 TEST_CASE("the time-out holds before the first point, with and without a handle")
 {
-    live_rig r(short_timeout());
-    const stroke_id dropped = r.add(short_timeout())->id;
+    live_rig r(short_timeout);
+    const stroke_id dropped = r.add(short_timeout)->id;
     const auto patient = r.add(); // 0.5 s
     r.play(timeout_frames - 192);
     CHECK(r.ended.empty());
@@ -325,9 +321,9 @@ TEST_CASE("live strokes beyond the places wait in order, with their newest point
         }
     };
     feed(480);
-    const auto silent = r.add(short_timeout());
+    const auto silent = r.add(short_timeout);
     silent->to({0.0, 0.0}, 1.0); // its only point
-    const auto ended = r.add(short_timeout());
+    const auto ended = r.add(short_timeout);
     ended->to({0.0, 0.0}, 1.0);
     ended->to({20.0, 0.0}, 1.0);
     ended->voice.request(engine::live_voice::action::end); // no more points are due
@@ -350,8 +346,8 @@ TEST_CASE("live strokes beyond the places wait in order, with their newest point
 
 TEST_CASE("hundreds of live strokes at once: each can be cancelled, ended or timed out, wherever it waits")
 {
-    live_rig r(short_timeout());
-    const auto all = r.fill(3 * engine::live_places, short_timeout());
+    live_rig r(short_timeout);
+    const auto all = r.fill(3 * engine::live_places, short_timeout);
     r.play(960);
     for (std::size_t i = 0; i < all.size(); ++i)
         if (i % 3 == 1)

@@ -22,6 +22,7 @@
 #include <tactor/player.hpp>
 
 #include "clock_runner.hpp"
+#include "core/owned.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
@@ -67,18 +68,18 @@ public:
 // Edges through a pipe.
 class pipe_edges : public edge_input {
 public:
-    pipe_edges() { REQUIRE(::pipe2(fds_.data(), O_NONBLOCK | O_CLOEXEC) == 0); }
-    ~pipe_edges() override
+    pipe_edges()
     {
-        ::close(fds_[0]);
-        if (fds_[1] >= 0)
-            ::close(fds_[1]);
+        std::array<int, 2> ends{};
+        REQUIRE(::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC) == 0);
+        read_ = detail::owned_fd(ends[0]);
+        write_ = detail::owned_fd(ends[1]);
     }
-    int descriptor() const noexcept override { return fds_[0]; }
+    int descriptor() const noexcept override { return read_.get(); }
     std::optional<gpio_edge> read() noexcept override
     {
         gpio_edge e;
-        if (::read(fds_[0], &e.time_ns, sizeof e.time_ns) != sizeof e.time_ns)
+        if (::read(read_.get(), &e.time_ns, sizeof e.time_ns) != sizeof e.time_ns)
             return std::nullopt;
         return e;
     }
@@ -86,17 +87,14 @@ public:
     void edges(const std::vector<std::int64_t>& times_ns)
     {
         const std::size_t bytes = times_ns.size() * sizeof(std::int64_t);
-        REQUIRE(::write(fds_[1], times_ns.data(), bytes) == static_cast<ssize_t>(bytes));
+        REQUIRE(::write(write_.get(), times_ns.data(), bytes) == static_cast<ssize_t>(bytes));
     }
     // Makes it readable for ever, without an edge.
-    void break_off()
-    {
-        ::close(fds_[1]);
-        fds_[1] = -1;
-    }
+    void break_off() { write_.close(); }
 
 private:
-    std::array<int, 2> fds_{-1, -1};
+    detail::owned_fd read_;
+    detail::owned_fd write_;
 };
 
 } // namespace
@@ -257,21 +255,17 @@ TEST_CASE("a sink of one's own without rate, channels or periods is an error")
 
 TEST_CASE("a required real-time priority that is refused is an error; otherwise a note")
 {
-    fake_dac dac;
     player_options o = patient();
     o.require_realtime = true;
-    const running_clock clock(dac);
     bool realtime = true;
     try {
-        const player p(alsa::adopt(dac.pcm(), nine()), palm(), o);
+        const clocked_player p(o);
         CHECK(p.stats().realtime);
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::not_available);
         realtime = false;
     }
-    fake_dac other;
-    const running_clock other_clock(other);
-    const player p(alsa::adopt(other.pcm(), nine()), palm(), patient());
+    const clocked_player p;
     CHECK(p.stats().realtime == realtime);
 }
 
@@ -430,8 +424,7 @@ TEST_CASE("on_end works in time, late, for unknown strokes, and several times fo
     CHECK(p.on_end(id, count));
     CHECK_FALSE(p.on_end({77}, count));
     p.fire(rt::monotonic_ns());
-    for (int n = calls; n < 2; n = calls)
-        calls.wait(n);
+    await(calls, 2);
     CHECK(p.on_end(id, count)); // its report has not been taken
     CHECK(calls == 3);
     CHECK(p.wait(id));

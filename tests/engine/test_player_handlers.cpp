@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <latch>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -46,17 +47,6 @@ using namespace tactor;
 using namespace tactor::test;
 
 namespace {
-
-void wait_for(std::atomic<bool>& flag)
-{
-    flag.wait(false);
-}
-
-void raise_flag(std::atomic<bool>& flag)
-{
-    flag = true;
-    flag.notify_all();
-}
 
 // An input without edges, with a descriptor of any kind.
 class odd_input final : public edge_input {
@@ -139,12 +129,6 @@ private:
     std::function<void()> does_;
 };
 
-void await(const std::atomic<int>& n, int wanted)
-{
-    for (int seen = n; seen < wanted; seen = n)
-        n.wait(seen);
-}
-
 live_options asking_options(const player& p, std::atomic<int>& gone)
 {
     live_options o{.timeout_s = 86400.0};
@@ -161,19 +145,19 @@ TEST_CASE(
         CAPTURE(own);
         fake_dac dac;
         const running_clock clock(dac);
-        std::atomic<bool> submitted{false};
-        std::atomic<bool> gone{false};
+        std::latch submitted(1);
+        std::latch gone(1);
         std::vector<stroke_report> told;
         auto p = std::make_unique<player>(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         const auto destroy = [&](const stroke_report& r) {
             told.push_back(r);
             if (p == nullptr)
                 return;
-            wait_for(submitted);
+            submitted.wait();
             p.reset();
             CHECK(told.size() == 3);
             CHECK(dac.closed());
-            raise_flag(gone);
+            gone.count_down();
         };
         const stroke_id armed = p->submit(tone(0.01), start_at::trigger());
         const stroke_id sounding = p->submit(tone(endless_s));
@@ -184,8 +168,8 @@ TEST_CASE(
         else
             p->on_report(destroy);
         p->cancel(first);
-        raise_flag(submitted);
-        wait_for(gone);
+        submitted.count_down();
+        gone.wait();
         REQUIRE(told.size() == 3);
         CHECK(told[0].id == first);
         CHECK(told[0].state == state_kind::cancelled);
@@ -201,22 +185,22 @@ TEST_CASE("a handler that destroys the player: the stroke's other handlers are c
 {
     fake_dac dac;
     const running_clock clock(dac);
-    std::atomic<bool> submitted{false};
-    std::atomic<bool> gone{false};
+    std::latch submitted(1);
+    std::latch gone(1);
     int others = 0;
     auto p = std::make_unique<player>(alsa::adopt(dac.pcm(), nine()), palm(), patient());
     p->on_report([&](const stroke_report&) {
-        wait_for(submitted);
+        submitted.wait();
         p.reset();
         CHECK(others == 2);
-        raise_flag(gone);
+        gone.count_down();
     });
     const stroke_id id = p->submit(tone(0.01), start_at::trigger());
     for (int i = 0; i < 2; ++i)
         CHECK(p->on_end(id, [&](const stroke_report&) { ++others; }));
     p->cancel(id);
-    raise_flag(submitted);
-    wait_for(gone);
+    submitted.count_down();
+    gone.wait();
     CHECK(others == 2);
 }
 
@@ -258,13 +242,13 @@ TEST_CASE("a handler that throws ends the stream with the reason, and not the pr
 TEST_CASE("a handler may throw anything; an on_end() that calls at once throws to its caller")
 {
     clocked_player p;
-    std::atomic<bool> ended{false};
-    std::atomic<bool> told{false};
-    p.on_report([&](const stroke_report&) { raise_flag(told); });
+    std::latch ended(1);
+    std::latch told(1);
+    p.on_report([&](const stroke_report&) { told.count_down(); });
     const stroke_id id = p.submit(tone(0.001));
-    CHECK(p.on_end(id, [&](const stroke_report&) { raise_flag(ended); }));
-    wait_for(ended);
-    wait_for(told); // or the handler below could get this stroke's report, too
+    CHECK(p.on_end(id, [&](const stroke_report&) { ended.count_down(); }));
+    ended.wait();
+    told.wait(); // or the handler below could get this stroke's report, too
     CHECK_THROWS_AS(p.on_end(id, [](const stroke_report&) { throw 17; }), int);
     CHECK_FALSE(p.ended());
     p.on_report([](const stroke_report&) { throw 17; });
@@ -280,11 +264,11 @@ TEST_CASE("a handler may throw anything; an on_end() that calls at once throws t
 TEST_CASE("a handler may call all members, and replace itself")
 {
     clocked_player p;
-    std::atomic<bool> first{false};
-    std::atomic<bool> second{false};
+    std::latch first(1);
+    std::latch second(1);
     p.on_report([&](const stroke_report& r) {
         const stroke_id armed = p.submit(tone(0.001), start_at::trigger());
-        CHECK(p.on_end(armed, [&](const stroke_report&) { raise_flag(second); }));
+        CHECK(p.on_end(armed, [&](const stroke_report&) { second.count_down(); }));
         CHECK_FALSE(p.on_end({r.id.number + 1000}, [](const stroke_report&) {}));
         CHECK_FALSE(p.ended());
         CHECK(p.setup().channels == 9);
@@ -297,11 +281,11 @@ TEST_CASE("a handler may call all members, and replace itself")
         live.cancel();
         p.on_report({});
         CHECK(p.fire(0) == 1);
-        raise_flag(first);
+        first.count_down();
     });
     const stroke_id id = p.submit(tone(0.001));
-    wait_for(first);
-    wait_for(second);
+    first.wait();
+    second.wait();
     CHECK(p.wait(id)->state == state_kind::finished);
     p.stop();
 }

@@ -4,9 +4,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <span>
 #include <string>
@@ -48,15 +45,6 @@ alsa_options configured(const std::string& text, format_kind f = format_kind::s3
     o.pcm.assign(1, 't');
     o.config_text = text;
     return o;
-}
-
-std::vector<std::byte> read_file(const std::filesystem::path& p)
-{
-    std::ifstream in(p, std::ios::binary);
-    const std::vector<char> raw{std::istreambuf_iterator<char>(in), {}};
-    std::vector<std::byte> bytes(raw.size());
-    std::transform(raw.begin(), raw.end(), bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
-    return bytes;
 }
 
 std::size_t first_sound(const std::vector<std::byte>& all)
@@ -150,9 +138,7 @@ score short_continuous()
 // Returns the error of a player with this array for a score; "" where it plays it to its end.
 std::string complaint(const array& a, const score& s)
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(alsa::adopt(dac.pcm(), nine()), a, patient());
+    clocked_player p(patient(), {}, a);
     try {
         CHECK(p.wait(p.submit(s))->state == state_kind::finished);
         return "";
@@ -176,10 +162,9 @@ TEST_CASE("a file PCM receives silence, the renderer's bytes without a gap, sile
     for (const format_kind f : {format_kind::s32, format_kind::s16}) {
         CAPTURE(to_string(f));
         const folder dir;
-        const std::filesystem::path file = dir / "out.raw";
         const alsa_options o = configured(
             fmt::format("pcm.n {{ type null }} pcm.t {{ type file slave.pcm n file \"{}\" format raw }}",
-                        file.string()),
+                        (dir / "out.raw").string()),
             f);
         const score a = random_score(5, 6);
         const score b = random_score(6, 2);
@@ -193,7 +178,9 @@ TEST_CASE("a file PCM receives silence, the renderer's bytes without a gap, sile
             CHECK(p.stats().xruns == 0);
         }
         const std::size_t frame = 9 * sample_bytes(f);
-        std::vector<std::byte> all = read_file(file);
+        const std::string raw = dir.bytes("out.raw");
+        const auto written = std::as_bytes(std::span(raw));
+        std::vector<std::byte> all(written.begin(), written.end());
         CHECK(all.size() % frame == 0);
         for (const score& s : {a, b}) {
             const std::vector<std::byte> want = rendered(s, f);
@@ -240,10 +227,8 @@ TEST_CASE("a program's sink gets each frame once, at most a period at a time, wi
     CHECK(t.most == 96);
     const auto expected = rendered(s, format_kind::s32);
     // The stroke's first frame is silent: look for its first sound.
-    const auto sound = [](std::byte b) { return b != std::byte{0}; };
-    const auto heard = std::find_if(t.bytes.begin(), t.bytes.end(), sound) - t.bytes.begin();
-    const auto begins = std::find_if(expected.begin(), expected.end(), sound) - expected.begin();
-    CHECK(part(t.bytes, static_cast<std::size_t>(heard - begins), expected.size()) == expected);
+    const std::size_t from = first_sound(t.bytes) - first_sound(expected);
+    CHECK(part(t.bytes, from, expected.size()) == expected);
 }
 
 TEST_CASE("a program's sink that is lost ends the stream and the stroke")

@@ -18,9 +18,7 @@
 
 #include <doctest/doctest.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
@@ -33,6 +31,7 @@
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "rt/clock.hpp"
+#include "rt/event_fd.hpp"
 #include "scores.hpp"
 
 namespace records_test {
@@ -93,8 +92,7 @@ private:
 // Plays all frames at once.
 class hasty_sink final : public sink {
 public:
-    hasty_sink() { REQUIRE(ready_ >= 0); }
-    ~hasty_sink() override { ::close(ready_); }
+    hasty_sink() { ready_.signal(); }
     const stream_setup& setup() const noexcept override { return setup_; }
     io_kind prepare() noexcept override { return io_kind::ok; }
     io_kind start() noexcept override { return io_kind::ok; }
@@ -102,7 +100,7 @@ public:
     std::size_t max_descriptors() const noexcept override { return 1; }
     std::size_t descriptors(std::span<pollfd> fds) noexcept override
     {
-        fds[0] = {.fd = ready_, .events = POLLIN, .revents = 0};
+        fds[0] = {.fd = ready_.fd(), .events = POLLIN, .revents = 0};
         return 1;
     }
     io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
@@ -123,7 +121,7 @@ public:
 private:
     stream_setup setup_{
         .name = "hasty", .channels = 9, .rate = rate, .period_frames = 96, .buffer_frames = 288};
-    int ready_ = ::eventfd(1, EFD_CLOEXEC);
+    rt::event_fd ready_;
     std::uint64_t written_ = 0;
     std::int64_t time_ns_ = 0;
 };

@@ -171,42 +171,24 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-// A rig whose DAC is 40 ppm slow.
-class slow_rig : public rig {
-public:
-    using rig::rig;
-
-    void run(unsigned periods)
-    {
-        for (unsigned i = 0; i < periods && !loop.over(); ++i) {
-            now += 80; // of 2 ms
-            play(96);
-        }
-    }
-    void run_out()
-    {
-        for (int i = 0; i < 100'000 && ended.size() < last_id && !loop.over(); ++i)
-            run(1);
-    }
-    /// Returns the true time of a frame of the first epoch at the DAC, ns.
-    double true_time(std::uint64_t frame)
-    {
-        const auto ahead = static_cast<double>(static_cast<std::int64_t>(frame - status().played));
-        return static_cast<double>(now) + ahead * (2e6 + 80.0) / 96.0;
-    }
-};
+// Returns options for a DAC that is 40 ppm slow: 80 ns of 2 ms.
+rig_options slow(bool started = true)
+{
+    rig_options o{.started = started, .slow_ns = 80};
+    return o;
+}
 
 // Returns a period of the rig, ns: each step plays one, and the clock moves as much.
-double period_ns(rig& r)
+double period_ns(const rig& r)
 {
-    return 1e9 * r.options.period / r.options.sample_rate;
+    return 1e9 * r.options.period / r.options.sample_rate + static_cast<double>(r.options.slow_ns);
 }
 
 // Returns the time of a frame of the current epoch at the virtual DAC, ns.
 double true_time(rig& r, std::uint64_t frame)
 {
     const auto ahead = static_cast<double>(frame) - static_cast<double>(r.status().played);
-    return static_cast<double>(r.now) + ahead * 1e9 / r.options.sample_rate;
+    return static_cast<double>(r.now) + ahead * period_ns(r) / r.options.period;
 }
 
 void check_started(rig& r, stroke_id id, double when)
@@ -215,40 +197,25 @@ void check_started(rig& r, stroke_id id, double when)
     CHECK(std::abs(static_cast<double>(*r.end(id).started_ns) - when) < period_ns(r));
 }
 
-// A sink without a position as long as it is shy.
-class shy_sink : public forwarding_sink {
-public:
-    shy_sink(std::unique_ptr<sink> s, const bool& shy) : forwarding_sink(std::move(s)), shy_(shy) {}
-    stream_position position() noexcept override
-    {
-        stream_position p = forwarding_sink::position();
-        p.valid = p.valid && !shy_;
-        return p;
-    }
-
-private:
-    const bool& shy_;
-};
-
 } // namespace
 
 TEST_CASE("a start at a time puts the first sample at the DAC then, within a frame, however far ahead")
 {
     std::mt19937_64 random(3);
-    slow_rig r;
-    r.run(500);
+    rig r(slow());
+    r.play(500 * 96);
     for (int round = 0; round < 60; ++round) {
         const std::int64_t ahead = 9 * ms + static_cast<std::int64_t>(random() % 3'000'000'000);
         const std::int64_t due = r.now + ahead;
         const std::uint64_t from = r.dac.captured_frames();
         const stroke_id id = r.submit(tone(0.01), start_at::time(due));
-        r.run_out();
+        r.play_out();
         const stroke_report report = r.end(id);
         CHECK(report.state == state_kind::finished);
         CHECK(report.late_s == 0.0);
         const auto sound = r.first_sound(from);
         REQUIRE(sound);
-        const double heard = r.true_time(*sound - 1); // a sine begins with a zero
+        const double heard = true_time(r, *sound - 1); // a sine begins with a zero
         CHECK(std::abs(heard - static_cast<double>(due)) < 1.05e9 / rate);
         REQUIRE(report.started_ns);
         CHECK(std::abs(static_cast<double>(*report.started_ns) - heard) < 1e9 / rate);
@@ -260,37 +227,37 @@ TEST_CASE("a time that is over means now, and the lateness is reported")
     for (const std::int64_t ago :
          {std::int64_t{0}, 5 * ms, 100 * ms, std::int64_t{900'000'000'000}, INT64_MAX / 2}) {
         CAPTURE(ago);
-        slow_rig r;
-        r.run(100);
+        rig r(slow());
+        r.play(100 * 96);
         const std::uint64_t next = r.status().written;
         const std::int64_t due = r.now - ago;
         const stroke_id id = r.submit(tone(0.01), start_at::time(due));
-        r.run_out();
+        r.play_out();
         CHECK(r.first_sound() == next + 1);
         CHECK(r.end(id).late_s ==
-              doctest::Approx((r.true_time(next) - static_cast<double>(due)) / 1e9).epsilon(1e-3));
+              doctest::Approx((true_time(r, next) - static_cast<double>(due)) / 1e9).epsilon(1e-3));
     }
 }
 
 TEST_CASE("a start a buffer and a period ahead is just in time")
 {
-    slow_rig r;
-    r.run(100);
+    rig r(slow());
+    r.play(100 * 96);
     const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 8 * ms));
-    r.run_out();
+    r.play_out();
     CHECK(r.end(id).late_s == 0.0);
 }
 
 TEST_CASE("a start at a time that is given before the clock is known waits for the clock")
 {
-    slow_rig r({.started = false});
+    rig r(slow(false));
     const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 300 * ms));
     CHECK_FALSE(r.link.clock.load().valid());
     REQUIRE(r.start().status == io_kind::ok);
     const std::int64_t due = r.now + 300 * ms;
-    r.run_out();
+    r.play_out();
     CHECK(r.end(id).state == state_kind::finished);
-    CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
+    CHECK(std::abs(true_time(r, *r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
 }
 
 TEST_CASE("a start at a frame that is over is late by the difference")
@@ -309,29 +276,29 @@ TEST_CASE("a start at a frame that is over is late by the difference")
 
 TEST_CASE("armed strokes are silent until they are fired, and then start together at the given time")
 {
-    slow_rig r;
+    rig r(slow());
     const stroke_id a = r.submit(tone(0.02, 0), start_at::trigger());
     const stroke_id b = r.submit(tone(0.01, 4), start_at::trigger());
-    r.run(2000);
+    r.play(2000 * 96);
     CHECK(r.ended.empty());
     CHECK(r.feed.knows(a));
     CHECK_FALSE(r.first_sound());
     const std::int64_t due = r.now + 50 * ms;
     CHECK(r.feed.fire(due) == 2);
     CHECK(r.feed.fire(due + 1) == 0);
-    r.run_out();
+    r.play_out();
     for (const stroke_id id : {a, b}) {
         CHECK(r.end(id).state == state_kind::finished);
         CHECK(r.end(id).late_s == 0.0);
         CHECK(std::abs(*r.end(id).started_ns - due) < 1'000'000'000 / rate);
     }
-    CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
+    CHECK(std::abs(true_time(r, *r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
     // A stroke armed later waits for the next shot.
     const stroke_id c = r.submit(tone(0.01), start_at::trigger());
-    r.run(100);
+    r.play(100 * 96);
     CHECK(r.ended.size() == 2);
     CHECK(r.feed.fire(r.now - 20 * ms) == 1);
-    r.run_out();
+    r.play_out();
     CHECK(r.end(c).late_s > 0.020);
 }
 
@@ -434,7 +401,10 @@ TEST_CASE("an xrun before the DAC's position was ever read keeps the start")
 {
     bool shy = true;
     rig_options o;
-    o.wrap = [&shy](std::unique_ptr<sink> s) { return std::make_unique<shy_sink>(std::move(s), shy); };
+    o.wrap = [&shy](std::unique_ptr<sink> s) {
+        return std::make_unique<position_sink>(std::move(s),
+                                               [&shy](stream_position& p) { p.valid = p.valid && !shy; });
+    };
     rig r(o);
     const std::int64_t begin = r.now;
     const stroke_id id = r.submit(tone(5.0));
@@ -467,8 +437,7 @@ TEST_CASE("a live stroke reports when its first point was felt")
     r.play(960);
     CHECK(r.live->to({20.0, 20.0}, 1.0));
     r.play(960);
-    r.live->voice.request(engine::live_voice::action::end);
-    r.play_out();
+    r.finish();
     REQUIRE(r.first_sound());
     check_started(r, r.live->id, true_time(r, *r.first_sound() - 1));
 }
