@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -291,18 +290,6 @@ call_table file_calls(const call_things& t)
         {"write_wav", [sound, &t] { write_wav(sound, format_kind::s16, t.here.path() / "x.wav"); }, opens},
     };
 }
-
-namespace {
-
-class deaf_sink final : public paced_sink {
-public:
-    using paced_sink::paced_sink;
-
-private:
-    io_kind take(std::uint64_t, std::span<const std::byte>) noexcept override { return io_kind::ok; }
-};
-
-} // namespace
 
 call_table device_calls()
 {

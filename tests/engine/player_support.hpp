@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -15,6 +17,7 @@
 #include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
+#include <tactor/sink.hpp>
 
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
@@ -28,6 +31,15 @@ inline alsa_options nine(format_kind f = format_kind::s32)
     alsa_options o{.channels = 9, .format = f};
     return o;
 }
+
+/// A sink without a device or a memory.
+class deaf_sink final : public paced_sink {
+public:
+    using paced_sink::paced_sink;
+
+private:
+    io_kind take(std::uint64_t, std::span<const std::byte>) noexcept override { return io_kind::ok; }
+};
 
 struct dac_holder {
     fake_dac dac{};

@@ -63,7 +63,10 @@ public:
         std::mt19937_64 random(4);
         work w;
         const std::uint32_t before = r_.last_id;
-        counted(w, [&] { begin_live(); });
+        counted(w, [&] {
+            const array a = make_grid("pair", 1, 2, 20.0, 20.0);
+            live_ = r_.begin_live(a, {.timeout_s = 3600.0});
+        });
         for (unsigned i = 0; i < periods_an_hour; ++i)
             half_second(i, random, w);
         counted(w, [&] {
@@ -97,13 +100,6 @@ private:
         action();
         w.heap_calls += count.calls();
         w.held += count.bytes();
-    }
-
-    void begin_live()
-    {
-        const array a = make_grid("pair", 1, 2, 20.0, 20.0);
-        live_options o{.timeout_s = 3600.0};
-        live_ = r_.begin_live(a, o);
     }
 
     void half_second(unsigned i, std::mt19937_64& random, work& w)
