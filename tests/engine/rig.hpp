@@ -205,6 +205,12 @@ public:
         for (int i = 0; i < 100'000 && ended.size() < last_id && !loop.over(); ++i)
             play(options.period);
     }
+    /// The same; returns this stroke's only report, and fails without one.
+    stroke_report play_out(stroke_id id)
+    {
+        play_out();
+        return end(id);
+    }
 
     /// Returns the only report of a stroke, if there is exactly one.
     std::optional<stroke_report> report(stroke_id id) const

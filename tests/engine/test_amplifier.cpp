@@ -101,8 +101,7 @@ TEST_CASE("one xrun leaves the amplifier on; the stroke is interrupted, the next
     CHECK_FALSE(r.first_sound(cut));
     const score s = random_score(2, 3);
     const stroke_id next = r.submit(s);
-    r.play_out();
-    CHECK(r.end(next).state == state_kind::finished);
+    CHECK(r.play_out(next).state == state_kind::finished);
     CHECK(r.news().empty());
 }
 
@@ -219,9 +218,7 @@ TEST_CASE("an audio thread that stands still mutes within 150 ms, is counted, an
     CHECK(r.end(r.id).why == "the amplifier was off");
     // It fades, then nothing sounds.
     CHECK_FALSE(r.first_sound(sounding + 96 + 480 + 96));
-    const stroke_id next = r.submit(tone(0.1));
-    r.play_out();
-    CHECK(r.end(next).state == state_kind::finished);
+    CHECK(r.play_out(r.submit(tone(0.1))).state == state_kind::finished);
 }
 
 TEST_CASE("a stroke that waits for its frame during a mute begins when the amplifier is on again")
@@ -232,8 +229,7 @@ TEST_CASE("a stroke that waits for its frame during a mute begins when the ampli
     r.play(960);
     const std::uint64_t before = r.status().written;
     r.wait(200 * ms);
-    r.play_out();
-    CHECK(r.end(later).state == state_kind::finished);
+    CHECK(r.play_out(later).state == state_kind::finished);
     const auto sound = r.first_sound(before + 700);
     REQUIRE(sound);
     CHECK(r.captured(*sound - 1, s.frames()) == rendered(s, format_kind::s32));
@@ -399,9 +395,7 @@ TEST_CASE("a mute that is refused once is retried, and the stream goes on")
     r.play(9600);
     CHECK(r.news() == event_log{"on"});
     CHECK(r.end(r.id).why == "the amplifier was off");
-    const stroke_id next = r.submit(tone(0.1));
-    r.play_out();
-    CHECK(r.end(next).state == state_kind::finished);
+    CHECK(r.play_out(r.submit(tone(0.1))).state == state_kind::finished);
 }
 
 TEST_CASE("a mute that stays refused ends the stream")

@@ -116,8 +116,7 @@ TEST_CASE("the DAC gets the renderer's bytes, in every format")
         const score s = random_score(7, 12);
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
-        r.play_out();
-        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.play_out(id).state == state_kind::finished);
         CHECK(r.end(id).frames == s.frames());
         CHECK(r.captured(from, s.frames()) == rendered(s, f));
         CHECK_FALSE(r.first_sound(from + s.frames()));
@@ -193,8 +192,7 @@ TEST_CASE("a stroke submitted for a frame starts at that frame")
         const std::uint64_t at = r.status().written + random() % 60'000;
         const score s = random_score(random(), 3);
         const stroke_id id = r.submit(s, at);
-        r.play_out();
-        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.play_out(id).state == state_kind::finished);
         CHECK(r.captured(at, s.frames()) == rendered(s, format_kind::s32));
         CHECK(r.captured(0, at) == std::vector<std::byte>(at * r.dac.frame_bytes()));
     }
@@ -208,9 +206,7 @@ TEST_CASE("a tiny ring and a mixer without space delay drives and lose none")
         CAPTURE(ring);
         rig r({.ring = ring, .loop = {.drives = drives}});
         const std::uint64_t from = r.status().written;
-        const stroke_id id = r.submit(s);
-        r.play_out();
-        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.play_out(r.submit(s)).state == state_kind::finished);
         CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
     }
 }

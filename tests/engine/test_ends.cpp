@@ -222,8 +222,7 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
     const score s = random_score(31, 20);
     const stroke_id id = r.submit(s);
     sleep_of_control(r, 200); // much longer than its horizon
-    r.play_out();
-    has(ending(r.end(id)), "interrupted, late: the computer was too slow");
+    has(ending(r.play_out(id)), "interrupted, late: the computer was too slow");
     // The part that sounded is a true beginning of the stroke.
     const std::uint64_t sure = 2400 - 480;
     const std::vector<std::byte> all = rendered(s, format_kind::s32);
@@ -256,8 +255,7 @@ TEST_CASE("a continuous stroke whose drives stop coming fades before the last of
         r.play(9600);
         REQUIRE_FALSE(r.report(id));
         sleep_of_control(r, 100);
-        r.play_out();
-        has(ending(r.end(id)), "too slow");
+        has(ending(r.play_out(id)), "too slow");
         const std::uint64_t end = r.end(id).frames;
         CHECK(end > 9600);
         CHECK_FALSE(r.first_sound(from + end));
@@ -318,8 +316,7 @@ TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound
             r.link.amplifier.mutes = 1;
         else
             r.feed.cancel(id);
-        r.play_out();
-        CHECK(r.end(id).state == (muted ? state_kind::finished : state_kind::cancelled));
+        CHECK(r.play_out(id).state == (muted ? state_kind::finished : state_kind::cancelled));
         CHECK((r.end(id).frames == 0) != muted);
         CHECK(r.first_sound().has_value() == muted);
     }
@@ -345,8 +342,7 @@ TEST_CASE("while the amplifier settles a cancel is reported with the next wake-u
 
     const std::uint64_t from = r.status().written;
     r.link.amplifier.ready = true;
-    r.play_out();
-    CHECK(r.end(second).state == state_kind::finished);
+    CHECK(r.play_out(second).state == state_kind::finished);
     CHECK(r.captured(from, kept.frames()) == rendered(kept, format_kind::s32));
     CHECK(r.ended.size() == 3);
 }
@@ -371,9 +367,7 @@ TEST_CASE("thousands of strokes submitted and cancelled while they wait end once
     r.play(9600);
     CHECK_FALSE(r.first_sound());
     CHECK(r.ended.size() == rounds);
-    const stroke_id next = r.submit(tone(0.01));
-    r.play_out();
-    CHECK(r.end(next).state == state_kind::finished);
+    CHECK(r.play_out(r.submit(tone(0.01))).state == state_kind::finished);
     CHECK(r.first_sound());
 }
 

@@ -86,9 +86,7 @@ TEST_CASE("an xrun interrupts what sounds, and the stream goes on in silence")
 
     const std::uint64_t again = r.dac.captured_frames();
     const score s = random_score(2, 3);
-    const stroke_id next = r.submit(s);
-    r.play_out();
-    CHECK(r.end(next).state == state_kind::finished);
+    CHECK(r.play_out(r.submit(s)).state == state_kind::finished);
     CHECK(r.captured(again, s.frames()) == rendered(s, format_kind::s32));
 }
 
@@ -103,8 +101,7 @@ TEST_CASE("a stroke that had not begun survives an xrun and keeps its distance")
         r.play(1920);
         REQUIRE(r.status().written < at);
         r.xrun();
-        r.play_out();
-        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.play_out(id).state == state_kind::finished);
         CHECK(r.captured(at, s.frames()) == rendered(s, format_kind::s32));
         CHECK(r.first_sound() > at - 1);
     }
@@ -273,10 +270,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         r.play(9600);
         const std::uint64_t played = r.status().played;
         r.dac.suspend();
-        for (int i = 0; i < 50; ++i) {
-            r.step();
-            r.control();
-        }
+        r.run_until_over(50);
         CHECK_FALSE(r.status().running);
         CHECK_FALSE(r.loop.polls_sink());
         CHECK(r.loop.timeout_ns() == 2'000'000);
@@ -293,8 +287,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK(r.status().running);
         CHECK(r.dac.captured_frames() == captured + 288);
         CHECK(r.dac.starts() == 2);
-        r.play_out();
-        CHECK(r.end(waiting).state == state_kind::finished);
+        CHECK(r.play_out(waiting).state == state_kind::finished);
         // The old stroke does not sound again.
         CHECK(r.first_sound(captured) == captured + 289);
         CHECK(r.link.count.xruns == 0);

@@ -209,8 +209,7 @@ TEST_CASE("a start at a time puts the first sample at the DAC then, within a fra
         const std::int64_t due = r.now + ahead;
         const std::uint64_t from = r.dac.captured_frames();
         const stroke_id id = r.submit(tone(0.01), start_at::time(due));
-        r.play_out();
-        const stroke_report report = r.end(id);
+        const stroke_report report = r.play_out(id);
         CHECK(report.state == state_kind::finished);
         CHECK(report.late_s == 0.0);
         const auto sound = r.first_sound(from);
@@ -244,8 +243,7 @@ TEST_CASE("a start a buffer and a period ahead is just in time")
     rig r(slow());
     r.play(100 * 96);
     const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 8 * ms));
-    r.play_out();
-    CHECK(r.end(id).late_s == 0.0);
+    CHECK(r.play_out(id).late_s == 0.0);
 }
 
 TEST_CASE("a start at a time that is given before the clock is known waits for the clock")
@@ -255,8 +253,7 @@ TEST_CASE("a start at a time that is given before the clock is known waits for t
     CHECK_FALSE(r.link.clock.load().valid());
     REQUIRE(r.start().status == io_kind::ok);
     const std::int64_t due = r.now + 300 * ms;
-    r.play_out();
-    CHECK(r.end(id).state == state_kind::finished);
+    CHECK(r.play_out(id).state == state_kind::finished);
     CHECK(std::abs(true_time(r, *r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
 }
 
@@ -268,8 +265,7 @@ TEST_CASE("a start at a frame that is over is late by the difference")
     const stroke_id late = r.submit(tone(0.01), start_at::frame(next - 4800));
     const stroke_id good = r.submit(tone(0.01), next + 4800);
     const stroke_id now = r.submit(tone(0.01), start_at::now());
-    r.play_out();
-    CHECK(r.end(late).late_s == doctest::Approx(0.1));
+    CHECK(r.play_out(late).late_s == doctest::Approx(0.1));
     CHECK(r.end(good).late_s == 0.0);
     CHECK(r.end(now).late_s == 0.0);
 }
@@ -298,8 +294,7 @@ TEST_CASE("armed strokes are silent until they are fired, and then start togethe
     r.play(100 * 96);
     CHECK(r.ended.size() == 2);
     CHECK(r.feed.fire(r.now - 20 * ms) == 1);
-    r.play_out();
-    CHECK(r.end(c).late_s > 0.020);
+    CHECK(r.play_out(c).late_s > 0.020);
 }
 
 TEST_CASE("armed strokes can be cancelled before and after they are fired, and end with the stream")
@@ -339,8 +334,7 @@ TEST_CASE("an xrun between the shot and the start keeps the time, in the new epo
     r.dac.advance(1000); // dry, with the stroke already in the audio thread
     r.now += 30 * ms;
     r.step();
-    r.play_out();
-    CHECK(r.end(id).state == state_kind::finished);
+    CHECK(r.play_out(id).state == state_kind::finished);
     CHECK(r.end(id).late_s == 0.0);
     CHECK(r.link.clock.load().epoch == 2);
     CHECK(std::abs(*r.end(id).started_ns - due) < 2'000'000'000 / rate);
@@ -354,8 +348,7 @@ TEST_CASE("the first stroke of a player, submitted before the clock is known, ha
         const stroke_id id = r.submit(tone(0.1));
         REQUIRE(r.start().status == io_kind::ok);
         CHECK_FALSE(r.link.clock.load().valid());
-        r.play_out();
-        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.play_out(id).state == state_kind::finished);
         CHECK(r.end(id).late_s == 0.0);
         check_started(r, id, true_time(r, *r.first_sound() - 1)); // a sine begins with a zero
     }
