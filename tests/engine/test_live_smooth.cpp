@@ -43,6 +43,21 @@ live_options smoothed(double seconds = 0.05)
     return o;
 }
 
+// A stroke at one place and, some frames later, at x = 40.
+struct moved_rig : live_rig {
+    moved_rig(const live_options& o, double from_mm, std::uint64_t frames, double intensity = 1.0)
+        : live_rig(o)
+    {
+        live->to({from_mm, 0.0}, 1.0);
+        base = status().written;
+        play(frames);
+        came = status().written - base;
+        live->to({40.0, 0.0}, intensity);
+    }
+    std::uint64_t base = 0; ///< frame of the first point
+    std::uint64_t came = 0; ///< that of the second, from there on
+};
+
 // Returns x at each crest of the carrier from a frame on, mm: crests are 96 frames apart.
 std::vector<double> places(const live_rig& r, std::uint64_t base, std::uint64_t from)
 {
@@ -79,15 +94,10 @@ TEST_CASE(
 {
     for (const double seconds : {0.0, 0.05}) {
         CAPTURE(seconds);
-        live_rig r(smoothed(seconds));
-        r.live->to({10.0, 0.0}, 1.0);
-        const std::uint64_t base = r.status().written;
-        r.play(4800);
-        const std::uint64_t came = r.status().written - base;
-        r.live->to({40.0, 0.0}, 1.0);
+        moved_rig r(smoothed(seconds), 10.0, 4800);
         r.play(9600);
-        CHECK(near(places(r, base, 96).front(), 10.0)); // the first one at once
-        const auto x = places(r, base, came);
+        CHECK(near(places(r, r.base, 96).front(), 10.0)); // the first one at once
+        const auto x = places(r, r.base, r.came);
         for (std::size_t k = 0; k < 90; ++k) {
             CAPTURE(k);
             const double gone = 48.0 + 96.0 * static_cast<double>(k);
@@ -120,17 +130,12 @@ TEST_CASE("intensity moves with the place, in bursts of the carrier too")
 {
     live_options o = smoothed(0.2);
     o.plan.algorithm = algorithm_kind::park2016;
-    live_rig r(o);
-    r.live->to({40.0, 0.0}, 1.0);
-    const std::uint64_t base = r.status().written;
-    r.play(2400);
-    const std::uint64_t came = r.status().written - base;
-    r.live->to({40.0, 0.0}, 0.5);
+    moved_rig r(o, 40.0, 2400, 0.5);
     r.play(14'400);
-    const auto s = r.channel(0, base);
+    const auto s = r.channel(0, r.base);
     for (std::uint64_t at = 0; at + 3360 <= 16'800; at += 3360) {
         CAPTURE(at);
-        const double gone = at < came ? 0.0 : static_cast<double>(at - came) / 9600.0;
+        const double gone = at < r.came ? 0.0 : static_cast<double>(at - r.came) / 9600.0;
         CHECK(peak(s, at + 480, at + 960) ==
               doctest::Approx(live_level * (1.0 - 0.5 * std::min(gone, 1.0))).epsilon(1e-3));
     }
@@ -141,16 +146,11 @@ TEST_CASE(
 {
     using engine::live_voice;
     for (const auto how : {live_voice::action::end, live_voice::action::cancel}) {
-        live_rig r(smoothed());
-        r.live->to({10.0, 0.0}, 1.0);
-        const std::uint64_t base = r.status().written;
-        r.play(960);
-        const std::uint64_t came = r.status().written - base;
-        r.live->to({40.0, 0.0}, 1.0);
+        moved_rig r(smoothed(), 10.0, 960);
         const bool ended = how == live_voice::action::end;
         const auto report = r.finish(how);
         CHECK(report.state == (ended ? state_kind::finished : state_kind::cancelled));
-        CHECK(report.frames == came + (ended ? window : 0) + 480);
+        CHECK(report.frames == r.came + (ended ? window : 0) + 480);
     }
     live_rig still(smoothed());
     still.live->to({10.0, 0.0}, 1.0);
@@ -162,18 +162,13 @@ TEST_CASE(
 
 TEST_CASE("a refused point leaves the place as it was, even on the way")
 {
-    live_rig r(smoothed());
-    r.live->to({10.0, 0.0}, 1.0);
-    const std::uint64_t base = r.status().written;
-    r.play(960);
-    const std::uint64_t came = r.status().written - base;
-    r.live->to({40.0, 0.0}, 1.0);
+    moved_rig r(smoothed(), 10.0, 960);
     r.play(960);
     CHECK_THROWS_AS(r.live->to({0.0, 40.0}, 1.0), error);
     CHECK_THROWS_WITH_AS(r.live->to({0.0, 0.0}, -0.5), doctest::Contains("-0.5"), error);
     CHECK(r.live->points == 2);
     r.play(4800);
-    const auto x = places(r, base, came);
+    const auto x = places(r, r.base, r.came);
     for (std::size_t k = 0; k < 50; ++k)
         REQUIRE(near(x[k], 10.0 + 30.0 * std::min((48.0 + 96.0 * static_cast<double>(k)) / window, 1.0)));
 }
