@@ -368,17 +368,6 @@ TEST_CASE("only the tactor with the overlap is joined")
     CHECK(single[480 + 4800] == 0.0);
 }
 
-TEST_CASE("bursts that touch are not joined, each has its own phase")
-{
-    const double hz = 240.0;
-    const plan p = make_plan({make_burst(0.0, 0.0710, {{0, 0.6}}), make_burst(0.0710, 0.05, {{0, 0.5}})}, hz);
-    const auto x = channel(make_score(p, 0.0), 0);
-    for (std::size_t k = 0; k < 2400; ++k) {
-        REQUIRE(std::abs(x[3408 + k] - 0.5 * std::sin(2.0 * pi * hz * static_cast<double>(k) / 48000.0)) <
-                1e-6);
-    }
-}
-
 TEST_CASE("a long chain of overlaps is one carrier")
 {
     std::vector<burst> bursts;

@@ -225,18 +225,6 @@ TEST_CASE("no sample is above the limit for any begins and ends within a block")
     }
 }
 
-TEST_CASE("one stroke at full scale passes the limiter untouched")
-{
-    mixer m = make_mixer();
-    m.add(make_event(0, 48000, 1.0));
-    take(m, 48000);
-    CHECK(m.counts().limited == 0);
-    m.add(make_event(48000, 480, 0.75));
-    m.add(make_event(48000, 480, 0.75));
-    take(m, 480);
-    CHECK(m.counts().limited > 100);
-}
-
 TEST_CASE("a faded score goes to zero without a step and is forgotten")
 {
     for (const std::size_t block : {1U, 48U, 1000U}) {
