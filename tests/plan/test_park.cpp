@@ -178,8 +178,7 @@ TEST_CASE("fixed: onsets at multiples of the SOA up to the end, one burst below 
     CHECK(one.soa_s == 0.07);
     CHECK(one.total_s == 0.07);
 
-    plan_options o{.soa_s = 0.06};
-    const plan p = make_plan(palm, across(1.0), o);
+    const plan p = make_plan(palm, across(1.0), {.soa_s = 0.06});
     CHECK(p.bursts.size() == 17);
     CHECK(p.bursts[3].duration_s == doctest::Approx((0.06 - 0.0473) / 0.32).epsilon(1e-12));
     CHECK(p.bursts[3].onset_s == doctest::Approx(0.18).epsilon(1e-12));
@@ -189,8 +188,7 @@ TEST_CASE("fixed: onsets at multiples of the SOA up to the end, one burst below 
 TEST_CASE("an SOA out of bounds is refused with both bounds")
 {
     for (const double soa : {0.0473, 0.04, 0.0700001, 1.0, -1.0, 0.0, not_a_number, infinite}) {
-        plan_options o{.soa_s = soa};
-        const std::string why = refusal(palm, across(1.0), o);
+        const std::string why = refusal(palm, across(1.0), {.soa_s = soa});
         CHECK(why.starts_with("soa_s: "));
         CHECK(why.find("0.0473") != std::string::npos);
         CHECK(why.find("0.07 ") != std::string::npos);

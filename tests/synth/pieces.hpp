@@ -15,6 +15,7 @@
 #include <tactor/render.hpp>
 
 #include "own_curve.hpp"
+#include "synth/score/event.hpp"
 
 namespace pieces {
 
@@ -23,26 +24,26 @@ inline constexpr double pi = 3.14159265358979323846;
 /// Makes n tactors in a row, channel = index.
 inline tactor::array row(unsigned n)
 {
-    tactor::array a;
-    a.name = "row";
-    for (unsigned i = 0; i < n; ++i) {
-        tactor::tactor_spec t;
-        t.position = {20.0 * i, 0.0};
-        t.channel = i;
-        a.tactors.push_back(t);
-    }
-    return a;
+    return tactor::make_grid("row", 1, n, 20.0, 20.0);
 }
 
 inline tactor::burst make_burst(double onset_s, double duration_s, std::vector<tactor::drive> drives,
                                 double a_v = 1.0)
 {
-    tactor::burst b;
-    b.onset_s = onset_s;
-    b.duration_s = duration_s;
-    b.intensity = a_v;
-    b.drives = std::move(drives);
-    return b;
+    return {.onset_s = onset_s, .duration_s = duration_s, .intensity = a_v, .drives = std::move(drives)};
+}
+
+/// Makes a drive of one channel without ramps.
+inline tactor::synth::drive_event make_event(std::uint64_t start, std::uint32_t length,
+                                             double cycles_per_frame, tactor::synth::channel_drive d)
+{
+    tactor::synth::drive_event e;
+    e.start = start;
+    e.length = e.window = length;
+    e.cycles_per_frame = cycles_per_frame;
+    e.drives = 1;
+    e.drive[0] = d;
+    return e;
 }
 
 inline tactor::plan make_plan(std::vector<tactor::burst> bursts, double carrier_hz = 250.0)
@@ -162,6 +163,13 @@ inline std::vector<double> channel(const tactor::score& s, unsigned c)
     for (std::size_t k = 0; k < x.size(); ++k)
         x[k] = static_cast<double>(sample<float>(bytes, k * s.channels() + c));
     return x;
+}
+
+/// Computes a carrier from the formula, whose phase is 0 at frame 0.
+template <class T>
+double sine(double hz, T frame, double rate = 48000.0)
+{
+    return std::sin(2.0 * pi * hz * static_cast<double>(frame) / rate);
 }
 
 /// Computes section 7's window from the formula.

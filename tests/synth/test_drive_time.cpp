@@ -34,14 +34,10 @@ constexpr std::size_t fade = rate / 50;
 
 synth::drive_event voice(double start_s, double length_s, double from, double to, double cycles = 0.0)
 {
-    synth::drive_event e;
-    e.start = static_cast<std::uint64_t>(std::llround(start_s * rate));
-    e.length = static_cast<std::uint32_t>(std::llround(length_s * rate));
-    e.window = e.length;
-    e.cycles_per_frame = 250.0 / rate;
+    synth::drive_event e =
+        make_event(static_cast<std::uint64_t>(std::llround(start_s * rate)),
+                   static_cast<std::uint32_t>(std::llround(length_s * rate)), 250.0 / rate, {from, to, 0});
     e.phase_frame = static_cast<std::uint64_t>(std::llround(cycles * cycle));
-    e.drives = 1;
-    e.drive[0] = {from, to, 0};
     return e;
 }
 
@@ -57,8 +53,7 @@ struct played {
 
 synth::guard_settings limit_time(double max_drive_s, double window_s)
 {
-    drive_limits l{.max_drive_s = max_drive_s, .window_s = window_s};
-    return synth::make_guards(l, rate);
+    return synth::make_guards({.max_drive_s = max_drive_s, .window_s = window_s}, rate);
 }
 
 played play(const std::vector<synth::drive_event>& events, double total_s, const synth::guard_settings& g,
@@ -120,8 +115,7 @@ double decibels(double db)
 
 score piece(std::vector<burst> bursts, double level_dbfs)
 {
-    render_options o{.rate = rate, .level_dbfs = level_dbfs};
-    return {row(2), make_plan(std::move(bursts)), o};
+    return {row(2), make_plan(std::move(bursts)), {.rate = rate, .level_dbfs = level_dbfs}};
 }
 
 burst one(double onset_s, double duration_s, unsigned tactor = 0)
@@ -315,10 +309,7 @@ TEST_CASE("the next mixer begins with the levels that it is given, at another ra
         drive_limits l{.max_drive_s = 0.5, .window_s = 1.0};
         synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, synth::make_guards(l, other));
         m.resume(levels_s);
-        synth::drive_event e = voice(0.0, 1.0, 0.5);
-        e.length = other;
-        e.window = other;
-        e.cycles_per_frame = 250.0 / other;
+        synth::drive_event e = make_event(0, other, 250.0 / other, {0.5, 0.5, 0});
         m.add(e);
         e.drive[0].channel = 1;
         m.add(e);

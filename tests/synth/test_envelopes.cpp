@@ -42,8 +42,7 @@ std::vector<double> measure_window(const render_options& o, double duration_s = 
 
 render_options with(envelope_kind kind, std::optional<double> attack_s, std::optional<double> release_s)
 {
-    render_options o{.level_dbfs = 0.0, .envelope = {kind, attack_s, release_s}};
-    return o;
+    return {.level_dbfs = 0.0, .envelope = {kind, attack_s, release_s}};
 }
 
 void follows(const render_options& o, const std::function<double(double t_s)>& expected,
@@ -85,8 +84,7 @@ plan bursts_at(const std::vector<std::pair<double, double>>& onsets_and_amplitud
 
 render_options options()
 {
-    render_options o{.level_dbfs = level_dbfs};
-    return o;
+    return {.level_dbfs = level_dbfs};
 }
 
 std::vector<float> samples(const score& s)
@@ -257,8 +255,7 @@ TEST_CASE("impossible envelopes are refused")
 {
     const plan p = pieces::make_plan({make_burst(0.0, 0.1, {{0, 1.0}})});
     const auto refused = [&](const burst_envelope& e, const std::string& part) {
-        render_options o{.envelope = e};
-        return has(caught_message([&] { score(row(1), p, o); }), part);
+        return has(caught_message([&] { score(row(1), p, {.envelope = e}); }), part);
     };
     CHECK(refused({envelope_kind::linear, -0.1, {}}, "attack_s"));
     CHECK(refused({envelope_kind::linear, {}, std::nan("")}, "release_s"));

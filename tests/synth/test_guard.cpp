@@ -38,8 +38,7 @@ score loud(unsigned tactors, std::vector<std::pair<double, double>> times, doubl
     }
     plan p = make_plan(std::move(bursts));
     p.total_s = p.stroke_duration_s = total_s;
-    render_options o{.rate = rate, .level_dbfs = level_dbfs, .limits = limits};
-    return {row(tactors), {{p, {}}}, o};
+    return {row(tactors), {{p, {}}}, {.rate = rate, .level_dbfs = level_dbfs, .limits = limits}};
 }
 
 double largest_step(const std::vector<double>& x)
@@ -106,11 +105,7 @@ TEST_CASE("an epoch's end does not give a tactor its time back")
 {
     drive_limits l{.max_drive_s = 0.5, .window_s = 1.0};
     synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::make_guards(l, rate));
-    synth::drive_event e;
-    e.length = e.window = rate;
-    e.cycles_per_frame = 250.0 / rate;
-    e.drives = 1;
-    e.drive[0] = {1.0, 1.0, 0};
+    const synth::drive_event e = make_event(0, rate, 250.0 / rate, {1.0, 1.0, 0});
     std::vector<float> x(rate);
     for (int epoch = 0; epoch < 2; ++epoch) {
         CHECK(m.add(e));
@@ -142,11 +137,8 @@ TEST_CASE("non-numbers reach no format")
         synth::mixer m(std::vector<double>{1.0, 0.5, nan}, f, 64, synth::make_guards({}, 48000));
         for (const double a : {nan, inf, -inf, 1e308, -1e308, 1e200}) {
             for (std::uint32_t c = 0; c < 3; ++c) {
-                synth::drive_event e;
-                e.length = e.window = 400;
-                e.cycles_per_frame = c == 2 ? nan : 250.0 / 48000.0;
+                synth::drive_event e = make_event(0, 400, c == 2 ? nan : 250.0 / 48000.0, {a, a, c});
                 e.drives = 2;
-                e.drive[0] = {a, a, c};
                 e.drive[1] = {-a, a, 1};
                 m.add(e);
             }
@@ -183,15 +175,11 @@ using signal = std::vector<double>;
 synth::drive_event voice(double start_s, double length_s, double ramp_s, double hz, std::uint32_t channel,
                          double amplitude, double cycles = 0.0)
 {
-    synth::drive_event e;
-    e.start = static_cast<std::uint64_t>(start_s * rate);
-    e.length = static_cast<std::uint32_t>(length_s * rate);
-    e.window = e.length;
+    synth::drive_event e =
+        make_event(static_cast<std::uint64_t>(start_s * rate), static_cast<std::uint32_t>(length_s * rate),
+                   hz / rate, {amplitude, amplitude, channel});
     e.ramp = std::min(static_cast<std::uint32_t>(ramp_s * rate), e.length / 2);
-    e.cycles_per_frame = hz / rate;
     e.phase_frame = static_cast<std::uint64_t>(cycles / hz * rate);
-    e.drives = 1;
-    e.drive[0] = {amplitude, amplitude, channel};
     return e;
 }
 

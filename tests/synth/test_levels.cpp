@@ -145,10 +145,9 @@ TEST_CASE("a sensation level that is too high names the threshold at the stroke'
     array a = row(2);
     a.tactors[0].thresholds = {{60.0, -9.6}, {100.0, -1.6}, {250.0, -40.0}};
     a.tactors[1].threshold_dbfs = -50.0;
-    render_options o{.sl_db = 7.0};
     plan slow = make_plan({make_burst(0.0, 0.07, {{0, 1.0}, {1, 1.0}})});
     slow.carrier_hz = 100.0;
-    has(refusal(a, {{one, {}}, {slow, {}}}, o),
+    has(refusal(a, {{one, {}}, {slow, {}}}, {.sl_db = 7.0}),
         "driven at 5.4 dBFS, above full scale (0 dBFS): with its threshold of -1.6 dBFS 5.40 dB");
 }
 
@@ -164,13 +163,12 @@ TEST_CASE("only tactors that are driven need a threshold")
     CHECK(peak(s, 0) == 0.0);
     has(refusal(a, {{middle, {}}, {one, {}}}, o), "tactor 0: has no threshold_dbfs");
     // A continuous stroke drives the tactors on its way.
-    plan_options smooth{.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp};
     a.tactors[2].threshold_dbfs = -40.0;
     const auto along = [&](double x_mm) {
         return make_plan(
             a,
             stroke{"k", trajectory::along(path::polyline(std::vector<point>{{20.0, 0.0}, {x_mm, 0.0}}), 0.5)},
-            smooth);
+            {.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp});
     };
     CHECK(refusal(a, {{along(40.0), {}}}, o).empty());
     has(refusal(a, {{along(10.0), {}}}, o), "tactor 0: has no threshold_dbfs");
@@ -252,8 +250,7 @@ TEST_CASE("an excess in the last digits is accepted")
         std::vector<placed_plan> all;
         for (const double a : {0.13, 0.16, 0.17, 0.2, amplitude})
             all.push_back({make_plan({make_burst(0.0, 0.1, {{0, a}})}), 0.0, {}});
-        render_options o{.level_dbfs = 0.0};
-        return refusal(row(1), all, o);
+        return refusal(row(1), all, {.level_dbfs = 0.0});
     };
     REQUIRE(0.13 + 0.16 + 0.17 + 0.2 + 0.34 > 1.0);
     CHECK(sum(0.34).empty());
@@ -350,8 +347,8 @@ TEST_CASE("ramps of overlapping bursts go into the joined amplitude, at the defa
                 const double wb = k >= 2880 ? b * window(k - 2880, 4800, ramp) : 0.0;
                 double e = std::min(1.0, std::sqrt(wa * wa + wb * wb));
                 e = join == overlap_kind::max ? std::max(wa, wb) : (join == overlap_kind::sum ? wa + wb : e);
-                const double exact = e * std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 48000.0);
-                REQUIRE(std::abs(x[static_cast<std::size_t>(k)] - exact) < (ramp <= 96 ? 1e-6 : 2e-3));
+                REQUIRE(std::abs(x[static_cast<std::size_t>(k)] - e * sine(250.0, k)) <
+                        (ramp <= 96 ? 1e-6 : 2e-3));
             }
         }
     }
@@ -378,7 +375,7 @@ TEST_CASE("a long chain of overlaps is one carrier")
     for (std::size_t k = 4800; k + 9600 < x.size(); ++k) {
         const std::size_t place = k % 1920;
         const double a = 0.3 * std::sqrt(place < 960 ? 3.0 : 2.0);
-        REQUIRE(std::abs(x[k] - a * std::sin(2.0 * pi * 251.0 * static_cast<double>(k) / 48000.0)) < 1e-6);
+        REQUIRE(std::abs(x[k] - a * sine(251.0, k)) < 1e-6);
     }
 }
 
@@ -386,13 +383,9 @@ TEST_CASE("several plans in one score add, each with its own carrier")
 {
     const plan a = make_plan({make_burst(0.0, 0.1, {{0, 0.3}})}, 250.0);
     const plan b = make_plan({make_burst(0.0, 0.1, {{0, 0.3}})}, 200.0);
-    render_options o{.level_dbfs = 0.0};
-    const auto x = channel(score(row(1), {{a, 0.0}, {b, 0.0}}, o), 0);
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        const double t = static_cast<double>(k) / 48000.0;
-        REQUIRE(std::abs(x[k] - 0.3 * (std::sin(2.0 * pi * 250.0 * t) + std::sin(2.0 * pi * 200.0 * t))) <
-                1e-6);
-    }
+    const auto x = channel(score(row(1), {{a, 0.0}, {b, 0.0}}, {.level_dbfs = 0.0}), 0);
+    for (std::size_t k = 0; k < x.size(); ++k)
+        REQUIRE(std::abs(x[k] - 0.3 * (sine(250.0, k) + sine(200.0, k))) < 1e-6);
 }
 
 } // namespace levels_test

@@ -20,17 +20,12 @@ using synth::mixer;
 
 namespace {
 
+constexpr double hz = 250.0;
+
 drive_event make_event(std::uint64_t start, std::uint32_t length, std::uint32_t channel, double from,
                        double to)
 {
-    drive_event e;
-    e.start = start;
-    e.length = length;
-    e.window = length;
-    e.cycles_per_frame = 250.0 / 48000.0;
-    e.drives = 1;
-    e.drive[0] = {from, to, channel};
-    return e;
+    return pieces::make_event(start, length, hz / 48000.0, {from, to, channel});
 }
 
 drive_event make_event(std::uint64_t start, std::uint32_t length, double a = 0.5)
@@ -86,9 +81,7 @@ TEST_CASE("a drive sounds at its place and nowhere else")
     CHECK(m.size() == 1);
     const auto x = take(m, 400);
     for (std::size_t k = 0; k < 400; ++k) {
-        const double exact = k < 100 || k >= 300
-                                 ? 0.0
-                                 : 0.5 * std::sin(2.0 * pi * 250.0 * static_cast<double>(k - 100) / 48000.0);
+        const double exact = k < 100 || k >= 300 ? 0.0 : 0.5 * sine(hz, k - 100);
         CHECK(std::abs(static_cast<double>(x[2 * k]) - exact) < 1e-7);
         CHECK(x[2 * k + 1] == 0.0F);
     }
@@ -103,8 +96,7 @@ TEST_CASE("amplitudes are linear from the first frame to the frame after the las
     const auto x = take(m, 400, 7);
     for (std::size_t k = 0; k < 300; ++k) {
         const double a = 0.2 - 0.6 * static_cast<double>(k) / 300.0;
-        CHECK(std::abs(static_cast<double>(x[2 * (k + 10) + 1]) -
-                       a * std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 48000.0)) < 1e-7);
+        CHECK(std::abs(static_cast<double>(x[2 * (k + 10) + 1]) - a * sine(hz, k)) < 1e-7);
     }
 }
 
@@ -158,10 +150,8 @@ TEST_CASE("a full mixer refuses, loses nothing, and takes more when a drive has 
     CHECK(m.available() == 1);
     CHECK(m.add(make_event(400, 100)));
     const auto x = take(m, 400);
-    for (std::size_t k = 0; k < 400; ++k) {
-        CHECK(std::abs(static_cast<double>(x[2 * k]) -
-                       0.5 * std::sin(2.0 * pi * 250.0 * static_cast<double>(k % 100) / 48000.0)) < 1e-7);
-    }
+    for (std::size_t k = 0; k < 400; ++k)
+        CHECK(std::abs(static_cast<double>(x[2 * k]) - 0.5 * sine(hz, k % 100)) < 1e-7);
 }
 
 TEST_CASE("drives with non-numbers are silence, and so are missing channels")
@@ -249,8 +239,7 @@ TEST_CASE("a faded score goes to zero without a step and is forgotten")
         for (std::size_t k = 0; k < 2000; ++k) {
             const double g = k < 480 ? 0.5 + 0.5 * std::cos(pi * static_cast<double>(k) / 480.0) : 0.0;
             const auto at = static_cast<double>(1000 + k);
-            double exact = 0.5 * std::sin(2.0 * pi * 250.0 * at / 48000.0);
-            exact += k < 200 ? 0.0 : 0.5 * std::sin(2.0 * pi * 250.0 * (at - 1200.0) / 48000.0);
+            const double exact = 0.5 * sine(hz, at) + (k < 200 ? 0.0 : 0.5 * sine(hz, at - 1200.0));
             REQUIRE(std::abs(static_cast<double>(x[2 * k]) - g * exact) < 1e-6);
             largest_step =
                 k == 0 ? 0.0 : std::max(largest_step, static_cast<double>(std::abs(x[2 * k] - x[2 * k - 2])));
@@ -283,8 +272,8 @@ TEST_CASE("a score's gain ramps to the frame, for what sounds and what comes, an
         for (std::size_t k = 0; k < 3000; ++k) {
             const auto at = static_cast<double>(1000 + k);
             const double g = k < 960 ? 1.0 - 0.75 * static_cast<double>(k) / 960.0 : 0.25;
-            const double tone = 0.5 * std::sin(2.0 * pi * 250.0 * at / 48000.0);
-            const double late = k < 1500 ? 0.0 : 0.5 * std::sin(2.0 * pi * 250.0 * (at - 2500.0) / 48000.0);
+            const double tone = 0.5 * sine(hz, at);
+            const double late = k < 1500 ? 0.0 : 0.5 * sine(hz, at - 2500.0);
             REQUIRE(std::abs(static_cast<double>(x[2 * k]) - g * (tone + late)) < 1e-6);
             REQUIRE(std::abs(static_cast<double>(x[2 * k + 1]) - tone) < 1e-6);
         }

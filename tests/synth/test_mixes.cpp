@@ -233,17 +233,16 @@ std::vector<double> formula(const example& e, std::size_t frames)
     for (std::int64_t k = 0; k < n; ++k) {
         const auto carrier = static_cast<double>(e.phase == phase_kind::burst ? k : n0 + k);
         x[static_cast<std::size_t>(n0 + k)] =
-            level * e.amplitude * window(k, n, r) * std::sin(2.0 * pi * e.carrier_hz * carrier / e.rate);
+            level * e.amplitude * window(k, n, r) * sine(e.carrier_hz, carrier, e.rate);
     }
     return x;
 }
 
 score make_score(const example& e)
 {
-    render_options o{.rate = e.rate, .phase = e.phase, .ramp_s = e.ramp_s, .level_dbfs = e.level_dbfs};
     return {row(2),
             {{make_plan({make_burst(e.onset_s, e.duration_s, {{1, e.amplitude}})}, e.carrier_hz), {}}},
-            o};
+            {.rate = e.rate, .phase = e.phase, .ramp_s = e.ramp_s, .level_dbfs = e.level_dbfs}};
 }
 
 std::vector<example> examples()
@@ -292,8 +291,7 @@ plan opaque(plan p)
 
 std::string refusal(const std::vector<placed_plan>& plans, double level_dbfs)
 {
-    render_options o{.level_dbfs = level_dbfs};
-    return caught_message([&] { score(palm, plans, o); });
+    return caught_message([&] { score(palm, plans, {.level_dbfs = level_dbfs}); });
 }
 
 /// Makes intensity 0.0005 over the array, except for 8 ms round a time.
@@ -377,13 +375,13 @@ TEST_CASE("bursts that touch after rounding share no frame")
     render_options o{.rate = 22050, .level_dbfs = 0.0};
     const auto whole = channel(score(row(1), {{make_plan(bursts), {}}}, o), 0);
     for (std::size_t k = 0; k < whole.size(); ++k)
-        REQUIRE(std::abs(whole[k] - std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 22050.0)) < 1e-6);
+        REQUIRE(std::abs(whole[k] - sine(250.0, k, 22050.0)) < 1e-6);
     o.phase = phase_kind::burst;
     const auto x = channel(score(row(1), {{make_plan(bursts), {}}}, o), 0);
     for (int k = 0; k < 40; ++k) {
         const auto n0 = static_cast<std::size_t>(std::floor(k * 1543.5 + 0.5));
         CHECK(std::abs(x[n0]) < 1e-9);
-        CHECK(x[n0 + 1] == doctest::Approx(std::sin(2.0 * pi * 250.0 / 22050.0)));
+        CHECK(x[n0 + 1] == doctest::Approx(sine(250.0, 1, 22050.0)));
     }
 }
 

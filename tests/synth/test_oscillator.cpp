@@ -27,21 +27,6 @@ using namespace pieces;
 
 namespace {
 
-/// Makes forty bursts of 70 ms in a row on tactor 0, equally strong: 2.8 s.
-plan row_of_bursts(double carrier_hz = 250.0, double soa_s = 0.07)
-{
-    std::vector<burst> bursts;
-    for (int k = 0; k < 40; ++k)
-        bursts.push_back(make_burst(k * soa_s, soa_s, {{0, 1.0}}));
-    return make_plan(std::move(bursts), carrier_hz);
-}
-
-render_options at_full_scale()
-{
-    render_options o{.level_dbfs = 0.0};
-    return o;
-}
-
 std::vector<score> various()
 {
     std::mt19937_64 random(11);
@@ -101,12 +86,8 @@ TEST_CASE("an hour of carrier stays within 1e-4 of the exact sine")
         const std::uint64_t first =
             hz == 249.7 ? 3600U - static_cast<unsigned>(tactor::test::rounds(3600)) : 3599U;
         synth::mixer m(std::vector<double>{1.0}, format_kind::float32, 4);
-        synth::drive_event e;
-        e.length = 3700U * 48000U;
+        synth::drive_event e = make_event(0, 3700U * 48000U, hz / 48000.0, {1.0, 1.0, 0});
         e.phase_frame = first * 48000;
-        e.cycles_per_frame = hz / 48000.0;
-        e.drives = 1;
-        e.drive[0] = {1.0, 1.0, 0};
         m.add(e);
         std::vector<float> x(48000);
         double worst = 0.0;
@@ -169,16 +150,13 @@ TEST_CASE("the carrier counts from its stroke's first frame, at any start")
     const double hz = 240.0;
     plan p = make_plan({make_burst(0.011, 0.1, {{0, 0.6}}), make_burst(0.17, 0.05, {{0, 0.5}})}, hz);
     for (const double start_s : {0.0, 0.2501}) {
-        render_options o = at_full_scale();
-        o.ramp_s = 0.0;
-        const score s(row(1), {{p, start_s}}, o);
+        const score s(row(1), {{p, start_s}}, {.ramp_s = 0.0, .level_dbfs = 0.0});
         const auto x = channel(s, 0);
         const std::size_t first = s.starts()[0];
         for (std::size_t k = first; k < x.size(); ++k) {
             const std::size_t at = k - first;
             const double a = at >= 528 && at < 5328 ? 0.6 : (at >= 8160 ? 0.5 : 0.0);
-            const double exact = a * std::sin(2.0 * pi * hz * static_cast<double>(at) / 48000.0);
-            REQUIRE(std::abs(x[k] - exact) < 1e-6);
+            REQUIRE(std::abs(x[k] - a * sine(hz, at)) < 1e-6);
         }
     }
 }
@@ -187,14 +165,10 @@ TEST_CASE("overlapping bursts continue the stroke's carrier")
 {
     const double hz = 240.0;
     const plan p = make_plan({make_burst(0.011, 0.1, {{0, 0.6}}), make_burst(0.06, 0.1, {{0, 0.5}})}, hz);
-    render_options o = at_full_scale();
-    o.ramp_s = 0.0;
-    const auto x = channel(score(row(1), {{p, 0.2501}}, o), 0);
+    const auto x = channel(score(row(1), {{p, 0.2501}}, {.ramp_s = 0.0, .level_dbfs = 0.0}), 0);
     const std::size_t first = 12005;
-    for (std::size_t at = 528; at < 2880; ++at) {
-        const double exact = 0.6 * std::sin(2.0 * pi * hz * static_cast<double>(at) / 48000.0);
-        REQUIRE(std::abs(x[first + at] - exact) < 1e-6);
-    }
+    for (std::size_t at = 528; at < 2880; ++at)
+        REQUIRE(std::abs(x[first + at] - 0.6 * sine(hz, at)) < 1e-6);
 }
 
 TEST_CASE("a burst has no ramp where the carrier crosses zero at both its ends, else 2 ms")
@@ -214,9 +188,7 @@ TEST_CASE("a burst has no ramp where the carrier crosses zero at both its ends, 
     };
     for (const example& e : all) {
         for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
-            render_options o = at_full_scale();
-            o.rate = 768000;
-            o.phase = phase;
+            const render_options o{.rate = 768000, .phase = phase, .level_dbfs = 0.0};
             const plan p = make_plan({make_burst(e.onset_s, e.duration_s, {{0, 1.0}})});
             const auto x = channel(score(row(1), {{p, {}}}, o), 0);
             const bool expected = phase == phase_kind::stroke ? e.ramped : e.ramped_alone;
@@ -228,8 +200,8 @@ TEST_CASE("a burst has no ramp where the carrier crosses zero at both its ends, 
             CAPTURE(e.duration_s);
             CAPTURE(static_cast<int>(phase));
             const double from = phase == phase_kind::stroke ? static_cast<double>(quarter) : 768.0;
-            const double carrier = std::sin(2.0 * pi * 250.0 * from / o.rate);
-            CHECK(x[quarter] / carrier == doctest::Approx(expected ? 0.5 : 1.0).epsilon(0.01));
+            CHECK(x[quarter] / sine(250.0, from, o.rate) ==
+                  doctest::Approx(expected ? 0.5 : 1.0).epsilon(0.01));
         }
     }
 }
@@ -237,14 +209,12 @@ TEST_CASE("a burst has no ramp where the carrier crosses zero at both its ends, 
 TEST_CASE("an explicit ramp wins in either phase")
 {
     for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
-        render_options o = at_full_scale();
-        o.phase = phase;
-        o.ramp_s = 0.002;
-        const auto ramped = channel(score(row(1), {{row_of_bursts(), {}}}, o), 0);
-        CHECK(ramped[48] == doctest::Approx(0.5));
-        o.ramp_s = 0.0;
-        const auto plain = channel(score(row(1), {{row_of_bursts(255.0), {}}}, o), 0);
-        CHECK(plain[47] == doctest::Approx(std::sin(2.0 * pi * 255.0 * 47.0 / 48000.0)));
+        const auto played = [phase](double hz, double ramp_s) {
+            const plan p = make_plan({make_burst(0.0, 0.07, {{0, 1.0}})}, hz);
+            return channel(score(row(1), p, {.phase = phase, .ramp_s = ramp_s, .level_dbfs = 0.0}), 0);
+        };
+        CHECK(played(250.0, 0.002)[48] == doctest::Approx(0.5));
+        CHECK(played(255.0, 0.0)[47] == doctest::Approx(sine(255.0, 47)));
     }
 }
 

@@ -31,8 +31,7 @@ namespace {
 
 render_options marked(unsigned channel, unsigned channels)
 {
-    render_options o{.channels = channels, .marker_channel = channel};
-    return o;
+    return {.channels = channels, .marker_channel = channel};
 }
 
 score two_strokes(const render_options& o)
@@ -44,12 +43,11 @@ score two_strokes(const render_options& o)
 score busy_score()
 {
     std::mt19937_64 random(31);
-    render_options o{.level_dbfs = -40.0};
     return {row(9),
             {{make_random(random, 9, 100, 1.0), {}},
              {make_continuous(9, 0.8), 0.1},
              {make_continuous(9, 0.8), 0.5}},
-            o};
+            {.level_dbfs = -40.0}};
 }
 
 } // namespace
@@ -57,8 +55,7 @@ score busy_score()
 TEST_CASE("plans follow each other unless they are placed")
 {
     const plan p = make_plan({make_burst(0.01, 0.0413, {{0, 0.5}})});
-    render_options o{.rate = 44100};
-    const score s(row(2), {{p, {}}, {p, {}}, {p, 0.02}, {p, {}}}, o);
+    const score s(row(2), {{p, {}}, {p, {}}, {p, 0.02}, {p, {}}}, {.rate = 44100});
     const auto length = static_cast<std::uint64_t>(std::llround(0.0513 * 44100));
     CHECK((s.starts() == std::vector<std::uint64_t>{0, length, 882, 882 + length}));
     CHECK(s.frames() == 882 + 2 * length);
@@ -69,14 +66,13 @@ TEST_CASE("plans follow each other unless they are placed")
 
 TEST_CASE("strokes in a row begin at their times, however many there are, at full scale")
 {
-    render_options o{.level_dbfs = 0.0};
     for (const double frames : {9600.0, 9600.49, 9600.51, 9600.99}) {
         CAPTURE(frames);
         const double seconds = frames / 48000.0;
         const plan p = make_plan({make_burst(0.0, seconds, {{0, 1.0}})});
         std::vector<placed_plan> plans(1000, placed_plan{p, {}});
         plans.push_back({p, 0.0, {start_from_kind::end, 1}});
-        const score s(row(1), plans, o);
+        const score s(row(1), plans, {.level_dbfs = 0.0});
         const std::vector<double> starts_s = start_times_s(plans);
         for (std::size_t i = 0; i < plans.size(); ++i)
             REQUIRE(s.starts()[i] == synth::frame_at(starts_s[i], 48000));
@@ -194,8 +190,7 @@ TEST_CASE("spare channels are silent and channels follow the map")
 {
     array a = row(2);
     a.tactors[0].channel = 3;
-    render_options o{.channels = 6};
-    const score s(a, {{make_plan({make_burst(0.0, 0.07, {{0, 0.5}, {1, 0.25}})}), {}}}, o);
+    const score s(a, {{make_plan({make_burst(0.0, 0.07, {{0, 0.5}, {1, 0.25}})}), {}}}, {.channels = 6});
     CHECK(s.channels() == 6);
     for (const unsigned c : {0U, 2U, 4U, 5U}) {
         const auto x = channel(s, c);
@@ -209,12 +204,11 @@ TEST_CASE("events come in order of start and cover exactly the sounding frames")
 {
     std::mt19937_64 random(21);
     for (int i = 0; i < tactor::test::rounds(50); ++i) {
-        render_options o{.phase = i % 2 == 0 ? phase_kind::burst : phase_kind::stroke, .level_dbfs = -30.0};
         const score s(row(9),
                       {{make_random(random, 9, 40, 0.5), {}},
                        {make_continuous(9, 0.2), 0.3},
                        {make_random(random, 9, 10, 0.2), 0.1}},
-                      o);
+                      {.phase = i % 2 == 0 ? phase_kind::burst : phase_kind::stroke, .level_dbfs = -30.0});
         synth::event_source source(s);
         std::uint64_t last = 0;
         std::uint64_t end = 0;
@@ -259,8 +253,7 @@ TEST_CASE("a burst of more tactors than an event holds is several events of one 
 
 TEST_CASE("a drive longer than an event continues in the next without a seam")
 {
-    render_options o{.rate = 768000};
-    const score s(row(1), {{make_plan({make_burst(0.0, 3000.0, {{0, 1.0}})}), {}}}, o);
+    const score s(row(1), {{make_plan({make_burst(0.0, 3000.0, {{0, 1.0}})}), {}}}, {.rate = 768000});
     REQUIRE(s.frames() == 2304000000U);
     synth::event_source source(s);
     std::uint64_t at = 0;
@@ -281,8 +274,7 @@ TEST_CASE("continuous strokes are linear between control points, one carrier thr
         const double duration = 0.2504;
         const double hz = 180.0;
         const plan p = make_continuous(3, duration, hz);
-        render_options o{.rate = rate, .ramp_s = 0.01, .level_dbfs = 0.0};
-        const score s(row(3), {{p, {}}}, o);
+        const score s(row(3), {{p, {}}}, {.rate = rate, .ramp_s = 0.01, .level_dbfs = 0.0});
         const auto n = static_cast<std::int64_t>(std::llround(duration * rate));
         REQUIRE(s.frames() == static_cast<std::uint64_t>(n));
         for (unsigned c = 0; c < 3; ++c) {
@@ -308,8 +300,7 @@ TEST_CASE("continuous strokes are linear between control points, one carrier thr
                 const double a = amplitude(0.001 * static_cast<double>(step));
                 const double b = amplitude(0.001 * static_cast<double>(step + 1));
                 const double e = a + (b - a) * (static_cast<double>(k) - from) / (to - from);
-                const double exact = e * window(k, n, std::llround(0.01 * rate)) *
-                                     std::sin(2.0 * pi * hz * static_cast<double>(k) / rate);
+                const double exact = e * window(k, n, std::llround(0.01 * rate)) * sine(hz, k, rate);
                 REQUIRE(std::abs(x[static_cast<std::size_t>(k)] - exact) < 1e-6);
             }
         }
@@ -393,10 +384,8 @@ TEST_CASE("a marker needs a spare channel that exists")
 TEST_CASE("a constant never reaches a tactor")
 {
     synth::mixer m(std::vector<double>{1.0, 0.0}, format_kind::float32, 8);
-    synth::drive_event e;
-    e.length = 100;
+    synth::drive_event e = make_event(0, 100, 0.0, {1.0, 1.0, 0});
     e.drives = 2;
-    e.drive[0] = {1.0, 1.0, 0};
     e.drive[1] = {1.0, 1.0, 1};
     CHECK(m.add(e));
     CHECK(m.size() == 0);
@@ -417,8 +406,7 @@ TEST_CASE("a sounding stroke has its given strength at each frame, at any level,
         b.drives = {{0, 0.25 + onset_s}, {1, 0.5}, {2, 1.0}};
         p.bursts.push_back(b);
     }
-    render_options o{.rate = 10000};
-    synth::sounding_now now(score(a, {{p, 0.1}}, o));
+    synth::sounding_now now(score(a, {{p, 0.1}}, {.rate = 10000}));
     CHECK(now.at(999) == std::vector<double>{0.0, 0.0, 0.0});
     for (const std::uint64_t frame : {1000U, 1999U, 2000U, 3500U, 3999U}) {
         CAPTURE(frame);

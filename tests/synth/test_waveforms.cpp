@@ -63,8 +63,7 @@ plan tone(const waveform& w, double hz, double duration_s = 1.5, double amplitud
 
 std::vector<double> played(const plan& p, double level_dbfs = 0.0, unsigned at_rate = rate)
 {
-    render_options o{.rate = at_rate, .ramp_s = 0.0, .level_dbfs = level_dbfs};
-    return channel(score(row(1), p, o), 0);
+    return channel(score(row(1), p, {.rate = at_rate, .ramp_s = 0.0, .level_dbfs = level_dbfs}), 0);
 }
 
 /// Returns the amplitude of each line in the middle of a tone, in a window of Blackman and Harris (sidelobes:
@@ -353,8 +352,7 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
     // 100 to 300 Hz in the first 20 minutes, back to 150 Hz in the rest.
     plan p = tone(shape(waveform_kind::sine), 250.0, 3600.0);
     p.course = {{0.0, 100.0}, {1200.0, 300.0}, {3600.0, 150.0}};
-    render_options o{.ramp_s = 0.0, .level_dbfs = 0.0};
-    const score s(row(1), p, o);
+    const score s(row(1), p, {.ramp_s = 0.0, .level_dbfs = 0.0});
     const synth::timbre& t = *detail::access::of(s).sounds.front();
     double worst = 0.0;
     for (std::int64_t k = 0; k < std::int64_t{3600} * rate; k += 7919 * 61) {
@@ -379,8 +377,7 @@ TEST_CASE("the phase of a carrier whose frequency is bent is its integral, and g
     const std::array<double, 4> bend{120.0, -340.0, 90.0, 260.0};
     plan p = tone(shape(waveform_kind::sine), 250.0, 1.0);
     p.course = {{0.0, 100.0, bend}, {0.4, 300.0}, {1.0, 150.0}};
-    render_options o{.ramp_s = 0.0, .level_dbfs = 0.0};
-    const score s(row(1), p, o);
+    const score s(row(1), p, {.ramp_s = 0.0, .level_dbfs = 0.0});
     const synth::timbre& t = *detail::access::of(s).sounds.front();
     const auto hz = [&](double at_s) {
         if (at_s >= 0.4)
@@ -519,9 +516,8 @@ TEST_CASE("a recording along the path follows the target's speed")
         "", trajectory::timed({{0.0, {0, 0}}, {1.0, {20, 0}}, {2.0, {20, 0}}, {6.0, {40, 0}}}), {}, {}, {}};
     s.sound.wave = recorded(cycle, texture_kind::length);
     s.sound.wave->texture_mm = 10.0;
-    plan_options o{.algorithm = algorithm_kind::continuous};
     render_options r{.ramp_s = 0.0, .level_dbfs = 0.0};
-    const score made(a, make_plan(a, s, o), r);
+    const score made(a, make_plan(a, s, {.algorithm = algorithm_kind::continuous}), r);
     const auto bytes = render(made, format_kind::float32);
     const auto at = [&](double t_s, unsigned c) {
         return static_cast<double>(sample<float>(bytes, static_cast<std::size_t>(t_s * rate) * 3 + c));
