@@ -37,11 +37,8 @@ void check_at(const path& p, double s, point want, double within)
 
 void check_share(const path& p, double share, point want, double within)
 {
-    const point got = p.at(share * p.length_mm());
     CAPTURE(p.svg());
-    CAPTURE(got.x_mm);
-    CAPTURE(got.y_mm);
-    CHECK(tactor::distance_mm(got, want) <= within);
+    check_at(p, share * p.length_mm(), want, within);
 }
 
 using control = std::array<point, 4>;
@@ -66,16 +63,6 @@ std::array<control, 2> split(const control& p, double t)
 }
 
 } // namespace
-
-TEST_CASE("a straight line is exact")
-{
-    const path p = path::from_svg("M 0 10 L 40 30");
-    CHECK(p.length_mm() == doctest::Approx(std::sqrt(2000.0)).epsilon(1e-15));
-    check_at(p, 0.5 * p.length_mm(), {20.0, 20.0}, 1e-12);
-    check_at(p, 0.25 * p.length_mm(), {10.0, 15.0}, 1e-12);
-    CHECK(p.at(0.0) == point{0.0, 10.0});
-    CHECK(p.at(p.length_mm()) == point{40.0, 30.0});
-}
 
 TEST_CASE("arc length is clamped to the path, and a non-number is its start")
 {
