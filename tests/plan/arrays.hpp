@@ -34,14 +34,9 @@ inline unsigned pick(generator& g, unsigned low, unsigned high)
 
 inline array make_array(const std::vector<point>& places)
 {
-    array a;
-    a.name = "test";
-    for (const point& p : places) {
-        tactor_spec t;
-        t.position = p;
-        t.channel = static_cast<unsigned>(a.tactors.size());
-        a.tactors.push_back(t);
-    }
+    array a{.name = "test"};
+    for (const point& p : places)
+        a.tactors.push_back({.position = p, .channel = static_cast<unsigned>(a.tactors.size())});
     return a;
 }
 
@@ -175,10 +170,11 @@ inline std::vector<unsigned> list_tactors(const std::vector<drive>& d)
     return t;
 }
 
-inline std::vector<drive> weights(const layout& l, phantom_kind k, point p, double a_v = 1.0)
+inline std::vector<drive> weights(const layout& l, phantom_kind k, point p, double a_v = 1.0,
+                                  faces_kind faces = faces_kind::delaunay)
 {
     std::vector<drive> out;
-    make_phantom(k, l)->weights(p, a_v, out);
+    make_phantom(k, l, faces)->weights(p, a_v, out);
     return out;
 }
 

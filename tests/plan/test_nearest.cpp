@@ -28,9 +28,7 @@ namespace {
 
 std::vector<drive> nearest(const layout& l, point p, double a_v = 1.0)
 {
-    std::vector<drive> d;
-    make_phantom(phantom_kind::inverse_distance, l, faces_kind::nearest)->weights(p, a_v, d);
-    return d;
+    return weights(l, phantom_kind::inverse_distance, p, a_v, faces_kind::nearest);
 }
 
 /// Sorts tactors by distance, equal ones in the order of the list.
@@ -161,25 +159,6 @@ TEST_CASE("the three closest keep Eqs. (8) and (9) and are the closest, by brute
                 REQUIRE(off_segment(l.places()[d[0].tactor], l.places()[d[1].tactor], p) <= same_place_mm);
             else
                 REQUIRE(d.size() == 3);
-        }
-    }
-}
-
-TEST_CASE("the closest do not depend on the order of the tactors in the file")
-{
-    generator g(12);
-    for (unsigned round = 0; round < 200; ++round) {
-        const array a = some_array(g, round % kinds_of_array);
-        const auto [b, now] = shuffled(g, a);
-        const layout l(a);
-        const layout m(b);
-        for (unsigned i = 0; i < 20; ++i) {
-            const point p = some_point(g, l);
-            std::vector<unsigned> moved;
-            for (const drive& x : nearest(l, p))
-                moved.push_back(now[x.tactor]);
-            std::sort(moved.begin(), moved.end());
-            REQUIRE(moved == list_tactors(nearest(m, p)));
         }
     }
 }

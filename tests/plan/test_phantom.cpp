@@ -164,26 +164,30 @@ TEST_CASE("ties in distance go to the lowest tactor by row and column, within a 
 TEST_CASE("the order of the tactors in the file does not matter, for any model")
 {
     generator g(5);
+    generator h(12);
     for (unsigned round = 0; round < 300; ++round) {
         const array a = some_array(g, round % kinds_of_array);
         const auto [b, now] = shuffled(g, a);
         const layout l(a);
         const layout m(b);
-        for (const phantom_kind k : all_values<phantom_kind>())
-            for (unsigned i = 0; i < 10; ++i) {
-                const point p = some_point(g, l);
-                std::vector<drive> moved = weights(l, k, p);
-                for (drive& x : moved)
-                    x.tactor = now[x.tactor];
-                std::sort(moved.begin(), moved.end(), [](auto& x, auto& y) { return x.tactor < y.tactor; });
-                const std::vector<drive> there = weights(m, k, p);
-                CAPTURE(round);
-                REQUIRE(there.size() == moved.size());
-                for (std::size_t j = 0; j < there.size(); ++j) {
-                    REQUIRE(there[j].tactor == moved[j].tactor);
-                    REQUIRE(there[j].amplitude == doctest::Approx(moved[j].amplitude).epsilon(1e-12));
-                }
+        const auto check_same = [&, &now = now](point p, phantom_kind k, faces_kind faces) {
+            std::vector<drive> moved = weights(l, k, p, 1.0, faces);
+            for (drive& x : moved)
+                x.tactor = now[x.tactor];
+            std::sort(moved.begin(), moved.end(), [](auto& x, auto& y) { return x.tactor < y.tactor; });
+            const std::vector<drive> there = weights(m, k, p, 1.0, faces);
+            REQUIRE(there.size() == moved.size());
+            for (std::size_t j = 0; j < there.size(); ++j) {
+                REQUIRE(there[j].tactor == moved[j].tactor);
+                REQUIRE(there[j].amplitude == doctest::Approx(moved[j].amplitude).epsilon(1e-12));
             }
+        };
+        CAPTURE(round);
+        for (const phantom_kind k : all_values<phantom_kind>())
+            for (unsigned i = 0; i < 10; ++i)
+                check_same(some_point(g, l), k, faces_kind::delaunay);
+        for (unsigned i = 0; i < 20; ++i)
+            check_same(some_point(h, l), phantom_kind::inverse_distance, faces_kind::nearest);
     }
 }
 
