@@ -27,9 +27,8 @@ namespace {
 tap_summary of_motion(phantom_kind phantom, double sigma_mm, point* first = nullptr)
 {
     const stroke s = preset_stroke("park2016-1");
-    plan_options o;
-    o.phantom = phantom;
-    const std::vector<tap> taps = predict_taps(palm, s, make_plan(palm, s, o), {sigma_mm, 100.0});
+    const plan p = make_plan(palm, s, {.phantom = phantom});
+    const std::vector<tap> taps = predict_taps(palm, s, p, {sigma_mm, 100.0});
     REQUIRE(taps.size() == 21);
     if (first != nullptr)
         *first = taps.front().felt;
@@ -140,10 +139,8 @@ double by_gradients(const layout& l, const low_speed_observer& o, const std::vec
 compensated_plan of_motion(const char* name, phantom_kind phantom, const low_speed_observer& m = {},
                            algorithm_kind algorithm = algorithm_kind::park2016)
 {
-    plan_options o;
-    o.phantom = phantom;
-    o.algorithm = algorithm;
-    return make_compensated_plan(palm, layout(palm), preset_stroke(name), o, m);
+    return make_compensated_plan(palm, layout(palm), preset_stroke(name),
+                                 {.algorithm = algorithm, .phantom = phantom}, m);
 }
 
 } // namespace
@@ -237,10 +234,7 @@ TEST_CASE("a hundred thousand taps are solved exactly")
     std::vector<point> m(n);
     for (std::size_t i = 0; i < n; ++i)
         m[i] = {20.0 + 16.0 * std::cos(0.1 * static_cast<double>(i)), i % 2 == 0 ? 0.0 : 40.0};
-    std::vector<double> t(n);
-    for (std::size_t i = 0; i < n; ++i)
-        t[i] = 0.07 * static_cast<double>(i);
-    const std::vector<point> x = felt_places({}, t, m);
+    const std::vector<point> x = felt_places({}, onsets(n, 0.07), m);
     const double k = std::pow(5.0 / 7.0, 2.0);
     double worst = 0.0;
     for (std::size_t i = 1; i + 1 < n; ++i) // the equation itself, onsets being equal to rounding
@@ -286,10 +280,8 @@ TEST_CASE("another person's taps are shifted before they are pulled together")
 TEST_CASE("impossible predictions and parameters are refused")
 {
     const stroke s = preset_stroke("park2016-1");
-    plan_options o;
-    o.algorithm = algorithm_kind::continuous;
-    CHECK_THROWS_WITH_AS(predict_taps(palm, s, make_plan(palm, s, o)), doctest::Contains("continuous"),
-                         error);
+    CHECK_THROWS_WITH_AS(predict_taps(palm, s, make_plan(palm, s, continuous())),
+                         doctest::Contains("continuous"), error);
     plan elsewhere = make_plan(palm, s);
     elsewhere.bursts[3].drives.back().tactor = 9;
     CHECK_THROWS_WITH_AS(predict_taps(palm, s, elsewhere), doctest::Contains("tactor 9"), error);
@@ -316,8 +308,7 @@ TEST_CASE("the description of its numbers names model, parameters and purpose")
 TEST_CASE("inside the array the target itself is felt")
 {
     const array wide = make_grid("wide", 5, 5, 20.0, 20.0);
-    plan_options o;
-    o.phantom = phantom_kind::barycentric;
+    const plan_options o{.phantom = phantom_kind::barycentric};
     for (const double sigma : {2.0, 5.0, 10.0}) {
         const stroke s = along("M 30 40 A 10 10 0 0 0 50 40", 1.0);
         const compensated_plan p = make_compensated_plan(wide, layout(wide), s, o, {sigma, 100.0});
@@ -503,8 +494,7 @@ TEST_CASE("moved bursts keep the phantom and the scale of their plan")
     s.motion = trajectory::timed({{0.0, {5.0, 20.0}, 0.5}, {1.0, {35.0, 20.0}, 0.5}});
     s.choices.phantom = phantom_kind::barycentric;
     for (const scale_kind k : all_values<scale_kind>()) {
-        plan_options o;
-        o.scale = {.kind = k, .sl_db = 30.0};
+        const plan_options o{.scale = {.kind = k, .sl_db = 30.0}};
         const compensated_plan p = make_compensated_plan(palm, layout(palm), s, o, {});
         const double asked = std::pow(o.scale.amplitude(0.5), 2.0);
         CHECK(p.plan.phantom == "barycentric");

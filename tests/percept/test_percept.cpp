@@ -26,19 +26,12 @@ std::vector<percept_sample> predict(const array& a, const stroke& s, const plan_
 
 plan make_test_plan(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy)
 {
-    plan p;
-    p.overlap = join;
-    p.bursts = std::move(bursts);
-    return p;
+    return {.overlap = join, .bursts = std::move(bursts)};
 }
 
 burst one_burst(double onset_s, double duration_s, std::vector<drive> drives)
 {
-    burst b;
-    b.onset_s = onset_s;
-    b.duration_s = duration_s;
-    b.drives = std::move(drives);
-    return b;
+    return {.onset_s = onset_s, .duration_s = duration_s, .drives = std::move(drives)};
 }
 
 const array pair = make_array({{0.0, 0.0}, {10.0, 0.0}});
@@ -131,10 +124,8 @@ TEST_CASE("by hand: the speed of one jump is the average's ramp")
 
 TEST_CASE("continuous with barycentric weights is felt where the target is")
 {
-    plan_options o;
-    o.algorithm = algorithm_kind::continuous;
-    o.phantom = phantom_kind::barycentric;
-    const percept_summary r = summarise(predict(preset_array("palm-3x3"), preset_stroke("park2016-4"), o));
+    const plan_options o{.algorithm = algorithm_kind::continuous, .phantom = phantom_kind::barycentric};
+    const percept_summary r = summarise(predict(palm, preset_stroke("park2016-4"), o));
     CHECK(*r.largest_error_mm < 1e-9);
     CHECK(*r.speed_cv < 1e-3); // the average of an arc lies inside it, always as far
     CHECK(*r.intensity_cv < 1e-9);
@@ -225,11 +216,10 @@ TEST_CASE("any plan is felt like in a search at each time")
                               {between(g, 0, corner.x_mm), between(g, 0, corner.y_mm)},
                               between(g, 0.0, 1.0)});
         const stroke s = timed(points);
-        plan_options o;
-        o.algorithm = static_cast<algorithm_kind>(round % 3);
+        plan_options o{
+            .algorithm = static_cast<algorithm_kind>(round % 3), .snap = true, .drop_points = true};
         o.phantom = static_cast<phantom_kind>(pick(g, 0, 4));
         o.soa_s = between(g, 0.048, 0.07);
-        o.snap = o.drop_points = true;
         const plan p = make_plan(a, s, o);
         for (const percept_sample& x : predict_percept(a, s, p)) {
             const percept_sample y = by_search(a, p, x.t_s);
@@ -326,16 +316,12 @@ TEST_CASE("a silent plan has no error, and an empty summary is no error")
 
 TEST_CASE("plans of hours, and of another array, are refused")
 {
-    plan_options o;
-    o.algorithm = algorithm_kind::continuous;
     const stroke longest = along("M 0 0 L 10 0", 3600.001);
     CHECK_THROWS_AS(predict_percept(pair, longest, plan{}), error);
     CHECK_THROWS_AS(detail::predict_summaries(pair, longest, {}), error);
     const stroke s = along("M 0 0 L 40 40", 1.0);
-    for (const algorithm_kind method : {algorithm_kind::park2016, algorithm_kind::continuous}) {
-        o.algorithm = method;
-        CHECK_THROWS_AS(predict_percept(pair, s, make_plan(preset_array("palm-3x3"), s, o)), error);
-    }
+    for (const algorithm_kind method : {algorithm_kind::park2016, algorithm_kind::continuous})
+        CHECK_THROWS_AS(predict_percept(pair, s, make_plan(palm, s, {.algorithm = method})), error);
 }
 
 TEST_CASE("by hand: another person feels one tactor less, and another one elsewhere")
