@@ -14,6 +14,7 @@
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
+#include "has.hpp"
 #include "path_samples.hpp"
 #include "rounds.hpp"
 
@@ -33,11 +34,7 @@ std::string refusal(const std::string& data)
 
 TEST_CASE("bad path data is refused at the first bad column")
 {
-    struct sample {
-        std::string data;
-        std::string message;
-    };
-    const sample samples[] = {
+    const refused_text samples[] = {
         {"", "path data: column 1: is empty (it starts with M x y)"},
         {" \t\n", "path data: column 4: is empty"},
         {"L 1 1", "path data: column 1: 'L' where a path starts (it starts with M x y)"},
@@ -64,12 +61,7 @@ TEST_CASE("bad path data is refused at the first bad column")
         {"M 0 0 M 1 1 L 2 2", "path data: column 7: a second subpath begins"},
         {"M 900000 0 l 900000 0", "path data: goes to 1.8e+06 mm, beyond 1e+06 mm"},
     };
-    for (const sample& s : samples) {
-        CAPTURE(s.data);
-        const std::string got = refusal(s.data);
-        CAPTURE(got);
-        CHECK(got.substr(0, s.message.size()) == s.message);
-    }
+    check_messages(samples, refusal);
 }
 
 TEST_CASE("numbers may run together, as minifiers write them")

@@ -79,26 +79,34 @@ std::string in_four_bytes(std::initializer_list<std::int32_t> all, std::int32_t 
     return wav(chunk("fmt ", f) + chunk("data", s));
 }
 
+recording load(const std::string& file)
+{
+    const folder dir;
+    return load_recording(dir.write("a.wav", file));
+}
+
+const std::vector<float> expected{0.5F, -0.25F, 0.0F};
+const std::string of_16_bits = samples<std::int16_t>({16384, -8192, 0}); ///< these as samples
+const std::string head = chunk("fmt ", format(1, 16));
+const std::string short_one = wav(head + chunk("data", samples<std::int16_t>({1000, -1000})));
+
 } // namespace
 
 TEST_CASE("a WAV file's samples are read in every format, after any chunks")
 {
-    const folder dir;
-    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
     const std::string extensible = format(0xFFFE, 16) + bytes(std::uint16_t{22}) + bytes(std::uint16_t{16}) +
                                    bytes(std::uint32_t{0}) + bytes(std::uint16_t{1}) + std::string(14, '\0');
     const std::vector<std::string> all{
         chunk("fmt ", format(1, 8)) + chunk("data", samples<std::uint8_t>({192, 96, 128})),
-        chunk("LIST", "odd") + chunk("fmt ", format(1, 16)) +
-            chunk("data", samples<std::int16_t>({16384, -8192, 0})),
+        chunk("LIST", "odd") + head + chunk("data", of_16_bits),
         chunk("fmt ", format(1, 24)) + chunk("data", std::string("\0\0\x40\0\0\xE0\0\0\0", 9)),
         chunk("fmt ", format(1, 32)) + chunk("data", samples<std::int32_t>({1 << 30, -(1 << 29), 0})),
         chunk("fmt ", format(3, 32)) + chunk("data", samples<float>({0.5F, -0.25F, 0.0F})),
         chunk("fmt ", format(3, 64)) + chunk("data", samples<double>({0.5, -0.25, 0.0})),
-        chunk("fmt ", extensible) + chunk("data", samples<std::int16_t>({16384, -8192, 0})),
+        chunk("fmt ", extensible) + chunk("data", of_16_bits),
     };
     for (const std::string& w : all) {
-        const recording r = load_recording(dir.write("a.wav", wav(w)));
+        const recording r = load(wav(w));
         CHECK(r.samples == expected);
         CHECK(r.rate_hz == 8000.0);
     }
@@ -121,20 +129,19 @@ TEST_CASE("a file that is no WAV file of one channel is refused by name")
     CHECK(refused("RIFF\1\2\3\4AVI LIST", "no WAV file"));
     CHECK(refused(wav(chunk("fmt ", format(2, 16)) + data), "format 2"));
     CHECK(refused(wav(chunk("fmt ", format(1, 16, 2)) + data), "2 channels"));
-    CHECK(refused(wav(chunk("fmt ", format(1, 16)) + chunk("data", "ab")), "1 sample"));
+    CHECK(refused(wav(head + chunk("data", "ab")), "1 sample"));
 }
 
 TEST_CASE("24 bits in four bytes are found at either end, however quiet")
 {
-    const folder dir;
     const std::initializer_list<std::int32_t> loud{0, 4194304, -2097152, 8388607, -8388608};
     const std::initializer_list<std::int32_t> quiet{0, 40, -20, 80, -81};
-    const std::initializer_list<std::int32_t> of_16_bits{0, 16384 * 256, -8192 * 256};
+    const std::initializer_list<std::int32_t> whole_bytes{0, 16384 * 256, -8192 * 256};
     using four_bytes = std::int32_t (*)(std::int32_t);
     const four_bytes ways[] = {
         [](std::int32_t v) { return v; }, [](std::int32_t v) { return v & 0xFFFFFF; },
         [](std::int32_t v) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) << 8U); }};
-    for (const auto& all : {loud, quiet, of_16_bits}) {
+    for (const auto& all : {loud, quiet, whole_bytes}) {
         // Only the shape is played: the position of quiet samples cannot be known.
         const auto shape = [](std::vector<float> x) {
             float peak = 0.0F;
@@ -144,82 +151,59 @@ TEST_CASE("24 bits in four bytes are found at either end, however quiet")
                 v /= peak;
             return x;
         };
-        std::vector<float> expected;
+        std::vector<float> values;
         for (const std::int32_t v : all)
-            expected.push_back(static_cast<float>(v) / 8388608.0F);
+            values.push_back(static_cast<float>(v) / 8388608.0F);
         for (const four_bytes as : ways)
-            CHECK(shape(load_recording(dir.write("a.wav", in_four_bytes(all, as))).samples) ==
-                  shape(expected));
+            CHECK(shape(load(in_four_bytes(all, as)).samples) == shape(values));
     }
 }
 
 TEST_CASE("sizes that a recorder left open end with the file")
 {
-    const folder dir;
-    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
-    const std::string s = samples<std::int16_t>({16384, -8192, 0});
-    const std::string head = chunk("fmt ", format(1, 16));
     for (const std::uint32_t size : {0U, 0xFFFFFFFFU, 0x7FFFFFFFU, 0x7FFFF000U, 0x80000000U}) {
         CAPTURE(size);
-        const recording r = load_recording(dir.write("a.wav", wav(head + open_data(size, s))));
+        const recording r = load(wav(head + open_data(size, of_16_bits)));
         CHECK(r.samples == expected);
         CHECK(r.missing == 0);
     }
     // No samples are no open size.
-    has(caught_message([&] {
-            return load_recording(dir.write("a.wav", wav(head + open_data(0, chunk("LIST", "INFO")))));
-        }),
-        "0 samples");
+    has(caught_message([] { return load(wav(head + open_data(0, chunk("LIST", "INFO")))); }), "0 samples");
 }
 
 TEST_CASE("long files give their size elsewhere, and later chunks are no samples")
 {
-    const folder dir;
-    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
-    const std::string s = samples<std::int16_t>({16384, -8192, 0});
     const std::string behind = chunk("LIST", "INFOICMT\x04\0\0\0loud");
-    for (const char* kind : {"RF64", "BW64"}) {
-        const std::string chunks = chunk("fmt ", format(1, 16)) + open_data(0xFFFFFFFFU, s) + behind;
-        CHECK(load_recording(dir.write("a.wav", long_sizes(kind, 6, chunks))).samples == expected);
-    }
+    const std::string chunks = head + open_data(0xFFFFFFFFU, of_16_bits) + behind;
+    for (const char* kind : {"RF64", "BW64"})
+        CHECK(load(long_sizes(kind, 6, chunks)).samples == expected);
 }
 
 TEST_CASE("chunks of odd size may be anywhere, with or without padding")
 {
-    const folder dir;
-    const std::vector<float> expected{0.5F, -0.25F, 0.0F};
-    const std::string head = chunk("fmt ", format(1, 16));
-    const std::string data = chunk("data", samples<std::int16_t>({16384, -8192, 0}));
+    const std::string data = chunk("data", of_16_bits);
     const std::string bare = "LIST" + bytes(std::uint32_t{7}) + "INFOodd";
     for (const std::string& list : {chunk("LIST", "INFOodd"), bare})
         for (const std::string& w : {list + head + data, head + list + data, head + data + list})
-            CHECK(load_recording(dir.write("a.wav", wav(w))).samples == expected);
+            CHECK(load(wav(w)).samples == expected);
 }
 
 TEST_CASE("a recording that is cut short says how much is missing")
 {
-    const folder dir;
-    const std::string s = samples<std::int16_t>({16384, -8192, 0});
-    const std::string head = chunk("fmt ", format(1, 16));
-    CHECK(load_recording(dir.write("a.wav", wav(head + open_data(16, s)))).missing == 5);
-    CHECK(load_recording(dir.write("a.wav", wav(head + open_data(6, s)))).missing == 0);
-    CHECK(load_recording(dir.write("a.wav", long_sizes("RF64", 20, head + open_data(0xFFFFFFFFU, s))))
-              .missing == 7);
+    CHECK(load(wav(head + open_data(16, of_16_bits))).missing == 5);
+    CHECK(load(wav(head + open_data(6, of_16_bits))).missing == 0);
+    CHECK(load(long_sizes("RF64", 20, head + open_data(0xFFFFFFFFU, of_16_bits))).missing == 7);
 }
 
 TEST_CASE("a recording knows the hash of its file")
 {
-    const folder dir;
-    const std::string w =
-        wav(chunk("fmt ", format(1, 16)) + chunk("data", samples<std::int16_t>({1000, -1000})));
-    CHECK(load_recording(dir.write("a.wav", w)).sha256 == detail::sha256_text(w));
+    CHECK(load(short_one).sha256 == detail::sha256_text(short_one));
 }
 
 TEST_CASE("text that is not a file cannot name a recording")
 {
     const folder dir;
-    dir.write("w.wav",
-              wav(chunk("fmt ", format(1, 16)) + chunk("data", samples<std::int16_t>({1000, -1000}))));
+    dir.write("w.wav", short_one);
     const std::string text = "[stroke]\npath = \"M 0 0 L 40 0\"\nwaveform = \"w.wav\"\n";
     const auto all = load_strokes(dir.write("s.toml", text));
     REQUIRE(all.size() == 1);

@@ -10,6 +10,7 @@
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
+#include "has.hpp"
 
 namespace stroke_csv_test {
 
@@ -120,11 +121,7 @@ TEST_CASE("the last of lines with equal times counts, and the stroke has a note"
 
 TEST_CASE("faults of a CSV file are named by line and column")
 {
-    struct sample {
-        const char* csv;
-        const char* message;
-    };
-    const sample samples[] = {
+    const refused_text samples[] = {
         {"", "f.csv: is empty"},
         {"# only this\n\n", "f.csv:2: is empty"},
         {"t_s,x_mm,y_mm\n", "f.csv:1: 0 of at least 2 points"},
@@ -178,12 +175,7 @@ TEST_CASE("faults of a CSV file are named by line and column")
         {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote that does not end"},
         {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: text behind a quote"},
     };
-    for (const sample& s : samples) {
-        CAPTURE(s.csv);
-        const std::string got = refusal(s.csv);
-        CAPTURE(got);
-        CHECK(got.find(s.message) == 0);
-    }
+    check_messages(samples, refusal);
 }
 
 TEST_CASE("columns that a tracker adds are ignored, with a note")

@@ -239,16 +239,10 @@ TEST_CASE("their faults have their place")
     has(complaint(one + "speed_mm_s = 30\n" + inside + line(1)), "unknown key 'speed_mm_s'");
     CHECK(complaint(one + line(1) + inside + line(1)).find("has both") != std::string::npos);
     has(complaint(one + "repeat = 1000\n" + inside + line(1, "repeat = 1000")), "strokes in all");
-    std::string deep = one;
+    std::string deep = "points = [[0, 0], [1, 0]]";
     for (int i = 0; i < 9; ++i)
-        deep += "stroke = [{ ";
-    CHECK(complaint(deep + "points = [[0, 0], [1, 0]]" + std::string([] {
-                        std::string end;
-                        for (int i = 0; i < 9; ++i)
-                            end += " }]";
-                        return end;
-                    }()))
-              .find("groups in groups too deep") != std::string::npos);
+        deep = "stroke = [{ " + deep + " }]";
+    has(complaint(one + deep), "groups in groups too deep");
 }
 
 } // namespace stroke_order_test

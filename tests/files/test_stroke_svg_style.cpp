@@ -216,11 +216,7 @@ TEST_CASE("rules and styles that do not end, end")
 
 TEST_CASE("faults of an SVG file are named by line and column")
 {
-    struct sample {
-        const char* svg;
-        const char* message;
-    };
-    const sample samples[] = {
+    const refused_text samples[] = {
         {"", "a.svg: is empty (strokes are TOML, CSV or SVG"},
         {"t_s,x_mm,y_mm\n0,1,2\n", "a.svg:1:1: is a table (CSV)"},
         {"<svg>", "a.svg:1:5: Start-end tags mismatch"},
@@ -269,12 +265,7 @@ TEST_CASE("faults of an SVG file are named by line and column")
          "a.svg:1:7: nested too deep (simplify the drawing, and take out loops of <use>)"},
         {"<svg><g id='a'><use href='#a'/></g></svg>", "a.svg:1:7: nested too deep"},
     };
-    for (const sample& s : samples) {
-        CAPTURE(s.svg);
-        const std::string got = refusal(s.svg);
-        CAPTURE(got);
-        CHECK(got.find(s.message) == 0);
-    }
+    check_messages(samples, refusal);
 }
 
 TEST_CASE("deep nesting and doubling references end in an error soon")

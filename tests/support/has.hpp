@@ -14,3 +14,21 @@ inline bool has(const std::string& text, const std::string& part)
     CHECK_MESSAGE(found, part);
     return found;
 }
+
+/// A text that is refused, and how its message begins.
+struct refused_text {
+    std::string text;
+    std::string message;
+};
+
+/// Checks the messages about texts.
+template <class Rows, class F>
+void check_messages(const Rows& rows, F refusal)
+{
+    for (const refused_text& r : rows) {
+        CAPTURE(r.text);
+        const std::string got = refusal(r.text);
+        CAPTURE(got);
+        CHECK(got.substr(0, r.message.size()) == r.message);
+    }
+}
