@@ -15,48 +15,38 @@ using namespace tactor;
 
 TEST_CASE("[serve]: all keys, and none")
 {
-    const setup all = parse_setup(R"([serve]
-socket = "/run/x.sock"
-tcp = 4001
-osc = "0.0.0.0:4002"
-http = "[::1]:4003"
-token_file = "/etc/t"
-allow_hosts = ["pi.local:4003"]
-osc_peers = ["10.0.0.0/8", "::1"]
-max_level_dbfs = -20
-idle_stop_s = 60
-max_clients = 10
-kept_clients = 2
-max_strokes = 3
-max_live_strokes = 0
-max_points_per_s = 100
-max_stroke_s = 5
-max_message_bytes = 2000
-max_nesting = 10
-max_message_s = 1
-max_unread_bytes = 3000
-)",
-                                  "t");
-    const options::serve_settings s = options::read_serve(all.serve);
-    CHECK(s.socket == "/run/x.sock");
-    CHECK(s.tcp == "4001");
-    CHECK(s.osc == "0.0.0.0:4002");
-    CHECK(s.http == "[::1]:4003");
-    CHECK(s.token_file == "/etc/t");
-    CHECK(s.allow_hosts.size() == 1);
-    CHECK(s.osc_peers.size() == 2);
-    CHECK(s.max_level_dbfs == -20.0);
-    CHECK(s.idle_stop_s == 60.0);
-    CHECK(s.limits.max_clients == 10U);
-    CHECK(s.limits.kept_clients == 2U);
-    CHECK(s.limits.max_strokes == 3U);
-    CHECK(s.limits.max_live_strokes == 0U);
-    CHECK(s.limits.max_points_per_s == 100U);
-    CHECK(s.limits.max_stroke_s == 5.0);
-    CHECK(s.limits.max_message_bytes == 2000U);
-    CHECK(s.limits.max_nesting == 10U);
-    CHECK(s.limits.max_message_s == 1.0);
-    CHECK(s.limits.max_unread_bytes == 3000U);
+    using settings = options::serve_settings;
+    struct key {
+        const char* line;
+        bool (*kept)(const settings&);
+    };
+    const key all[] = {
+        {"socket = '/run/x.sock'", [](const settings& s) { return s.socket == "/run/x.sock"; }},
+        {"tcp = 4001", [](const settings& s) { return s.tcp == "4001"; }},
+        {"osc = '0.0.0.0:4002'", [](const settings& s) { return s.osc == "0.0.0.0:4002"; }},
+        {"http = '[::1]:4003'", [](const settings& s) { return s.http == "[::1]:4003"; }},
+        {"token_file = '/etc/t'", [](const settings& s) { return s.token_file == "/etc/t"; }},
+        {"allow_hosts = ['pi.local:4003']", [](const settings& s) { return s.allow_hosts.size() == 1; }},
+        {"osc_peers = ['10.0.0.0/8', '::1']", [](const settings& s) { return s.osc_peers.size() == 2; }},
+        {"max_level_dbfs = -20", [](const settings& s) { return s.max_level_dbfs == -20.0; }},
+        {"idle_stop_s = 60", [](const settings& s) { return s.idle_stop_s == 60.0; }},
+        {"max_clients = 10", [](const settings& s) { return s.limits.max_clients == 10; }},
+        {"kept_clients = 2", [](const settings& s) { return s.limits.kept_clients == 2; }},
+        {"max_strokes = 3", [](const settings& s) { return s.limits.max_strokes == 3; }},
+        {"max_live_strokes = 0", [](const settings& s) { return s.limits.max_live_strokes == 0; }},
+        {"max_points_per_s = 100", [](const settings& s) { return s.limits.max_points_per_s == 100.0; }},
+        {"max_stroke_s = 5", [](const settings& s) { return s.limits.max_stroke_s == 5.0; }},
+        {"max_message_bytes = 2000", [](const settings& s) { return s.limits.max_message_bytes == 2000; }},
+        {"max_nesting = 10", [](const settings& s) { return s.limits.max_nesting == 10; }},
+        {"max_message_s = 1", [](const settings& s) { return s.limits.max_message_s == 1.0; }},
+        {"max_unread_bytes = 3000", [](const settings& s) { return s.limits.max_unread_bytes == 3000; }},
+    };
+    std::string text = "[serve]\n";
+    for (const key& k : all)
+        text += std::string(k.line) + "\n";
+    const settings read = options::read_serve(parse_setup(text, "t").serve);
+    for (const key& k : all)
+        CHECK_MESSAGE(k.kept(read), k.line);
     CHECK(parse_setup("", "t").serve.empty());
     CHECK_FALSE(options::read_serve(parse_setup("[serve]\n", "t").serve).tcp);
 }
