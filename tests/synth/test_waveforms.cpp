@@ -126,6 +126,17 @@ std::vector<float> make_sine(std::size_t samples, double cycles, double amplitud
     return x;
 }
 
+/// Returns how far a timbre's phase is from `cycles` at a frame, in cycles.
+double off_phase(const synth::timbre& t, std::int64_t frame, double cycles)
+{
+    double x = 0.0;
+    double y = 0.0;
+    t.fill(frame, 0, 1, &x, synth::wave::sine);
+    t.fill(frame, 0, 1, &y, synth::wave::cosine);
+    const double off = std::atan2(x, y) / (2 * pi) - cycles;
+    return std::abs(off - std::round(off));
+}
+
 std::string refusal(const waveform& w, double hz = 250.0)
 {
     return caught_message([&] { return played(tone(w, hz, 0.1)); });
@@ -356,18 +367,11 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
     const synth::timbre& t = *detail::access::of(s).sounds.front();
     double worst = 0.0;
     for (std::int64_t k = 0; k < std::int64_t{3600} * rate; k += 7919 * 61) {
-        double x = 0.0;
-        double y = 0.0;
-        t.fill(k, 0, 1, &x, synth::wave::sine);
-        t.fill(k, 0, 1, &y, synth::wave::cosine);
         const long double at = static_cast<long double>(k) / rate;
         const long double cycles = at <= 1200.0L ? 100.0L * at + at * at * (200.0L / 2400.0L)
                                                  : 240000.0L + 300.0L * (at - 1200.0L) -
                                                        (at - 1200.0L) * (at - 1200.0L) * (150.0L / 4800.0L);
-        const double part = static_cast<double>(cycles - std::floor(cycles));
-        double off = std::atan2(x, y) / (2 * pi) - part;
-        off -= std::round(off);
-        worst = std::max(worst, std::abs(off));
+        worst = std::max(worst, off_phase(t, k, static_cast<double>(cycles - std::floor(cycles))));
     }
     CHECK(worst < 1e-9);
 }
@@ -389,12 +393,7 @@ TEST_CASE("the phase of a carrier whose frequency is bent is its integral, and g
     double cycles = 0.0;
     double worst = 0.0;
     for (unsigned k = 0; k < rate; ++k) {
-        double x = 0.0;
-        double y = 0.0;
-        t.fill(k, 0, 1, &x, synth::wave::sine);
-        t.fill(k, 0, 1, &y, synth::wave::cosine);
-        const double off = std::atan2(x, y) / (2 * pi) - cycles;
-        worst = std::max(worst, std::abs(off - std::round(off)));
+        worst = std::max(worst, off_phase(t, k, cycles));
         const double at_s = k * step;
         cycles += step / 6.0 * (hz(at_s) + 4.0 * hz(at_s + 0.5 * step) + hz(at_s + step)); // Simpson
     }
