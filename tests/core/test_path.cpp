@@ -228,20 +228,6 @@ TEST_CASE("senseless polylines and arcs are refused")
     CHECK(arc({}, above(1e6), 0.0, 90.0).find("radius") != std::string::npos);
 }
 
-TEST_CASE("arcs in path data are circles")
-{
-    for (const char* data :
-         {"M 20 4 A 16 16 0 0 0 20 36", "m20 4a16 16 0 0 0 0 32", "M20,4A16,16,0,0020,36"}) {
-        const path p = path::from_svg(data);
-        CHECK(p.length_mm() == doctest::Approx(16.0 * pi).epsilon(1e-14));
-        check_share(p, 0.5, {4.0, 20.0}, 1e-12);
-    }
-    const path three_quarters = path::from_svg("M 20 36 A 16 16 0 1 1 36 20");
-    CHECK(three_quarters.length_mm() == doctest::Approx(24.0 * pi).epsilon(1e-14));
-    check_share(three_quarters, 1.0 / 3.0, {4.0, 20.0}, 1e-12);
-    check_share(three_quarters, 2.0 / 3.0, {20.0, 4.0}, 1e-12);
-}
-
 TEST_CASE("a half circle is one anywhere, though its ends are rounded")
 {
     for (int k = 1; k <= 500; ++k) {

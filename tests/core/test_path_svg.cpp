@@ -126,16 +126,6 @@ void check_same(const std::vector<double>& got, const std::vector<double>& want,
 
 } // namespace
 
-TEST_CASE("a straight line meets a line of the grid once, where it crosses it")
-{
-    const path p = path::from_svg("M 10 30 L 45 10");
-    const double l = p.length_mm();
-    check_same(p.meets_x(15.0), {l / 7.0}, 1e-12);
-    check_same(p.meets_y(15.0), {0.75 * l}, 1e-12);
-    check_same(p.meets_x(46.0), {});
-    check_same(p.meets_x(9.0), {});
-}
-
 TEST_CASE("start and end on the line are meetings")
 {
     const path p = path::from_svg("M 10 30 L 45 10");
