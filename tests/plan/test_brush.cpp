@@ -96,15 +96,6 @@ TEST_CASE("the law holds and the last burst ends with the stroke, for any path, 
     CHECK(planned > 300);
 }
 
-TEST_CASE("a row and a column met at once are one virtual tactor")
-{
-    const plan p = make_plan(palm, along("M 0 0 L 40 40", 2.0), brush());
-    REQUIRE(p.bursts.size() == 3);
-    for (unsigned i = 0; i < 3; ++i)
-        CHECK(p.bursts[i].drives == std::vector<drive>{{4 * i, 1.0}});
-    CHECK(*p.bursts[1].tau_s == doctest::Approx(1.0));
-}
-
 TEST_CASE("a path along a grid line meets only the other lines")
 {
     const plan p = make_plan(palm, along("M 5 20 L 35 20", 1.0), brush());
