@@ -141,13 +141,6 @@ TEST_CASE("attack and release of a raised cosine have their own times")
     follows(with(envelope_kind::raised_cosine, 0.0, 0.03), [](double t) { return cosine((0.1 - t) / 0.03); });
 }
 
-TEST_CASE("a line rises and falls evenly")
-{
-    follows(with(envelope_kind::linear, 0.02, 0.05), [](double t) {
-        return std::min({1.0, t / 0.02, (0.1 - t) / 0.05});
-    });
-}
-
 TEST_CASE("an exponential ends after five time constants")
 {
     const double all = 1.0 - std::exp(-5.0);
