@@ -35,6 +35,13 @@ def without_preloaded():
     return {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
 
 
+def refused(call, kind=tactor.InputError):
+    """Returns the error that a call raises."""
+    with pytest.raises(kind) as e:
+        call()
+    return e.value
+
+
 def compiled(folder, name, *arguments):
     """Path of a C++ library beside the package."""
     file = folder / f"lib{name}.so"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tactor
+from conftest import refused
 
 
 def test_positions_and_intensities_of_many_times(stroke):
@@ -16,8 +17,7 @@ def test_positions_and_intensities_of_many_times(stroke):
     assert np.array_equal(stroke.intensity(list(t)), [stroke.intensity(v) for v in t])
     assert stroke.position([]).shape == (0, 2) and stroke.intensity(()).shape == (0,)
     assert isinstance(stroke.position(np.float64(0.1)), tactor.Point) and isinstance(stroke.intensity(np.float32(0.1)), float)
-    with pytest.raises(tactor.InputError):
-        stroke.position(np.zeros((2, 2)))
+    refused(lambda: stroke.position(np.zeros((2, 2))))
 
 
 @pytest.mark.parametrize("phantom", ["inverse-distance", "barycentric", "gaussian"])
@@ -33,11 +33,9 @@ def test_weights_of_many_places(palm, phantom):
 @pytest.mark.parametrize("place", [(45.0, 20.0), (-300.0, 5.0), (1e6, 1e6)])
 def test_weights_outside_are_an_error_like_in_a_plan(palm, place):
     for points in (place, [(0.0, 0.0), place]):
-        with pytest.raises(tactor.InputError) as e:
-            palm.weights(points)
-        assert "outside the array" in e.value.why and e.value.field == "point"
-    with pytest.raises(tactor.InputError):
-        tactor.plan(palm, tactor.Stroke.along(tactor.Path.polyline([(1, 1), place]), 1.0))
+        e = refused(lambda: palm.weights(points))
+        assert "outside the array" in e.why and e.field == "point"
+    refused(lambda: tactor.plan(palm, tactor.Stroke.along(tactor.Path.polyline([(1, 1), place]), 1.0)))
 
 
 def test_a_percept_has_columns_and_samples(palm, stroke):
@@ -68,8 +66,7 @@ def test_a_percept_map_agrees_with_single_places(palm, phantom):
     assert felt.error_mm[3, 1] == pytest.approx(np.hypot(*(place - (5.0, 15.0)))) and felt.error_mm[4, 4] == pytest.approx(0.0, abs=1e-9)
     corner = tactor.Array.from_points([(0, 0), (40, 0), (0, 40)]).percept_map(10.0)
     assert np.isnan(corner.error_mm[-1, -1]) and not np.isnan(corner.error_mm[0]).any()
-    with pytest.raises(tactor.InputError):
-        palm.percept_map(0.01)
+    refused(lambda: palm.percept_map(0.01))
 
 
 def test_bursts_are_made_once(palm, stroke):
@@ -93,8 +90,7 @@ def test_arrays_of_other_than_real_numbers_are_refused(values, palm, stroke):
                  lambda: stroke.position(values), lambda: stroke.intensity(values), lambda: tactor.Path.svg("M 0 0 L 9 9").at(values),
                  lambda: tactor.Array.from_points([values, values]) if not isinstance(values, np.ndarray) else tactor.Array.from_points(np.stack([values, values])),
                  lambda: tactor.Path.polyline([values, values]) if not isinstance(values, np.ndarray) else tactor.Path.polyline(np.ma.stack([values, values]))):
-        with pytest.raises(tactor.InputError):
-            call()
+        refused(call)
 
 
 @pytest.mark.parametrize("value", [np.complex128(1), np.datetime64("2020-01-01"), np.timedelta64(1, "s"), np.str_("1"), np.bool_(True), np.ma.masked, "1", 1j,
@@ -102,8 +98,7 @@ def test_arrays_of_other_than_real_numbers_are_refused(values, palm, stroke):
 def test_single_values_other_than_real_numbers_are_refused(value, palm, stroke):
     for call in (lambda: tactor.plan(palm, stroke, soa=value), lambda: tactor.plan(palm, stroke, level_dbfs=value), lambda: stroke.with_duration(value),
                  lambda: tactor.Array.grid("g", 2, 2, value), lambda: palm.contains((value, 1.0))):
-        with pytest.raises(tactor.InputError):
-            call()
+        refused(call)
 
 
 @pytest.mark.parametrize("values", [[0, 1], (0.0, 1.0), np.array([0, 1], np.float32), np.array([0, 1], np.int8), np.ma.array([0.0, 1.0]), range(2),
@@ -132,14 +127,11 @@ def test_unsuitable_outputs_of_a_rendering_are_refused(palm, stroke):
     frozen = np.zeros((10, 9), "float32")
     frozen.flags.writeable = False
     for out in (np.zeros((10, 8), "float32"), np.zeros((9, 10), "float32").T, np.zeros((10, 9)), frozen, np.zeros(90, "float32")):
-        with pytest.raises(tactor.InputError):
-            score.render(out=out)
+        refused(lambda: score.render(out=out))
     for wrong in (dict(start=-1), dict(frames=-1), dict(start=0.5), dict(frames=5, out=np.zeros((10, 9), "float32"))):
-        with pytest.raises(tactor.InputError):
-            score.render(**wrong)
+        refused(lambda: score.render(**wrong))
     for wrong in ((0,), (1.5,), (480, "float64")):
-        with pytest.raises(tactor.InputError):
-            score.blocks(*wrong)
+        refused(lambda: score.blocks(*wrong))
 
 
 def test_the_three_closest_are_those_of_the_whole_array(palm):
@@ -156,6 +148,4 @@ def test_the_three_closest_are_those_of_the_whole_array(palm):
     assert np.nanmax(wide.percept_map(5.0, faces="nearest").error_mm) > np.nanmax(wide.percept_map(5.0).error_mm)
     for wrong in (lambda: palm.weights((5, 5), "log", faces="nearest"), lambda: palm.weights((5, 5), faces="neerest"),
                   lambda: tactor.plan(palm, tactor.Stroke.preset("park2016-1"), phantom="log", faces="nearest")):
-        with pytest.raises(tactor.InputError) as e:
-            wrong()
-        assert e.value.what == "faces"
+        assert refused(wrong).what == "faces"

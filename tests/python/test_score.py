@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tactor
+from conftest import refused
 
 
 def samples(file, dtype):
@@ -133,8 +134,7 @@ def test_markers_and_limits(palm, stroke):
     for recorded in (tactor.Plan.from_dict(plan.to_dict()), pickle.loads(pickle.dumps(plan))):
         assert np.array_equal(tactor.Score(palm, recorded, marker_channel=9, marker_s=0.01).render(), marked.render())
     assert pickle.loads(pickle.dumps(marked)) == marked
-    with pytest.raises(tactor.InputError):
-        tactor.Score(palm, plan, marker_channel=9, channels=9)
+    refused(lambda: tactor.Score(palm, plan, marker_channel=9, channels=9))
     limited = tactor.Score(palm, plan, level_dbfs=0, power_dbfs=-20)
     assert np.abs(limited.render()).max() < np.abs(tactor.Score(palm, plan, level_dbfs=0).render()).max()
 
@@ -146,9 +146,7 @@ def test_markers_and_limits(palm, stroke):
 def test_options_that_nothing_in_a_score_uses_are_refused(palm, stroke, planned, said, what):
     plan = tactor.plan(palm, stroke, **planned)
     for one in (plan, tactor.Plan.from_dict(plan.to_dict()), pickle.loads(pickle.dumps(plan))):
-        with pytest.raises(tactor.InputError) as e:
-            tactor.Score(palm, one, **said)
-        assert e.value.what == what
+        assert refused(lambda: tactor.Score(palm, one, **said)).what == what
 
 
 def test_a_score_may_add_to_its_plan_s_options(tmp_path, palm, stroke):
@@ -175,8 +173,7 @@ def test_a_score_may_add_to_its_plan_s_options(tmp_path, palm, stroke):
     lambda a, p: tactor.Score(a, [(float("nan"), p)]), lambda a, p: tactor.Score(a, [(-1.0, p)]),
 ])
 def test_impossible_scores_are_refused(palm, stroke, make):
-    with pytest.raises(tactor.InputError):
-        make(palm, tactor.plan(palm, stroke))
+    refused(lambda: make(palm, tactor.plan(palm, stroke)))
 
 
 def test_anything_but_a_plan_is_a_type_error(palm):
@@ -251,5 +248,4 @@ def test_strokes_keep_their_sound_when_they_are_pickled(palm):
 def test_impossible_sounds_are_refused(palm, stroke):
     for bad in ({"waveform": "sqare"}, {"waveform": 3}, {"am": "x"}, {"am": -1.0}, {"envelope": "round"}, {"attack": -1.0},
                 {"texture": "x"}, {"stevens_exponent": 0.0}, {"noise_seed": 1.5}):
-        with pytest.raises(tactor.InputError):
-            tactor.plan(palm, stroke, **bad)
+        refused(lambda: tactor.plan(palm, stroke, **bad))
