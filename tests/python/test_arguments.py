@@ -48,11 +48,16 @@ def refusals(player, finger, ticket):
     nan = float("nan")
     return [
         (lambda: finger.to(1, 1, at_s=-1), "at_s"), (lambda: finger.to("1", 1), "x_mm"), (lambda: finger.to(HUGE, 1), "x_mm"), (lambda: finger.to(1, None), "y_mm"),
-        (lambda: finger.to(1, 1, "loud"), "intensity"),
+        (lambda: finger.to(1, 1, "loud"), "intensity"), (lambda: finger.to(nan, 0), "x_mm"),
+        (lambda: finger.to(1, 1, at_s=float("inf")), "at_s"), (lambda: finger.to(1, 1, at_s=1e10), "at_s"),
+        (lambda: player.submit(score, at="soon"), None), (lambda: player.submit(score, at="armed", delay=1), None),
+        (lambda: player.submit(score, at_s=1.0, delay=1.0), None), (lambda: player.submit(score, at_s=1e300), "at_s"),
+        (lambda: player.submit(score, frame=-1), "frame"), (lambda: player.submit(score, frame=1 << 70), "frame"),
         (lambda: player.submit(score, delay=nan), "delay"), (lambda: player.submit(score, delay="soon"), "delay"), (lambda: player.submit(score, at_s=HUGE), "at_s"),
         (lambda: player.submit(score, at_s=nan), "at_s"), (lambda: player.submit(score, frame=1.5), "frame"), (lambda: player.play(score, frame=1.5), "frame"), (lambda: player.fire(nan), "at_s"),
         (lambda: player.live(timeout=0), "timeout"), (lambda: player.live(timeout=None), "timeout"), (lambda: player.live(longest=nan), "longest"),
-        (lambda: player.live(smooth=2), "smooth"), (lambda: player.live(soa=0.001, algorithm="park2016"), "soa"), (lambda: ticket.wait(nan), "timeout"),
+        (lambda: player.live(longest=0), "longest"), (lambda: player.live(smooth=-0.1), "smooth"), (lambda: player.live(smooth=1.1), "smooth"),
+        (lambda: player.live(soa=0.001, algorithm="park2016"), "soa"), (lambda: ticket.wait(nan), "timeout"),
         (lambda: finger.wait("long"), "timeout"),
         (lambda: tactor.Player("null", palm, config=os.devnull, drive_window_s=nan), "drive_window_s"),
         (lambda: tactor.Player("null", palm, config=os.devnull, drive_window_s=-1), "drive_window_s"),
@@ -98,7 +103,7 @@ def test_impossible_values_are_refused_by_the_name_they_were_given(palm):
                 assert not any(word in str(e).replace("drive_window_s", "") for word in WORDS), str(e)
             with pytest.raises(tactor.InputError, match='outside="clamp"'):
                 finger.to(1000, 20)
-        assert finger.report.state == "finished"
+        assert finger.report.state == "finished" and finger.counts["points"] == 1
         ticket.cancel()
 
 
@@ -119,7 +124,8 @@ def test_another_type_is_said_with_the_arguments_name(call, what):
         call()
 
 
-def test_arrays_of_no_dimension_are_numbers(palm, stroke):
+def test_numbers_of_numpy_and_arrays_of_no_dimension_are_numbers(palm, stroke):
+    assert tactor.plan(palm, stroke, soa=np.float64(0.06), fit=np.bool_(False), rate=np.int64(44100)) == tactor.plan(palm, stroke, soa=0.06, rate=44100)
     n = np.array
     assert tactor.Stroke.along(LINE, speed=n(40.0), intensity=n(0.5)) == tactor.Stroke.along(LINE, speed=40.0, intensity=0.5)
     assert LINE.at(n(3.0)) == LINE.at(3.0) and tactor.Array.grid("g", n(2), 2, n(10.0)) == tactor.Array.grid("g", 2, 2, 10.0)

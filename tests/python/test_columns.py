@@ -134,17 +134,12 @@ def test_unsuitable_outputs_of_a_rendering_are_refused(palm, stroke):
         refused(lambda: score.blocks(*wrong))
 
 
-def test_the_three_closest_are_those_of_the_whole_array(palm):
+def test_faces_are_those_of_weights_plans_and_maps(palm):
     wide = tactor.Array.from_points([(x, y) for y in (0, 40, 80) for x in (0, 20, 40)])
-    places = np.random.default_rng(2).uniform((0, 0), (40, 80), (50, 2))
-    every = wide.weights(places, faces="nearest")
-    for place, row in zip(places, every):
-        distances = np.hypot(*(wide.positions - place).T)
-        assert set(np.flatnonzero(row)) == set(np.argsort(distances)[:3]) and (row ** 2).sum() == pytest.approx(1.0)
-        assert np.ptp((distances * row ** 2)[row > 0]) == pytest.approx(0.0, abs=1e-9)
-    assert not np.array_equal(every, wide.weights(places))
     plan = tactor.plan(wide, tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 10"), 1.0), faces="nearest")
     assert plan.faces == "nearest" and "in one line" in plan.warnings[0] and "faces" in plan.to_dict()
+    assert np.allclose(wide.weights(plan.positions, faces="nearest"), plan.amplitudes, rtol=0, atol=1e-9)
+    assert not np.allclose(wide.weights(plan.positions), plan.amplitudes, rtol=0, atol=1e-9)
     assert np.nanmax(wide.percept_map(5.0, faces="nearest").error_mm) > np.nanmax(wide.percept_map(5.0).error_mm)
     for wrong in (lambda: palm.weights((5, 5), "log", faces="nearest"), lambda: palm.weights((5, 5), faces="neerest"),
                   lambda: tactor.plan(palm, tactor.Stroke.preset("park2016-1"), phantom="log", faces="nearest")):

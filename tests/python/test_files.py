@@ -131,23 +131,3 @@ def test_keys_that_no_plan_has_are_refused(palm, stroke, tmp_path, keys, hint):
     assert e.field.endswith(keys[-1]) and hint in e.hint and e.file is None
     (tmp_path / "p.json").write_text(json.dumps(record))
     assert refused(lambda: tactor.load_plan(tmp_path / "p.json")).file == str(tmp_path / "p.json")
-
-
-@pytest.mark.parametrize("amplitude", [1.5, 1e300, -0.1])
-@pytest.mark.parametrize("algorithm", ["park2016", "continuous"])
-def test_amplitudes_beyond_the_plans_are_refused(palm, stroke, algorithm, amplitude):
-    rows = ("bursts",) if algorithm == "park2016" else ("continuous", "points")
-    record = changed(tactor.plan(palm, stroke, algorithm=algorithm).to_dict(), amplitude, *rows, 3, "drives", 0, "amplitude")
-    with pytest.raises(tactor.InputError, match="amplitude|intensity"):
-        tactor.Plan.from_dict(record)
-
-
-@pytest.mark.parametrize("algorithm", ["park2016", "continuous", "tactile-brush"])
-@pytest.mark.parametrize("phantom", ["inverse-distance", "barycentric", "linear", "log", "gaussian"])
-@pytest.mark.parametrize("scale", [{}, {"intensity_scale": "stevens"}, {"compensate": "low-speed"}])
-def test_a_written_plan_is_read_back(palm, algorithm, phantom, scale):
-    if algorithm != "park2016":
-        scale = {name: value for name, value in scale.items() if name != "compensate"}  # it moves bursts of park2016 only
-    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 10"), 1.0, intensity=0.7) if algorithm == "tactile-brush" else tactor.Stroke.preset("park2016-2")
-    plan = tactor.plan(palm, stroke, algorithm=algorithm, phantom=phantom, **scale)
-    assert tactor.Plan.from_dict(plan.to_dict()) == plan

@@ -11,7 +11,9 @@ import pytest
 import tactor
 from conftest import refused
 
-LINE = tactor.Path.svg("M 0 10 L 40 30")
+# A stroke, and the same as a file of the tool.
+RISING = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=1.0, intensity=[(0, 0.2), (1, 1)], name="rising")
+RISING_TOML = '[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 1.0\nintensity = [[0, 0.2], [1, 1]]\n'
 
 
 @pytest.mark.parametrize("arguments,options", [
@@ -24,10 +26,13 @@ LINE = tactor.Path.svg("M 0 10 L 40 30")
     (["--spread", "20"], dict(spread=20)),
     (["--spread", "20", "--spread-seed", "7", "--spread-sigma", "3", "--observer", "low-speed", "--spread-threshold-db", "4", "--spread-place-mm", "1"],
      dict(spread=20, spread_seed=7, spread_sigma=3, observer="low-speed", spread_threshold_db=4, spread_place_mm=1)),
+    (["--intensity-scale", "stevens", "--stevens-exponent", "0.9"], dict(intensity_scale="stevens", stevens_exponent=0.9)),
+    (["--phantoms", "linear,log", "--algorithm", "continuous"], dict(phantoms=iter(["linear", "log"]), algorithm="continuous")),
 ])
-def test_comparisons_are_those_of_the_tool(tool, palm, arguments, options):
-    printed = json.loads(tool("compare", "park2016-3", *arguments, "--format", "json"))
-    compared = tactor.compare(palm, tactor.Stroke.preset("park2016-3"), **options)
+def test_comparisons_are_those_of_the_tool(tool, tmp_path, palm, arguments, options):
+    (tmp_path / "rising.toml").write_text(RISING_TOML)
+    printed = json.loads(tool("compare", "rising.toml", *arguments, "--format", "json"))
+    compared = tactor.compare(palm, RISING, **options)
     assert compared == printed["results"] and compared.record == printed and isinstance(compared[0], dict)
     assert pickle.loads(pickle.dumps(compared)) == compared == copy.copy(compared)
 
@@ -131,24 +136,11 @@ def test_tables_for_pandas(palm, stroke):
     assert (table[[f"tactor_{i}" for i in range(9)]].to_numpy() == plan.amplitudes).all()
 
 
-@pytest.mark.parametrize("arguments,options", [
-    (["--intensity-scale", "stevens", "--stevens-exponent", "0.9"], dict(intensity_scale="stevens", stevens_exponent=0.9)),
-    (["--phantoms", "linear,log", "--algorithm", "continuous"], dict(phantoms=iter(["linear", "log"]), algorithm="continuous")),
-])
-def test_a_comparison_has_the_tools_scale(tool, palm, arguments, options):
-    stroke = tactor.Stroke.along(LINE, duration=1.0, intensity=[(0, 0.2), (1, 1)])
-    with open(tool.folder / "s.toml", "w", encoding="utf-8") as file:
-        file.write('[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 1.0\nintensity = [[0, 0.2], [1, 1]]\n')
-    printed = json.loads(tool("compare", "s.toml", *arguments, "--format", "json"))["results"]
-    assert tactor.compare(palm, stroke, **options) == printed
-
-
 def test_a_comparisons_level_is_that_of_its_scale(tmp_path, palm):
-    stroke = tactor.Stroke.along(LINE, duration=1.0, intensity=[(0, 0.2), (1, 1)])
-    by_level = [tactor.compare(palm, stroke, intensity_scale="sl", sl=sl) for sl in (5, 30)]
+    by_level = [tactor.compare(palm, RISING, intensity_scale="sl", sl=sl) for sl in (5, 30)]
     assert by_level[0] != by_level[1]
     (tmp_path / "a.toml").write_text('[array]\npreset = "palm-3x3"\n[defaults]\nintensity-scale = "sl"\nsl = 30\n')
-    assert tactor.compare(tactor.Array.from_file(tmp_path / "a.toml"), stroke) == by_level[1]
+    assert tactor.compare(tactor.Array.from_file(tmp_path / "a.toml"), RISING) == by_level[1]
 
 
 @pytest.mark.parametrize("options,field", [
