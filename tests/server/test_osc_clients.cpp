@@ -424,6 +424,8 @@ TEST_CASE("what a server sends is never answered")
         rig.say(me, own, {1_i, "started"s});
     CHECK(rig.silent(me));
     CHECK(rig.osc.count() == 0);
+    rig.say(me, "/tactor/stroke/"); // another address
+    CHECK(has(rig.next(me), "address: it is not known"));
 }
 
 TEST_CASE("what one sender may keep waiting has an end")

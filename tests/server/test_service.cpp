@@ -229,9 +229,7 @@ TEST_CASE("stop ends all strokes of an armed file, also when the first has begun
 {
     for (const bool fired : {false, true}) {
         CAPTURE(fired);
-        service_rig rig;
-        rig.plug();
-        rig.start();
+        running_rig rig;
         const auto c = rig.client();
         const char* const two = "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 500\n"
                                 "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 1\n";
@@ -274,9 +272,7 @@ TEST_CASE("a stop in a batch that is refused stops all the same, and one that ne
             CHECK(b.box->all.front()["result"] == json::object());
     }
     // Like any request: not before the token.
-    service_rig locked([](server::service_options& o, server::stream_options&) { o.token = "secret"; });
-    locked.plug();
-    locked.start();
+    running_rig locked([](server::service_options& o, server::stream_options&) { o.token = "secret"; });
     const auto owner = locked.client();
     const auto stranger = locked.client(server::client_kind::web);
     const json n = locked.ok(owner, "play", with(stroke, "start", "armed"))["stroke"];
