@@ -22,12 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_text(const fs::path& file)
-{
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 calibration_settings settings()
 {
     calibration_settings s;
@@ -65,7 +59,8 @@ outcome run(const fs::path& log, bool resume, calibration_settings s = settings(
     lines.begin();
     for (std::size_t i = 0; i < most && !c.done(); ++i)
         lines.append(c.answer(o.answer(c.next())));
-    return {file_text(log), calibration_text(s, c.thresholds())};
+    std::ifstream written(log, std::ios::binary);
+    return {{std::istreambuf_iterator<char>(written), {}}, calibration_text(s, c.thresholds())};
 }
 
 std::string refusal(const fs::path& log, bool resume, const calibration_settings& s = settings())
@@ -100,7 +95,7 @@ TEST_CASE("a log cut off anywhere resumes as if nothing had happened")
             twice = twice || (t.staircases == 2 && t.end == staircase_end::felt);
     }
     const outcome whole = run(f / "a.tsv", false, s, 10000, careless);
-    const std::string began = file_text(f / "a.json");
+    const std::string began = f.bytes("a.json");
     // Each byte of header, first and last trials; between them each 31st, which finds each place in a line.
     const std::size_t size = whole.log.size();
     for (std::size_t bytes = 0; bytes <= size; bytes += bytes < 150 || size - bytes <= 150 ? 1 : 31) {
@@ -139,10 +134,10 @@ TEST_CASE("without answers a session begins anew, even with other options")
     other.carrier_hz = 100.0;
     const outcome again = run(f / "a.tsv", false, other);
     has(again.tables, "carrier_hz = 100\n");
-    has(file_text(f / "a.json"), "\"carrier_hz\": 100.0");
+    has(f.bytes("a.json"), "\"carrier_hz\": 100.0");
     f.write("b.json", "{\"mine\": 1}");
     has(refusal(f / "b.tsv", false), "b.json: it does not say how");
-    CHECK(file_text(f / "b.json") == "{\"mine\": 1}");
+    CHECK(f.bytes("b.json") == "{\"mine\": 1}");
 }
 
 TEST_CASE("a person's answers and times come back from the log")
@@ -158,12 +153,12 @@ TEST_CASE("a person's answers and times come back from the log")
             log.append(
                 c.answer({.interval = 1 + i % 2, .response_time_s = 0.25 * i, .onset_frame = 48000 * i}));
     }
-    const std::string before = file_text(f / "a.tsv");
+    const std::string before = f.bytes("a.tsv");
     calibration_log log(f / "a.tsv", true, s);
     calibration c(s);
     replay(c, log, nullptr);
     CHECK(c.next().number == 10);
-    CHECK(file_text(f / "a.tsv") == before);
+    CHECK(f.bytes("a.tsv") == before);
 }
 
 // Replaces each.
@@ -178,7 +173,7 @@ TEST_CASE("a log saved by another program resumes, and keeps its line ends")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
-    const std::string began = file_text(f / "a.json");
+    const std::string began = f.bytes("a.json");
     const std::string some = whole.log.substr(0, whole.log.find("\n9\t") + 1);
     const auto goes_on = [&](const std::string& saved, const std::string& end) {
         f.write("b.tsv", saved);
@@ -210,16 +205,16 @@ TEST_CASE("a cut off part of a log is kept beside it, and only when the rest is 
     calibration_settings other = settings();
     other.seed = 7;
     CHECK_FALSE(refusal(f / "a.tsv", true, other).empty());
-    CHECK(file_text(f / "a.tsv") == cut);
+    CHECK(f.bytes("a.tsv") == cut);
     f.write("a.tsv", with(cut, "true", "false"));
     has(refusal(f / "a.tsv", true), "a.tsv:2: this is not how the session went");
-    CHECK(file_text(f / "a.tsv") == with(cut, "true", "false"));
+    CHECK(f.bytes("a.tsv") == with(cut, "true", "false"));
     f.write("a.tsv", cut);
     CHECK(run(f / "a.tsv", true).log == whole.log);
-    CHECK(file_text(f / "a.tsv.cut-1") == last);
+    CHECK(f.bytes("a.tsv.cut-1") == last);
     f.write("a.tsv", cut);
     run(f / "a.tsv", true);
-    CHECK(file_text(f / "a.tsv.cut-2") == last);
+    CHECK(f.bytes("a.tsv.cut-2") == last);
 }
 
 TEST_CASE("the array file quotes the name of a device")
@@ -242,10 +237,10 @@ TEST_CASE("a log of another session is refused with the line")
     has(refusal(f / "a.tsv", true), "the session ends before this line");
     f.write("a.tsv", "name\tvalue\n");
     has(refusal(f / "a.tsv", true), "it is no log");
-    CHECK(file_text(f / "a.tsv") == "name\tvalue\n");
+    CHECK(f.bytes("a.tsv") == "name\tvalue\n");
     f.write("a.tsv", "no line");
     has(refusal(f / "a.tsv", true), "spaces are between the columns");
-    CHECK(file_text(f / "a.tsv") == "no line");
+    CHECK(f.bytes("a.tsv") == "no line");
     f.write("a.tsv", whole.log);
     calibration_settings other = settings();
     other.carrier_hz = 200.0;
