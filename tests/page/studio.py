@@ -78,6 +78,10 @@ class StudioTest(BrowserTest, ToolTest):
         p.until("tactor.state.link === 'connected' && tactor.state.options.length && document.querySelector('#state').textContent === 'Running'"
                 " && document.querySelectorAll('#examples li').length")
 
+    def reload(self, p):
+        p.reload()
+        self.await_service(p)
+
     def says(self, p, word):
         """Waits until the chip says so."""
         p.until(f"document.querySelector('#state').textContent === {quoted(word)}")

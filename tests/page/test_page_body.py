@@ -100,8 +100,7 @@ class Body(StudioTest):
         p.key("Escape")
         p.until("!document.querySelector('#place-bar').checkVisibility()")
         self.draw(p, [5, 5], [30, 30])  # the tools are back
-        p.reload()
-        self.await_service(p)
+        self.reload(p)
         p.until(f"{LINES} === {json.dumps(before)}")
 
     def test_the_file_says_where_the_array_is_until_it_is_moved_here(self):

@@ -66,8 +66,7 @@ class FromDrawingToFile(StudioTest):
         kept = self.take(p)
 
         # The page is loaded again: what was drawn is there, and plays.
-        p.reload()
-        self.await_service(p)
+        self.reload(p)
         p.until("!document.querySelector('#play').disabled")
         self.assertEqual(self.take(p), kept)
         self.assertEqual(self.names(p), [kept["name"]])

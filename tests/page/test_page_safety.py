@@ -74,8 +74,7 @@ class Screens(StudioTest):
             p.until(f"{theme} === '{wanted}'")
         p.click("#theme")
         p.until(f"{theme} === 'dark'")
-        p.reload()
-        self.await_service(p)
+        self.reload(p)
         self.assertEqual(p.value(theme), "dark")
 
     def test_it_fits_all_screens_and_fingers(self):

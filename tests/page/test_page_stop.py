@@ -59,8 +59,7 @@ class Stop(StudioTest):
         p = self.open(s)
         p.call("Page.addScriptToEvaluateOnNewDocument", source="globalThis.media_keys = {}; "
                "MediaSession.prototype.setActionHandler = (key, f) => { media_keys[key] = f; }")
-        p.reload()
-        self.await_service(p)
+        self.reload(p)
         c = s.client()
         for key in ("pause", "stop"):
             number = c.ok("play", toml=LONG)["stroke"]
@@ -147,8 +146,7 @@ class Play(StudioTest):
         p.click("#stop")
         # A page that is opened again is no louder than it was.
         p.value("(tactor.state.level_db = -40, tactor.changed('level'), 0)")
-        p.reload()
-        self.await_service(p)
+        self.reload(p)
         self.loop(p, watcher)
         p.until(f"{loudest} > -80")
         self.assertLess(p.value(loudest), -45)
