@@ -29,18 +29,14 @@ using namespace tactor;
 TEST_CASE("a browser may call this server by its names")
 {
     const std::string local = "127.0.0.1:4003";
-    for (const char* ours : {"127.0.0.1:4003", "localhost:4003", "LocalHost:4003"}) {
-        CAPTURE(ours);
-        CHECK(host_is_ours(ours, local, {}));
-    }
+    for (const char* ours : {"127.0.0.1:4003", "localhost:4003", "LocalHost:4003"})
+        CHECK_MESSAGE(host_is_ours(ours, local, {}), ours);
     // A foreign name for this address, another address, another port, no port, and rubbish.
     for (const char* not_ours :
          {"evil.example:4003", "127.0.0.2:4003", "127.1:4003", "0x7f000001:4003", "localhost:4004",
           "localhost", "127.0.0.1", "localhost.:4003", "localhost:4003:4003", "[::1]:4003", "", ":", ":4003",
-          "[", "[]", "[127.0.0.1]:4003", "[127.0.0.1]:4003x", "localhost:04003", "localhost: 4003"}) {
-        CAPTURE(not_ours);
-        CHECK_FALSE(host_is_ours(not_ours, local, {}));
-    }
+          "[", "[]", "[127.0.0.1]:4003", "[127.0.0.1]:4003x", "localhost:04003", "localhost: 4003"})
+        CHECK_FALSE_MESSAGE(host_is_ours(not_ours, local, {}), not_ours);
     CHECK_FALSE(host_is_ours(std::string_view("127.0.0.1\0.evil:4003", 20), local, {}));
     CHECK(host_is_ours("[::1]:4003", "[::1]:4003", {}));
     CHECK(host_is_ours("[0:0::1]:4003", "[::1]:4003", {}));
@@ -64,10 +60,8 @@ TEST_CASE("the owner can allow names")
     CHECK_FALSE(host_is_ours("xpi.lan", "10.0.0.2:4003", allowed));
     // The page's policy gets a name and a port, and nothing else.
     for (const char* nonsense : {"pi.lan:evil", "pi.lan:80;x", "pi.lan:", "pi.lan:4003 x", "pi.lan:123456",
-                                 "[pi.lan]:4003", "[pi.lan"}) {
-        CAPTURE(nonsense);
-        CHECK_FALSE(host_is_ours(nonsense, "10.0.0.2:4003", allowed));
-    }
+                                 "[pi.lan]:4003", "[pi.lan"})
+        CHECK_FALSE_MESSAGE(host_is_ours(nonsense, "10.0.0.2:4003", allowed), nonsense);
     CHECK_FALSE(host_is_ours("", "10.0.0.2:4003", {""}));
 }
 
@@ -82,10 +76,8 @@ TEST_CASE("only pages of this server and allowed ones may connect")
     for (const char* not_ours :
          {"null", "", "http://", "https://127.0.0.1:4003", "http://localhost:4003", "http://127.0.0.1",
           "http://evil.example", "ftp://pi.lan", "pi.lan", "https://desk.lan",
-          "http://127.0.0.1:4003.evil.example", "http://pi.lan@evil.example"}) {
-        CAPTURE(not_ours);
-        CHECK_FALSE(origin_is_ours(not_ours, host, allowed));
-    }
+          "http://127.0.0.1:4003.evil.example", "http://pi.lan@evil.example"})
+        CHECK_FALSE_MESSAGE(origin_is_ours(not_ours, host, allowed), not_ours);
 }
 
 TEST_CASE("the target of a request is a path or a whole address")
@@ -103,10 +95,8 @@ TEST_CASE("the target of a request is a path or a whole address")
     CHECK(is("http://pi.lan?x/y", "pi.lan", "/"));
     CHECK(is("http://pi.lan", "pi.lan", "/"));
     CHECK(is("http:///rpc", "", "/rpc"));
-    for (const char* path : {"https://pi.lan/rpc", "http:/rpc", "*", "", "http"}) {
-        CAPTURE(path);
-        CHECK(is(path, "said:4003", path));
-    }
+    for (const char* path : {"https://pi.lan/rpc", "http:/rpc", "*", "", "http"})
+        CHECK_MESSAGE(is(path, "said:4003", path), path);
 }
 
 TEST_CASE("tokens are read from the header")
@@ -132,15 +122,11 @@ bool heard(const char* from, const std::vector<std::string>& prefixes)
 
 TEST_CASE("without a list only this machine is heard")
 {
-    for (const char* own : {"127.0.0.1", "127.9.8.7", "::1", "::ffff:127.0.0.1"}) {
-        CAPTURE(own);
-        CHECK(heard(own, {}));
-    }
+    for (const char* own : {"127.0.0.1", "127.9.8.7", "::1", "::ffff:127.0.0.1"})
+        CHECK_MESSAGE(heard(own, {}), own);
     for (const char* other :
-         {"10.0.0.1", "128.0.0.1", "126.255.255.255", "::2", "::ffff:10.0.0.1", "fe80::1"}) {
-        CAPTURE(other);
-        CHECK_FALSE(heard(other, {}));
-    }
+         {"10.0.0.1", "128.0.0.1", "126.255.255.255", "::2", "::ffff:10.0.0.1", "fe80::1"})
+        CHECK_FALSE_MESSAGE(heard(other, {}), other);
 }
 
 TEST_CASE("a prefix is compared to its last bit")
