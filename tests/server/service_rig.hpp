@@ -39,13 +39,20 @@ public:
     bool has_file() const override { return file; }
     void finish() override { finished = true; }
 
-    /// Returns those of a stroke, in order.
-    std::vector<json> stroke_messages(const json& number) const
+    /// Returns the parameters of the notifications of one kind, in order.
+    std::vector<json> notifications(const std::string& method) const
     {
         std::vector<json> found;
         for (const json& m : all)
-            if (m.is_object() && m.value("method", "") == "stroke" && m["params"]["stroke"] == number)
+            if (m.is_object() && m.value("method", "") == method)
                 found.push_back(m["params"]);
+        return found;
+    }
+    /// Returns those of a stroke.
+    std::vector<json> stroke_messages(const json& number) const
+    {
+        std::vector<json> found = notifications("stroke");
+        std::erase_if(found, [&](const json& m) { return m["stroke"] != number; });
         return found;
     }
     std::optional<json> find_end(const json& number) const
@@ -65,9 +72,8 @@ public:
     std::vector<std::string> streams() const
     {
         std::vector<std::string> states;
-        for (const json& m : all)
-            if (m.is_object() && m.value("method", "") == "stream")
-                states.push_back(m["params"]["state"]);
+        for (const json& m : notifications("stream"))
+            states.push_back(m["state"]);
         return states;
     }
 

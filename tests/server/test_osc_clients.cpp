@@ -64,6 +64,11 @@ public:
     {
         osc.receive(message(address, v), from);
     }
+    /// Sends messages in a bundle for a time to come.
+    void say_in(double seconds, const endpoint& from, const std::vector<std::string>& messages)
+    {
+        osc.receive(bundle(unix_ns() + static_cast<std::int64_t>(seconds * 1e9), messages), from);
+    }
     /// The next message to somebody, in words: "/tactor/stroke 3 started".
     std::string next(const endpoint& to)
     {
@@ -228,7 +233,7 @@ TEST_CASE("a live stroke in one packet, before its own number is known to anybod
     osc_rig rig([](auto&, auto& s) { s.times.idle_stop_s = 0.001; });
     rig.sleep_and_plug();
     // The stream has to start first: the points wait.
-    rig.osc.receive(osc_rig::bundle(0, {rig.message("/tactor/begin", {5_i, "timeout_s=86400"s}),
+    rig.osc.receive(osc_rig::bundle(0, {rig.message("/tactor/begin", endless(5)),
                                         rig.message("/tactor/to", {5_i, 20_i, 20.0}),
                                         rig.message("/tactor/to", {5_i, 21_i, 20.0, 0.5})}),
                     me);
@@ -300,22 +305,19 @@ TEST_CASE("levels come for ten seconds, and on if that is renewed")
 TEST_CASE("what is no beginning acts at once, whatever the time of its bundle is")
 {
     osc_rig rig;
-    const auto later = [&](double s) { return rig.unix_ns() + static_cast<std::int64_t>(s * 1e9); };
-    rig.say(me, "/tactor/begin", {1_i, "timeout_s=86400"s});
-    rig.osc.receive(osc_rig::bundle(later(2.0), {rig.message("/tactor/to", {1_i, 20.0, 20.0})}), me);
+    rig.say(me, "/tactor/begin", endless(1));
+    rig.say_in(2.0, me, {rig.message("/tactor/to", {1_i, 20.0, 20.0})});
     CHECK(rig.next(me) == "/tactor/stroke 1 started");
-    rig.osc.receive(osc_rig::bundle(later(1.0), {rig.message("/tactor/to", {1_i, 1e9, 0.0})}), me);
+    rig.say_in(1.0, me, {rig.message("/tactor/to", {1_i, 1e9, 0.0})});
     CHECK(has(rig.next(me), "x_mm: 1000000000 is out of range"));
-    rig.osc.receive(osc_rig::bundle(later(2.0), {rig.message("/tactor/end", {1_i})}), me);
+    rig.say_in(2.0, me, {rig.message("/tactor/end", {1_i})});
     CHECK(rig.next(me) == "/tactor/stroke 1 finished");
     rig.say(me, "/tactor/begin", endless(2));
-    rig.osc.receive(osc_rig::bundle(later(1.0), {rig.message("/tactor/cancel", {2_i})}), me);
+    rig.say_in(1.0, me, {rig.message("/tactor/cancel", {2_i})});
     CHECK(rig.next(me) == "/tactor/stroke 2 cancelled");
     // A stop takes along what waits for its time.
     rig.say(me, "/tactor/begin", endless(3));
-    rig.osc.receive(
-        osc_rig::bundle(later(30.0), {rig.message("/tactor/begin", {4_i}), rig.message("/tactor/stop", {})}),
-        me);
+    rig.say_in(30.0, me, {rig.message("/tactor/begin", {4_i}), rig.message("/tactor/stop", {})});
     CHECK(rig.next(me) == "/tactor/stroke 4 cancelled");
     CHECK(rig.next(me) == "/tactor/stroke 3 cancelled");
     rig.io.poll();
@@ -328,7 +330,7 @@ TEST_CASE("messages of one packet, and of several, act in the order in which the
     osc_rig rig;
     rig.jitter_ns = 1000;
     for (std::int32_t n = 1; n <= 20; ++n) {
-        rig.say(me, "/tactor/begin", {std::int64_t{n}, "timeout_s=86400"s});
+        rig.say(me, "/tactor/begin", endless(n));
         const std::string to = rig.message("/tactor/to", {std::int64_t{n}, 1.0, 1.0});
         const std::string end = rig.message("/tactor/end", {std::int64_t{n}});
         if (n % 2 == 0) {
@@ -347,10 +349,7 @@ TEST_CASE("messages of one packet, and of several, act in the order in which the
 TEST_CASE("a live stroke with a time begins then, at the last place before")
 {
     osc_rig rig;
-    const auto in_a_second = [&](const std::vector<std::string>& messages) {
-        rig.osc.receive(osc_rig::bundle(rig.unix_ns() + 1'000'000'000, messages), me);
-    };
-    in_a_second({rig.message("/tactor/begin", {1_i, "timeout_s=86400"s})});
+    rig.say_in(1.0, me, {rig.message("/tactor/begin", endless(1))});
     for (int i = 0; i < 1000; ++i)
         rig.say(me, "/tactor/to", {1_i, i == 999 ? 20.0 : 1e9, 20.0});
     const auto& s = rig.all->output().setup();
@@ -364,7 +363,7 @@ TEST_CASE("a live stroke with a time begins then, at the last place before")
     rig.say(me, "/tactor/end", {1_i});
     CHECK(rig.next(me) == "/tactor/stroke 1 finished");
     // Cancelled before it began.
-    in_a_second({rig.message("/tactor/begin", {1_i}), rig.message("/tactor/to", {1_i, 2.0, 2.0})});
+    rig.say_in(1.0, me, {rig.message("/tactor/begin", {1_i}), rig.message("/tactor/to", {1_i, 2.0, 2.0})});
     rig.say(me, "/tactor/cancel", {1_i});
     CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
     rig.pass(2.0);
@@ -375,8 +374,7 @@ TEST_CASE("a live stroke with a time begins then, at the last place before")
 TEST_CASE("what waits for its time when the server ends has its end, too")
 {
     osc_rig rig;
-    rig.osc.receive(osc_rig::bundle(rig.unix_ns() + 30'000'000'000, {rig.message("/tactor/begin", {3_i})}),
-                    me);
+    rig.say_in(30.0, me, {rig.message("/tactor/begin", {3_i})});
     CHECK(rig.silent(me));
     rig.osc.drop_held();
     CHECK(rig.next(me) == "/tactor/stroke 3 cancelled");
@@ -386,15 +384,11 @@ TEST_CASE("what waits for its time when the server ends has its end, too")
 TEST_CASE("no time is more than a minute ahead")
 {
     osc_rig rig;
-    const auto bundle_in = [&](double s) {
-        return osc_rig::bundle(rig.unix_ns() + static_cast<std::int64_t>(s * 1e9),
-                               {rig.message("/tactor/begin", {1_i})});
-    };
-    rig.osc.receive(bundle_in(61.0), me);
+    rig.say_in(61.0, me, {rig.message("/tactor/begin", {1_i})});
     CHECK(has(rig.next(me), "/tactor/error /tactor/begin time tag: it is 61.0 s ahead (at most 60"));
     rig.io.poll();
     CHECK(rig.osc.count() == 0);
-    rig.osc.receive(bundle_in(60.0), me);
+    rig.say_in(60.0, me, {rig.message("/tactor/begin", {1_i})});
     CHECK(rig.silent(me));
     CHECK(rig.osc.count() == 1);
     rig.say(me, "/tactor/cancel", {1_i});
@@ -432,10 +426,7 @@ TEST_CASE("what one sender may keep waiting has an end")
 {
     osc_rig rig;
     const auto begin = [&](std::size_t n) {
-        rig.osc.receive(osc_rig::bundle(rig.unix_ns() + 30'000'000'000,
-                                        {rig.message("/tactor/begin",
-                                                     {static_cast<std::int64_t>(n), "timeout_s=86400"s})}),
-                        me);
+        rig.say_in(30.0, me, {rig.message("/tactor/begin", endless(static_cast<std::int64_t>(n)))});
     };
     for (std::size_t i = 1; i <= server::osc_clients::most_held; ++i)
         begin(i);

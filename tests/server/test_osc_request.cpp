@@ -134,10 +134,8 @@ TEST_CASE("wrong values are refused by their names")
         {"/tactor/st*p", {}, "address: it is not known"},
         {"/tactor/hello", {}, "address: it is not known"},
     };
-    for (const auto& c : cases) {
-        CAPTURE(c.address);
-        CHECK(has(refusal(c.address, c.given), c.says));
-    }
+    for (const auto& c : cases)
+        CHECK_MESSAGE(has(refusal(c.address, c.given), c.says), c.address);
 }
 
 } // namespace osc_request_test

@@ -16,15 +16,6 @@ namespace {
 
 constexpr std::int64_t second = 1'000'000'000;
 
-std::vector<json> messages(const service_rig::connected& c, const std::string& method)
-{
-    std::vector<json> found;
-    for (const json& m : c.box->all)
-        if (m.is_object() && m.value("method", "") == method)
-            found.push_back(m["params"]);
-    return found;
-}
-
 // A service whose clock the test turns, and two clients: one draws, one looks on.
 class touch_rig : public service_rig {
 public:
@@ -52,7 +43,7 @@ public:
     {
         return {{"client", draws.number}, {"stroke", stroke}, {"x_mm", x}, {"y_mm", 20.0}, {"down", down}};
     }
-    std::vector<json> seen() const { return messages(looks, "touches"); }
+    std::vector<json> seen() const { return looks.box->notifications("touches"); }
 
     std::int64_t now_ns = second;
     connected draws = client();
@@ -119,7 +110,7 @@ TEST_CASE("others see each place of a live stroke and its end, its owner does no
     rig.end(n);
     CHECK(rig.seen() ==
           std::vector{rig.touch(n, 1.0, true), rig.touch(n, 2.0, true), rig.touch(n, 2.0, false)});
-    CHECK(messages(rig.draws, "touches").empty());
+    CHECK(rig.draws.box->notifications("touches").empty());
     rig.ok(rig.looks, "subscribe", {{"events", json::array()}});
     const json other = rig.begin();
     rig.move(other, 1.0);
@@ -171,13 +162,13 @@ TEST_CASE("a client that is behind sees no touches and no stops until it has cau
     rig.ok(rig.draws, "stop");
     rig.find_end(rig.draws, n);
     CHECK(rig.seen().empty());
-    CHECK(messages(rig.looks, "stops").empty());
+    CHECK(rig.looks.box->notifications("stops").empty());
     rig.looks.box->unread = 0;
     const json next = rig.begin();
     rig.move(next, 2.0);
     rig.ok(rig.draws, "stop");
     CHECK(rig.seen().front() == rig.touch(next, 2.0, true));
-    CHECK(messages(rig.looks, "stops").size() == 1);
+    CHECK(rig.looks.box->notifications("stops").size() == 1);
 }
 
 TEST_CASE("many who draw before many share 10000 touches a second")
@@ -210,12 +201,12 @@ TEST_CASE("everybody who asks learns who stopped everything")
     rig.ok(b, "stop");
     const std::vector<json> told{{{"client", a.number}, {"name", "Ann"}},
                                  {{"client", b.number}, {"name", ""}}};
-    CHECK(messages(a, "stops") == told);
-    CHECK(messages(b, "stops") == told);
+    CHECK(a.box->notifications("stops") == told);
+    CHECK(b.box->notifications("stops") == told);
     rig.ok(b, "subscribe", {{"events", json::array()}});
     rig.close();
-    CHECK(messages(a, "stops").back() == json{{"client", 0}, {"name", ""}});
-    CHECK(messages(b, "stops") == told);
+    CHECK(a.box->notifications("stops").back() == json{{"client", 0}, {"name", ""}});
+    CHECK(b.box->notifications("stops") == told);
 }
 
 } // namespace people_test
