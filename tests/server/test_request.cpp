@@ -44,10 +44,15 @@ planned make_planned(
     return server::make_planned(with, faces, params, settle_options(with.owner, params), go_on);
 }
 
-std::string fault_what(const json& params)
+net::rpc_fault plan_fault(const json& params)
 {
     const planning p = palm();
-    return fault_from([&] { make_planned(p, layout(p.tactors), params); }).what;
+    return fault_from([&] { make_planned(p, layout(p.tactors), params); });
+}
+
+std::string fault_what(const json& params)
+{
+    return plan_fault(params).what;
 }
 
 } // namespace
@@ -185,6 +190,10 @@ TEST_CASE("what is refused names its parameter")
     CHECK(fault_what({{"path", "M 0 0 L 400 0"}}) == "path");
     CHECK(fault_what({{"toml", "stroke"}}) == "toml");
     CHECK(fault_what({{"csv", "t_s,x_mm,y_mm\n0,0,0\n"}}) == "csv");
+    const net::rpc_fault f = plan_fault({{"toml", "\n[stroke]\nx = 1\n"}});
+    CHECK(f.what == "toml");
+    CHECK(f.line == 3);
+    CHECK(f.column == 1);
 }
 
 TEST_CASE("parameters of a view that are refused name themselves")
@@ -246,12 +255,11 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
 
 TEST_CASE("a hint names what a request can say")
 {
-    const auto fault_hint = [p = palm()](const json& params) {
-        return fault_from([&] { make_planned(p, layout(p.tactors), params); }).hint;
-    };
-    CHECK(fault_hint({{"toml", "[array]\npreset = \"palm-3x3\"\n"}}) ==
+    CHECK(plan_fault({{"toml", "[array]\npreset = \"palm-3x3\"\n"}}).hint ==
           "give it as an array or a configuration of the server");
-    CHECK(fault_hint({{"stroke", "wave-2x4"}}) ==
+    const json outside{{"path", "M 0 0 L 400 0"}, {"options", {{"algorithm", "continuous"}}}};
+    CHECK(plan_fault(outside).hint.find("options.outside") != std::string::npos);
+    CHECK(plan_fault({{"stroke", "wave-2x4"}}).hint ==
           "palm-2x4 is the one it is drawn for, options.outside clamp plays "
           "the nearest point of the array");
 }
@@ -268,23 +276,9 @@ TEST_CASE("faces are those that are asked for, and go with inverse-distance alon
     CHECK(made.plans.front().plan == make_plan(p.tactors, preset_stroke("park2016-1"), o));
     CHECK(fault_what(with_faces("log")) == "options.faces");
     CHECK(fault_what({{"stroke", "park2016-1"}, {"options", {{"faces", "neerest"}}}}) == "options.faces");
-    const auto f = fault_from([&] { make_planned(p, l, with_faces("log")); });
-    CHECK(f.hint == "use options.faces delaunay or options.phantom inverse-distance");
+    CHECK(plan_fault(with_faces("log")).hint ==
+          "use options.faces delaunay or options.phantom inverse-distance");
     CHECK(with_options({}, {{"faces", "nearest"}}, options_for::live).plan.faces == faces_kind::nearest);
-}
-
-TEST_CASE("messages speak the protocol's words")
-{
-    const planning p = palm();
-    const auto f = fault_from([&] {
-        make_planned(p, layout(p.tactors),
-                     {{"path", "M 0 0 L 400 0"}, {"options", {{"algorithm", "continuous"}}}});
-    });
-    CHECK(f.hint.find("options.outside") != std::string::npos);
-    const auto g = fault_from([&] { make_planned(p, layout(p.tactors), {{"toml", "\n[stroke]\nx = 1\n"}}); });
-    CHECK(g.what == "toml");
-    CHECK(g.line == 3);
-    CHECK(g.column == 1);
 }
 
 TEST_CASE("how many strokes, and how long together, is refused before any is planned")
