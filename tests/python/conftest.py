@@ -76,6 +76,15 @@ def palm():
 
 
 @pytest.fixture
+def palm_with(tmp_path):
+    """Reads palm-3x3 from a file, palm.toml, with more lines."""
+    def read(lines):
+        (tmp_path / "palm.toml").write_text(f'[array]\npreset = "palm-3x3"\n{lines}')
+        return tactor.Array.from_file(tmp_path / "palm.toml")
+    return read
+
+
+@pytest.fixture
 def stroke():
     return tactor.Stroke.along(tactor.Path.svg("M 0 10 C 20 -5 20 45 40 30"), duration=1.2)
 

@@ -29,13 +29,13 @@ def test_names_end_at_no_zero_byte(tmp_path, monkeypatch, palm, stroke, call):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_noise_seeds_go_as_far_as_the_tools(tmp_path, tool, palm):
+def test_noise_seeds_go_as_far_as_the_tools(tool, palm, palm_with):
     stroke = tactor.Stroke.preset("park2016-1")
     for seed in (0, 2**32, 2**53):
         printed = json.loads(tool("plan", "park2016-1", "--waveform", "noise:50-300", "--noise-seed", seed, "--format", "json"))
         assert tactor.plan(palm, stroke, waveform="noise:50-300", noise_seed=seed).to_dict() == printed
-        (tmp_path / "a.toml").write_text(f'[array]\npreset = "palm-3x3"\n[defaults]\nwaveform = "noise:50-300"\nnoise-seed = {seed}\n')
-        assert tactor.plan(tactor.Array.from_file(tmp_path / "a.toml"), stroke).to_dict()["stroke"] == printed["stroke"]
+        noisy = palm_with(f'[defaults]\nwaveform = "noise:50-300"\nnoise-seed = {seed}\n')
+        assert tactor.plan(noisy, stroke).to_dict()["stroke"] == printed["stroke"]
     for seed in (-1, 2**53 + 1, 2**64, HUGE):
         assert refused(lambda: tactor.plan(palm, stroke, waveform="noise:50-300", noise_seed=seed)).field == "noise_seed"
 

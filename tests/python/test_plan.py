@@ -116,10 +116,8 @@ def test_impossible_options_are_refused_by_their_name(palm, stroke, options, wha
     assert e.what == what and e.why
 
 
-def test_an_unused_observer_of_a_file_is_accepted(tmp_path, stroke):
-    file = tmp_path / "palm.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nsigma-mm = 2.0\n')
-    array = tactor.Array.from_file(file)
+def test_an_unused_observer_of_a_file_is_accepted(palm_with, stroke):
+    array = palm_with("[defaults]\nsigma-mm = 2.0\n")
     assert tactor.plan(array, stroke).compensation is None
     moved = tactor.plan(array, stroke, compensate="low-speed").compensation
     assert moved["sigma_mm"] == 2.0
@@ -184,10 +182,8 @@ def test_the_timing_law():
     assert tactor.burst_duration(soa=0.07, burst=0.02) == 0.02
 
 
-def test_a_stroke_keeps_its_time_beside_a_files_speed(tmp_path):
-    file = tmp_path / "slow.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nspeed = 20\n')
-    slow = tactor.Array.from_file(file)
+def test_a_stroke_keeps_its_time_beside_a_files_speed(palm_with):
+    slow = palm_with("[defaults]\nspeed = 20\n")
     path = tactor.Path.svg("M 0 20 L 40 20")
     lasts = {name: tactor.plan(slow, s, **options).to_dict()["stroke"]["duration_s"] for name, s, options in (
         ("time", tactor.Stroke.along(path, duration=1.0), {}), ("speed", tactor.Stroke.along(path, speed=80.0), {}),
@@ -196,18 +192,16 @@ def test_a_stroke_keeps_its_time_beside_a_files_speed(tmp_path):
     assert lasts == pytest.approx({"time": 1.0, "speed": 0.5, "neither": 2.0, "asked": 1.0, "copy": 2.0, "preset": 1.4})
 
 
-def test_a_file_s_value_is_the_default(tmp_path, stroke, tool):
-    file = tmp_path / "quiet.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nphantom = "barycentric"\nlevel-dbfs = -30\nsoa = 0.06\n[output]\nchannels = 12\nrate = 44100\n')
-    quiet = tactor.Array.from_file(file)
+def test_a_file_s_value_is_the_default(palm_with, tool):
+    quiet = palm_with('[defaults]\nphantom = "barycentric"\nlevel-dbfs = -30\nsoa = 0.06\n[output]\nchannels = 12\nrate = 44100\n')
     plan = tactor.plan(quiet, tactor.Stroke.preset("park2016-1"), soa=0.065)
     assert plan.phantom == "barycentric" and plan.soa == 0.065
-    assert plan.to_dict() == json.loads(tool("plan", "park2016-1", "--array", file, "--soa", "0.065", "--format", "json"))
+    assert plan.to_dict() == json.loads(tool("plan", "park2016-1", "--array", "palm.toml", "--soa", "0.065", "--format", "json"))
     score = tactor.Score(quiet, plan)
     assert (score.channels, score.rate) == (12, 44100) and tactor.Score(pickle.loads(pickle.dumps(quiet)), plan).channels == 12
     assert np.abs(score.render()).max() < 10 ** (-29.9 / 20)
     assert tactor.Score(quiet, plan, rate=48000, channels=9).channels == 9
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nwaveform = "noise:50-300"\nnoise-seed = 7\nam = "30:0.5"\nenvelope = "tukey:0.3"\n')
-    rough = tactor.plan(tactor.Array.from_file(file), tactor.Stroke.preset("park2016-1")).to_dict()
-    assert rough == json.loads(tool("plan", "park2016-1", "--array", file, "--format", "json"))
+    noisy = palm_with('[defaults]\nwaveform = "noise:50-300"\nnoise-seed = 7\nam = "30:0.5"\nenvelope = "tukey:0.3"\n')
+    rough = tactor.plan(noisy, tactor.Stroke.preset("park2016-1")).to_dict()
+    assert rough == json.loads(tool("plan", "park2016-1", "--array", "palm.toml", "--format", "json"))
     assert rough["render"]["envelope"]["tukey_part"] == 0.3

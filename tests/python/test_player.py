@@ -19,9 +19,9 @@ from conftest import refused
 LONG = 120.0  # s: a longer answer never comes
 
 
-def run(code, *arguments):
+def run(code, *arguments, **environment):
     """Runs a separate program; returns its output."""
-    env = {**os.environ, "TACTOR_CONFIG": os.devnull}
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, **environment}
     # From Python 3.12 on, a fork beside threads gives a warning.
     warned = "-W", "error::ResourceWarning", "-W", "ignore:This process:DeprecationWarning"
     # A process that a shell starts in the background ignores Ctrl-C, and so do its children.
@@ -110,25 +110,19 @@ def test_a_live_stroke_follows_its_points(player):
     assert finger.counts["points"] == 3 and finger.counts["outside"] == 1
 
 
-def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(player, short):
+@pytest.mark.parametrize("options,points,messages,held,outside", [
+    ({}, [(20, 20, 80), (20, 20), (20, 20, 2)], ["an intensity of 80 sounds as 1: the level asked for is the ceiling"], 2, 0),
+    (dict(intensity_max=255), [(640, 480, 255), (20, 20), (640, 480, 300)],
+     ["the place (640, 480) mm is outside the array: moved to its edge", "an intensity of 300 sounds as 255: the level asked for is the ceiling"], 1, 2),
+])
+def test_points_too_strong_and_outside_are_counted_and_said_once(player, short, options, points, messages, held, outside):
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        with player.live() as finger:
-            assert finger.to(20, 20, 80) and finger.to(20, 20) and finger.to(20, 20, 2)
-    assert [str(w.message) for w in said] == ["an intensity of 80 sounds as 1: the level asked for is the ceiling"]
-    assert said[0].filename == __file__
-    assert finger.counts["held"] == finger.report.held_points == 2
+        with player.live(**options) as finger:
+            assert all([finger.to(*point) for point in points])
+    assert [str(w.message) for w in said] == messages and said[0].filename == __file__
+    assert finger.counts["held"] == finger.report.held_points == held and finger.report.outside_points == outside
     assert player.play(short).held_points == 0
-
-
-def test_points_outside_the_array_are_counted_and_said_once(player):
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        with player.live(intensity_max=255) as finger:
-            assert finger.to(640, 480, 255) and finger.to(20, 20) and finger.to(640, 480, 300)
-    assert [str(w.message) for w in said] == [
-        "the place (640, 480) mm is outside the array: moved to its edge", "an intensity of 300 sounds as 255: the level asked for is the ceiling"]
-    assert finger.report.outside_points == 2 and finger.report.held_points == 1
 
 
 def test_a_live_strokes_report_has_the_delay_of_its_points(player, short):
@@ -181,14 +175,12 @@ def test_a_model_of_python_shapes_a_live_stroke_until_it_raises_or_returns_rubbi
     assert finger.report.state == "interrupted" and why in finger.report.reason and "\n" not in finger.report.reason
 
 
-def test_a_live_stroke_follows_its_array_s_file(tmp_path):
-    file = tmp_path / "quiet.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\nalgorithm = "tactile-brush"\nenvelope = "tukey:0.3"\n'
-                    'phantom = "barycentric"\n')
+def test_a_live_stroke_follows_its_array_s_file(tmp_path, palm_with):
+    quiet = palm_with('[defaults]\nlevel-dbfs = -30\nalgorithm = "tactile-brush"\nenvelope = "tukey:0.3"\nphantom = "barycentric"\n')
 
     def peak_dbfs(**options):
         raw = tmp_path / "played.raw"
-        with tactor.Player(f"file:'{raw}',raw", tactor.Array.from_file(file), sample_format="float", config=os.devnull) as p:
+        with tactor.Player(f"file:'{raw}',raw", quiet, sample_format="float", config=os.devnull) as p:
             with p.live(timeout=3600.0, **options) as finger:
                 finger.to(20, 20)
                 while p.position()["stroke_frame"] < 4800:
@@ -356,14 +348,13 @@ def test_the_configuration_counts(palm, tmp_path, monkeypatch, short):
     tactor.Player("null", palm, no_gpio=True).close()
 
 
-def test_rate_and_sample_format_of_defaults_are_the_streams_too(tmp_path):
-    file = tmp_path / "palm.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nrate = 44100\nsample-format = "s16"\nlatency-ms = 10\n')
-    array = tactor.Array.from_file(file)
+def test_defaults_and_limits_of_an_array_s_file_are_the_streams_too(palm_with):
+    array = palm_with('[output]\nchannels = 12\n[limits]\npower_dbfs = -40.0\n[defaults]\nrate = 44100\nsample-format = "s16"\nlatency-ms = 10\n')
     score = tactor.Score(array, tactor.plan(array, tactor.Stroke.preset("park2016-1"), duration=0.2))
     with tactor.Player("null", array, config=os.devnull) as p:
         assert (p.rate, p.setup["format"], p.setup["buffer_frames"]) == (44100, "s16", 441)
-        assert p.play(score).state == "finished"
+        assert p.channels == 12 == score.channels
+        assert p.play(score).state == "finished" and p.stats()["power_limited_frames"] > 0
     with tactor.Player("null", array, config=os.devnull, rate=48000, sample_format="s32", period_frames=96) as p:
         assert (p.rate, p.setup["format"], p.setup["period_frames"]) == (48000, "s32", 96)
 
@@ -394,23 +385,12 @@ def test_a_card_of_fixed_channels_takes_the_array_or_names_one_that_fits(tmp_pat
         bindings = " ".join(f"bindings.{c} {{ slave a channel {c} }}" for c in range(n))
         return f"pcm.{name} {{ type multi slaves.a {{ pcm {{ type null }} channels {n} }} {bindings} }}\n"
     (tmp_path / "asound.conf").write_text(fixed("sixteen", 16) + fixed("eight", 8))
-    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "ALSA_CONFIG_PATH": str(tmp_path / "asound.conf")}
-    out = subprocess.run([sys.executable, "-c", FIXED], env=env, capture_output=True, text=True, check=True).stdout.splitlines()
-    assert out[:2] == ["9 16 finished", "16 16 finished"]
+    code, said, _ = run(FIXED, ALSA_CONFIG_PATH=str(tmp_path / "asound.conf"))
+    out = said.splitlines()
+    assert code == 0 and out[:2] == ["9 16 finished", "16 16 finished"]
     assert out[2].startswith('DeviceError PCM "sixteen" cannot play 9 channels')
     assert out[3] == "InputError channels palm-3x3 needs 9 channels"
     assert "the array palm-2x4 fits" in out[4]
-
-
-def test_an_array_s_file_brings_its_limits(tmp_path):
-    file = tmp_path / "palm.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[output]\nchannels = 12\n[limits]\npower_dbfs = -40.0\n')
-    array = tactor.Array.from_file(file)
-    score = tactor.Score(array, tactor.plan(array, tactor.Stroke.preset("park2016-1"), duration=0.2))
-    with tactor.Player("null", array, config=os.devnull) as p:
-        assert p.channels == 12 == score.channels
-        p.play(score)
-        assert p.stats()["power_limited_frames"] > 0
 
 
 def test_the_log_is_called_in_the_package_s_thread(palm, short):

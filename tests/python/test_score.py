@@ -149,7 +149,7 @@ def test_options_that_nothing_in_a_score_uses_are_refused(palm, stroke, planned,
         assert refused(lambda: tactor.Score(palm, one, **said)).what == what
 
 
-def test_a_score_may_add_to_its_plan_s_options(tmp_path, palm, stroke):
+def test_a_score_may_add_to_its_plan_s_options(palm, palm_with, stroke):
     plan = tactor.plan(palm, stroke, envelope="tukey")
     expected = tactor.Score(palm, plan, envelope="tukey", tukey_part=0.3).render()
     assert np.array_equal(tactor.Score(palm, plan, tukey_part=0.3).render(), expected)
@@ -157,8 +157,7 @@ def test_a_score_may_add_to_its_plan_s_options(tmp_path, palm, stroke):
     for p in (plan, tactor.plan(palm, stroke)):
         assert np.array_equal(tactor.Score(palm, p, envelope="tukey:0.3").render(), expected)
     assert np.array_equal(tactor.Score(palm, tactor.plan(palm, stroke, envelope="tukey:0.3")).render(), expected)
-    (tmp_path / "a.toml").write_text('[array]\npreset = "palm-3x3"\n[defaults]\nramp = 0.003\n[sync]\nchannel = 9\n')
-    array = tactor.Array.from_file(tmp_path / "a.toml")
+    array = palm_with("[defaults]\nramp = 0.003\n[sync]\nchannel = 9\n")
     for p in (plan, tactor.plan(array, stroke)):
         score = tactor.Score(array, p, envelope="tukey", marker_s=0.01)
         assert (score.render()[:480, 9] == 1.0).all() and pickle.loads(pickle.dumps(score)) == score
@@ -188,10 +187,8 @@ def test_scores_are_values(palm, stroke):
     assert repr(score) == f"<tactor.Score: 1 plan, 9 channels, 48000 Hz, {score.duration:.6g} s>" and len(score) == score.frames
 
 
-def test_a_score_keeps_its_plan_s_options_from_any_source(tmp_path, stroke):
-    file = tmp_path / "q.toml"
-    file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\n')
-    quiet = tactor.Array.from_file(file)
+def test_a_score_keeps_its_plan_s_options_from_any_source(tmp_path, palm_with, stroke):
+    quiet = palm_with("[defaults]\nlevel-dbfs = -30\n")
     plan = tactor.plan(quiet, stroke, level_dbfs=-50)
     expected = tactor.Score(quiet, plan).render()
     assert np.abs(expected).max() < 10 ** (-49.9 / 20)
@@ -199,7 +196,7 @@ def test_a_score_keeps_its_plan_s_options_from_any_source(tmp_path, stroke):
     again = pickle.loads(pickle.dumps(plan))
     for one in (recorded, again, pickle.loads(pickle.dumps(recorded))):
         assert np.array_equal(tactor.Score(quiet, one).render(), expected)
-        assert np.array_equal(tactor.Score(tactor.Array.from_file(file), one).render(), expected)
+        assert np.array_equal(tactor.Score(tactor.Array.from_file(tmp_path / "palm.toml"), one).render(), expected)
     score = tactor.Score(quiet, plan)
     assert np.array_equal(pickle.loads(pickle.dumps(score)).render(), expected)
     plain = tactor.plan(tactor.Array.preset("palm-3x3"), stroke)  # without a file's values

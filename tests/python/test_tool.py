@@ -136,11 +136,10 @@ def test_tables_for_pandas(palm, stroke):
     assert (table[[f"tactor_{i}" for i in range(9)]].to_numpy() == plan.amplitudes).all()
 
 
-def test_a_comparisons_level_is_that_of_its_scale(tmp_path, palm):
+def test_a_comparisons_level_is_that_of_its_scale(palm, palm_with):
     by_level = [tactor.compare(palm, RISING, intensity_scale="sl", sl=sl) for sl in (5, 30)]
     assert by_level[0] != by_level[1]
-    (tmp_path / "a.toml").write_text('[array]\npreset = "palm-3x3"\n[defaults]\nintensity-scale = "sl"\nsl = 30\n')
-    assert tactor.compare(tactor.Array.from_file(tmp_path / "a.toml"), RISING) == by_level[1]
+    assert tactor.compare(palm_with('[defaults]\nintensity-scale = "sl"\nsl = 30\n'), RISING) == by_level[1]
 
 
 @pytest.mark.parametrize("options,field", [
