@@ -2,9 +2,8 @@
 """tactor devices and tactor check on a real kernel: a card and GPIO lines, free and in use, and the walk over the array."""
 import json
 import signal
-import subprocess
 
-from rig import PERIOD, TOOL, Capture, GpioSim, RigTest, wait_for
+from rig import PERIOD, Capture, GpioSim, RigTest, wait_for
 
 
 class Devices(RigTest):
@@ -82,8 +81,7 @@ class Check(RigTest):
 
     def test_the_walk_drives_each_channel_with_the_amplifier_on(self):
         capture = Capture(self.dir, 9, "S16_LE")
-        p = subprocess.Popen([TOOL, "check", "--walk", "--auto", "--array", self.array, "--sample-format", "s16"],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.dir, env=self.env)
+        p = self.start("check", "--walk", "--auto", "--array", self.array, "--sample-format", "s16")
         wait_for(lambda: self.sim.value(1) == 1, "the amplifier is on")
         out, err = p.communicate(timeout=120)
         self.assertEqual(p.returncode, 0, err)
