@@ -21,9 +21,7 @@ TOASTS = """globalThis.toasts = []; addEventListener("DOMContentLoaded", () => n
     ...all.map(change => [...change.addedNodes].map(n => n.textContent).join("")))).observe(document.querySelector("#toast"), {childList: true}))"""
 TAKE = "(tactor.state.takes.find(t => t.id === tactor.state.current) ?? tactor.state.trial)"
 
-
-def quoted(text):
-    return json.dumps(text)
+quoted = json.dumps  # as a literal of JavaScript
 
 
 class StudioTest(BrowserTest, ToolTest):
