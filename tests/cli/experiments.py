@@ -1,15 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Support for the tests of tactor experiment: small definitions, the files of a session, and a terminal."""
-import contextlib
 import json
-import os
 import pathlib
-import pty
-import re
-import select
-import tempfile
 
-from harness import PATIENCE_S, TOOL, ToolTest
+import terminal
+from harness import ToolTest
 
 COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time early rating void xruns stream "
            "frame_1 frame_2 plan_1 plan_2").split()
@@ -143,39 +138,7 @@ def contents(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(pathlib.Path(folder).rglob("*")) if p.is_file()}
 
 
-class Terminal:
-    """The tool on a pseudo-terminal; standard error goes to a file, as an experimenter's console would."""
-
-    def __init__(self, test, args):
-        self.console = tempfile.TemporaryFile("w+")
-        test.addCleanup(self.console.close)
-        self.pid, self.fd = pty.fork()
-        if self.pid == 0:
-            os.dup2(self.console.fileno(), 2)
-            os.chdir(test.dir)
-            os.execve(TOOL, [str(TOOL), *map(str, args)], test.env | {"TERM": "xterm"})
-        self.all = self.seen = ""
-
-    def read(self):
-        if not select.select([self.fd], [], [], PATIENCE_S)[0]:
-            raise AssertionError(f"nothing more after {self.seen!r}")
-        text = os.read(self.fd, 4096).decode()
-        self.all += text
-        self.seen += text
-
-    def until(self, pattern):
-        while not (found := re.search(pattern, self.seen)):
-            self.read()
-        self.seen = self.seen[found.end():]
-        return found
-
-    def key(self, keys):
-        os.write(self.fd, keys.encode())
-
-    def answer(self, pattern, key):
-        self.until(pattern)
-        self.key(key)
-
+class Terminal(terminal.Terminal):
     def begin(self, agrees=True, key=" "):
         """Answers up to the first run's first trial."""
         if agrees:
@@ -183,15 +146,3 @@ class Terminal:
         for i in (0, 1):
             self.answer(f"{i}: Did you feel it", "y")
         self.answer("Any key begins", key)
-
-    def end(self):
-        """Returns its exit status."""
-        with contextlib.suppress(OSError):  # the terminal closes with the program
-            while True:
-                self.read()
-        os.close(self.fd)
-        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
-
-    def said(self):
-        self.console.seek(0)
-        return self.console.read()

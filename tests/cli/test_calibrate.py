@@ -10,9 +10,9 @@ import struct
 import subprocess
 import tomllib
 
-from experiments import Terminal
 from harness import PATIENCE_S, TOOL, ToolTest, main
 from pages import Session
+from terminal import Terminal
 
 OBSERVER = "threshold=-45,spread=2,lapse=0.02"
 SHORT = ("--reversals", 4, "--discard", 2)

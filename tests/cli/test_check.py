@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: MIT
 """tactor check on ALSA's null and file devices, and its walk with answers from a pipe and from a terminal."""
-import contextlib
-import fcntl
 import json
 import os
-import pty
 import re
 import signal
-import struct
-import subprocess
-import termios
 import tomllib
 
-from harness import GRID, PATIENCE_S, TOOL, ToolTest, main
+from harness import GRID, ToolTest, main
+from terminal import Terminal
 
 
 class Check(ToolTest):
@@ -171,31 +166,18 @@ class Walk(ToolTest):
         self.assertEqual((walked["channels"], len(walked["problems"]), walked["answers"][1]["felt"]), (None, 1, None))
 
     def on_terminal(self, *args):
-        """Starts the tool on a pseudo-terminal; returns its process, and the end to read and write."""
-        ours, theirs = pty.openpty()
-        fcntl.ioctl(ours, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-        p = subprocess.Popen([TOOL, "check", "--walk", "--array", "a.toml", *args], stdin=theirs, stdout=theirs, stderr=subprocess.PIPE,
-                             cwd=self.dir, env=self.env | {"TERM": "xterm", "LC_ALL": "C.UTF-8"})
-        os.close(theirs)
-        self.addCleanup(os.close, ours)
-        self.addCleanup(lambda: p.poll() is None and p.kill())
-        return p, ours
-
-    def read_until(self, fd, text):
-        seen = b""
-        while text.encode() not in seen:
-            seen += os.read(fd, 4096)
-        return seen.decode()
+        self.env["LC_ALL"] = "C.UTF-8"
+        return Terminal(self, ("check", "--walk", "--array", "a.toml", *args))
 
     def test_on_a_terminal_the_picture_shows_the_tactor(self):
-        p, fd = self.on_terminal("-o", "felt.toml")
+        t = self.on_terminal("-o", "felt.toml")
         for i in range(2):
             # Once more where the machine was too busy to draw while a burst lasted.
-            while "█" not in self.read_until(fd, f"tactor {i} (channel {i}): which did you feel?"):
-                os.write(fd, b"r\n")
-            os.write(fd, f"{i ^ 1}\n".encode())
-        self.read_until(fd, "Written: felt.toml")
-        self.assertEqual(p.wait(timeout=PATIENCE_S), 0)
+            while "█" not in t.until(f"tactor {i} \\(channel {i}\\): which did you feel\\?").string:
+                t.key("r\n")
+            t.key(f"{i ^ 1}\n")
+        t.until("Written: felt.toml")
+        self.assertEqual(t.end(), 0)
         self.assertEqual(self.channels("felt.toml"), [1, 0])
 
     def test_ctrl_c_at_a_question_and_in_a_burst_ends_in_silence_without_a_file(self):
@@ -203,16 +185,13 @@ class Walk(ToolTest):
         self.write("a.toml", GRID.replace("columns = 2", "columns = 60"))
         for auto in ((), ("--auto",)):
             # The fade is in one period: it is written whole, however long the machine stands still.
-            p, fd = self.on_terminal(*self.recorder, "--level-dbfs", "0", "--period-frames", "1024", "--periods", "3", *(auto or ("-o", "felt.toml")))
+            t = self.on_terminal(*self.recorder, "--level-dbfs", "0", "--period-frames", "1024", "--periods", "3", *(auto or ("-o", "felt.toml")))
             if auto:
-                self.until(lambda: self.raw.exists() and any(self.raw.read_bytes()[-120 * 4800:]), p)
+                self.until(lambda: self.raw.exists() and any(self.raw.read_bytes()[-120 * 4800:]))
             else:
-                self.read_until(fd, "which did you feel?")
-            p.send_signal(signal.SIGINT)
-            with contextlib.suppress(OSError):  # the terminal closes with the program
-                while os.read(fd, 4096):
-                    pass
-            self.assertEqual(p.wait(timeout=PATIENCE_S), 130)
+                t.until("which did you feel\\?")
+            os.kill(t.pid, signal.SIGINT)
+            self.assertEqual(t.end(), 130)
             self.assertFalse((self.dir / "felt.toml").exists())
             heard = memoryview(self.raw.read_bytes()).cast("h")
             self.assertEqual(set(heard[-60:]), {0})

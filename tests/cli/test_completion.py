@@ -1,42 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Completion: the tool's candidates, and bash, zsh and fish as people type in them."""
 import os
-import pty
 import re
-import select
 import shutil
 import subprocess
 
 from harness import ROOT, TOOL, ToolTest, main
+from terminal import Terminal
 
 SCRIPTS = ROOT / "src/cli/completion"
 # Prints each word in another form than it was typed, since the terminal shows the typed line too.
 SHOW = r"printf '\74%s\76' "
-
-
-class Terminal:
-    """An interactive shell on a pseudo-terminal."""
-
-    def __init__(self, command, env, folder):
-        self.pid, self.fd = pty.fork()
-        if self.pid == 0:
-            os.chdir(folder)
-            os.execvpe(command[0], command, env)
-
-    def send(self, text):
-        os.write(self.fd, text.encode())
-
-    def until(self, pattern):
-        seen = ""
-        while not re.search(pattern, seen):
-            if not select.select([self.fd], [], [], 30)[0]:
-                raise AssertionError(f"no {pattern} in {seen!r}")
-            seen += os.read(self.fd, 65536).decode(errors="replace")
-        return seen
-
-    def close(self):
-        os.close(self.fd)
-        os.waitpid(self.pid, 0)
 
 
 class Completion(ToolTest):
@@ -46,7 +20,7 @@ class Completion(ToolTest):
         (self.dir / "bin/tactor").symlink_to(TOOL)
         for name in ("forearm.toml", "formant.wav", "trace.csv", "folder/x.toml"):
             self.write(name, "")
-        self.env |= {"PATH": f"{self.dir}/bin:{os.environ['PATH']}", "HOME": str(self.dir), "TERM": "dumb", "PS1": "READY> ",
+        self.env |= {"PATH": f"{self.dir}/bin:{os.environ['PATH']}", "HOME": str(self.dir), "PS1": "READY> ",
                      "INPUTRC": "/dev/null", "XDG_DATA_HOME": str(self.dir / "data"), "ZDOTDIR": str(self.dir)}
 
     def offered(self, *words):
@@ -113,26 +87,23 @@ class Completion(ToolTest):
         ("fake play --device=hw:CARD=T", ["fake", "play", "--device=hw:CARD=Tactor"]),
     ]
 
-    def type_into(self, *command, setup):
+    def type_into(self, shell, *options, setup):
         fake = self.write("bin/fake", '#!/bin/sh\nfor last; do :; done\n'
                                       'case $last in --*=*) o=${last%%=*}=;; esac\n'
                                       'for n in Tactor Other; do\n'
                                       'case ${o}hw:CARD=$n in "$last"*) echo "${o}hw:CARD=$n" ;; esac; done\n')
         fake.chmod(0o755)
-        t = Terminal(command, self.env, self.dir)
-        try:
-            t.until("READY> ")
-            t.send(f"{setup}; echo DO''NE\n")
-            t.until("DONE")
-            for typed, words in self.TYPED:
-                if words[-1] == "folder/":
-                    continue  # ambiguous: nothing is completed
-                # Tab; a last word at the end of the line; and the code that shows the words at its beginning.
-                t.send(f"{typed}\t\005 END\001{SHOW}\n")
-                seen = t.until("<END>")
-                self.assertEqual(re.findall("<(.*?)>", seen)[:-1], words, typed)
-        finally:
-            t.close()
+        t = Terminal(self, options, shell, term="dumb", has_console=False)
+        t.until("READY> ")
+        t.key(f"{setup}; echo DO''NE\n")
+        t.until("DONE")
+        for typed, words in self.TYPED:
+            if words[-1] == "folder/":
+                continue  # ambiguous: nothing is completed
+            # Tab; a last word at the end of the line; and the code that shows the words at its beginning.
+            t.key(f"{typed}\t\005 END\001{SHOW}\n")
+            seen = t.until("<END>").string
+            self.assertEqual(re.findall("<(.*?)>", seen)[:-1], words, typed)
 
     def test_bash_completes(self):
         self.needs("bash")

@@ -210,7 +210,6 @@ class FullDisk(ExperimentTest):
         self.write("desk.toml", DESK)
         self.write("short.toml", SHORT)
         t = Terminal(self, ("experiment", "short.toml", "--participant", "01", "-o", "disk/study", "-D", "null", *more))
-        self.addCleanup(t.console.close)
         return t
 
     def answers(self, run):
