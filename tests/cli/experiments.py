@@ -2,6 +2,8 @@
 """Support for the tests of tactor experiment: small definitions, the files of a session, and a terminal."""
 import json
 import pathlib
+import re
+import struct
 
 import terminal
 from harness import ToolTest
@@ -97,9 +99,13 @@ class ExperimentTest(ToolTest):
         self.write("small.toml", text)
         return "small.toml"
 
-    def simulate(self, code="01", *more, definition=None, folder="study", spec="seed=1,sigma=1", run=None):
-        return (run or self.ok)("experiment", definition or self.small(), "--participant", code, "-o", folder,
-                                "--simulate", spec, *more)
+    def simulate(self, code="01", *more, definition=None, folder="study", spec="seed=1,sigma=1", status=0, says=()):
+        """Runs a simulated session; with a status it must be refused."""
+        args = ("experiment", definition or self.small(), "--participant", code, "-o", folder, "--simulate", spec, *more)
+        return self.refused(status, *args, says=says) if status else self.ok(*args)
+
+    def analysis(self):
+        return json.loads(self.ok("analyze", "study", "--format", "json").stdout)
 
     def rows(self, code, task, folder="study"):
         return read_table(self.dir / folder / f"sub-{code}/beh/sub-{code}_task-{task}_beh.tsv")
@@ -107,6 +113,9 @@ class ExperimentTest(ToolTest):
     def without_cut(self):
         """Returns the files except the part cut off a table."""
         return {n: b for n, b in contents(self.dir / "study").items() if ".cut-" not in n and n != ".bidsignore"}
+
+    def frames_of_plan(self, name):
+        return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{name}.json").read_text())["render"]["frames"]
 
     def session(self, code="01", folder="study"):
         return json.loads((self.dir / folder / f"sourcedata/sub-{code}/session.json").read_text())
@@ -131,6 +140,16 @@ def read_table(path):
     head, *lines = (line.split("\t") for line in text[:-1].split("\n"))
     assert all(len(line) == len(head) for line in lines), path
     return [dict(zip(head, line)) for line in lines]
+
+
+def count_noise(path):
+    """Returns the number of pieces of noise at -20 dBFS in a file (S32, stereo), looking every 10 ms."""
+    values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", path.read_bytes())]
+    left = values[::2]
+    assert left == values[1::2]
+    power = [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
+    assert power[0] == 0
+    return len(re.findall("1+", "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)))
 
 
 def contents(folder):

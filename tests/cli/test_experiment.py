@@ -141,7 +141,7 @@ class DryRun(ExperimentTest):
         self.simulate("p1")
         before = contents(self.dir / "study")
         for more in ((), ("--resume",)):
-            self.simulate("P1", *more, run=lambda *a: self.refused(2, *a))
+            self.simulate("P1", *more, status=2)
         self.assertEqual(contents(self.dir / "study"), before)
         self.simulate("p2")
 
@@ -249,9 +249,9 @@ class Simulated(ExperimentTest):
             self.assertIn(row["response"], ("1", "2"))
             self.assertEqual(row["rating"], "n/a")
             # Both methods take the same time as before; the gap is exact to the frame.
-            first = self.plan_frames(row["plan_1"])
+            first = self.frames_of_plan(row["plan_1"])
             self.assertEqual(int(row["frame_2"]) - int(row["frame_1"]), first + rate // 4)
-            self.assertAlmostEqual(float(row["duration"]), (first + rate / 4 + self.plan_frames(row["plan_2"])) / rate, 6)
+            self.assertAlmostEqual(float(row["duration"]), (first + rate / 4 + self.frames_of_plan(row["plan_2"])) / rate, 6)
         for row in self.rows("01", "howgood"):
             self.assertEqual((row["method_2"], row["plan_2"], row["frame_2"]), ("n/a", "n/a", "n/a"))
             self.assertEqual(row["response"], row["rating"])
@@ -268,9 +268,6 @@ class Simulated(ExperimentTest):
                 self.assertAlmostEqual(float(row["onset"]), (int(row["frame_1"]) - int(rows[0]["frame_1"])) / rate, 5)
             ends = [float(r["onset"]) + float(r["duration"]) + float(r["response_time"]) for r in rows]
             self.assertTrue(all(float(r["onset"]) > e for r, e in zip(rows[1:], ends)))
-
-    def plan_frames(self, name):
-        return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{name}.json").read_text())["render"]["frames"]
 
     def test_the_session_file_is_complete(self):
         self.simulate("01", "--seed", "12")
@@ -311,7 +308,7 @@ class Simulated(ExperimentTest):
     def test_a_study_of_several_is_analysed(self):
         for n in range(1, 4):
             self.simulate(f"{n:02}")
-        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+        told = self.analysis()
         self.assertEqual((told["participants"], told["simulated"]), (3, True))
         self.assertEqual({name: (run["n"], run["trials"]) for name, run in told["runs"].items()}, {"which-one": (3, 12), "how good": (3, 12), "what": (3, 9)})
         rows = [r for n in range(1, 4) for r in self.rows(f"{n:02}", "whichone")]
@@ -323,7 +320,7 @@ class Folder(ExperimentTest):
     def test_a_known_participant_is_refused_without_resume(self):
         self.simulate()
         before = contents(self.dir / "study")
-        self.simulate(run=lambda *a: self.refused(2, *a))
+        self.simulate(status=2)
         result = self.simulate("01", "--resume")
         self.assertIn("finished", result.stdout)
         self.assertEqual(contents(self.dir / "study"), before)
@@ -335,7 +332,7 @@ class Folder(ExperimentTest):
         table = self.dir / "study/sub-01" / scans[1].split("\t")[0]
         table.unlink()
         before = contents(self.dir / "study")
-        self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(f"{table.relative_to(self.dir)}: it is missing", "put it back")))
+        self.simulate("01", "--resume", status=2, says=(f"{table.relative_to(self.dir)}: it is missing", "put it back"))
         self.assertEqual(contents(self.dir / "study"), before)
 
     def test_a_session_that_stopped_anywhere_resumes_as_if_it_had_not(self):
@@ -360,26 +357,26 @@ class Folder(ExperimentTest):
     def test_a_session_resumes_only_with_its_options(self):
         self.simulate("01", "--seed", "3")
         for seed, spec, says in (("4", "seed=1,sigma=1", "seed 3"), ("3", "seed=9", "simulation")):
-            self.simulate("01", "--seed", seed, "--resume", spec=spec, run=lambda *a, says=says: self.refused(2, *a, says=(says, "as it was begun")))
+            self.simulate("01", "--seed", seed, "--resume", spec=spec, status=2, says=(says, "as it was begun"))
         self.small(SMALL + "# a word more\n")
-        self.simulate("01", "--seed", "3", "--resume", definition="small.toml", run=lambda *a: self.refused(2, *a))
+        self.simulate("01", "--seed", "3", "--resume", definition="small.toml", status=2)
 
     def test_lines_of_another_session_are_refused(self):
         self.simulate()
         file = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
         lines = file.read_text().splitlines(True)
         file.write_text("".join([lines[0], lines[2], lines[1], *lines[3:]]))
-        self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
+        self.simulate("01", "--resume", status=2)
 
     def test_other_sessions_and_experiments_need_another_folder(self):
         self.simulate()
         file = self.dir / "study/sourcedata/sub-01/session.json"
         text = file.read_text()
         file.write_text(text.replace('"simulated": true', '"simulated": false'))
-        self.simulate("02", run=lambda *a: self.refused(2, *a))
+        self.simulate("02", status=2)
         file.write_text(text)
         self.small(SMALL.replace('name = "down"', 'name = "up"'))
-        self.simulate("02", definition="small.toml", run=lambda *a: self.refused(2, *a))
+        self.simulate("02", definition="small.toml", status=2)
 
     def test_a_changed_definition_is_reported(self):
         self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)
@@ -391,23 +388,23 @@ class Folder(ExperimentTest):
         self.simulate()
         holder = os.open(self.dir / "study", os.O_RDONLY)
         fcntl.flock(holder, fcntl.LOCK_EX)
-        self.simulate("02", run=lambda *a: self.refused(2, *a))
+        self.simulate("02", status=2)
         os.close(holder)
         self.simulate("02")
 
     def test_a_folder_of_other_things_is_left_alone(self):
         self.write("study/letter.txt", "dear")
-        self.simulate(run=lambda *a: self.refused(2, *a))
+        self.simulate(status=2)
         self.assertEqual(set(contents(self.dir / "study")), {"letter.txt"})
         self.write("file", "x")
-        self.simulate(folder="file", run=lambda *a: self.refused(2, *a))
-        self.simulate(folder="none/study", run=lambda *a: self.refused(2, *a))
-        self.simulate(folder="/proc/study", run=lambda *a: self.refused(1, *a))
+        self.simulate(folder="file", status=2)
+        self.simulate(folder="none/study", status=2)
+        self.simulate(folder="/proc/study", status=1)
 
     @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
     def test_a_folder_without_write_permission_is_refused(self):
         (self.dir / "study").mkdir(mode=0o555)
-        self.simulate(run=lambda *a: self.refused(1, *a))
+        self.simulate(status=1)
 
     def test_the_experimenter_s_columns_in_the_list_of_participants_stay(self):
         self.simulate()
@@ -445,7 +442,7 @@ class Power(ExperimentTest):
             self.simulate(f"{n:02}", definition="park2016", spec=self.SPEC[1])
             if n not in (2, 5):
                 continue
-            runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+            runs = self.analysis()["runs"]
             for run in told["runs"]:
                 mine = next(p for p in run["power"] if p["participants"] == n)
                 own = runs[run["name"]]

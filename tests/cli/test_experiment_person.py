@@ -7,12 +7,11 @@ import os
 import re
 import shutil
 import signal
-import struct
 import subprocess
 import time
 import unittest
 
-from experiments import SHORT, SMALL, PersonTest, Terminal, contents, read_table
+from experiments import SHORT, SMALL, PersonTest, Terminal, contents, count_noise, read_table
 from harness import PATIENCE_S, TOOL, main
 
 AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
@@ -22,9 +21,6 @@ RATE = 48000
 class AtTheTerminal(PersonTest):
     def start(self, *more):
         return Terminal(self, self.args(*more))
-
-    def frames(self, plan):
-        return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{plan}.json").read_text())["render"]["frames"]
 
     def test_a_whole_session_by_keys_tells_no_method(self):
         t = self.start()
@@ -45,9 +41,9 @@ class AtTheTerminal(PersonTest):
         self.assertEqual(self.answers(), [("1", "1", "false", "1"), ("2", "1", "false", "2")])
         self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["3", "3"])
         for r in rows:
-            gap_frames = self.frames(r["plan_1"]) + RATE // 10
+            gap_frames = self.frames_of_plan(r["plan_1"]) + RATE // 10
             self.assertEqual(int(r["frame_2"]) - int(r["frame_1"]), gap_frames)
-            self.assertAlmostEqual(float(r["duration"]), (gap_frames + self.frames(r["plan_2"])) / RATE, 6)
+            self.assertAlmostEqual(float(r["duration"]), (gap_frames + self.frames_of_plan(r["plan_2"])) / RATE, 6)
             self.assertEqual((r["xruns"], r["stream"]), ("0", "1"))
             self.assertLess(float(r["response_time"]), PATIENCE_S)
         self.assertEqual(rows[0]["onset"], "0.000000")
@@ -191,7 +187,7 @@ class ByLines(PersonTest):
             self.assertRegex(at, r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$")
         text = self.ok("report", "study").stdout
         self.assertIn(f"| {s['consent']} | 2 | terminal without animation | none | none |", text)
-        self.assertFalse(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["simulated"])
+        self.assertFalse(self.analysis()["simulated"])
         before = contents(self.dir / "study")
         self.assertIn("finished", self.ok(*self.args("--resume")).stdout)
         self.assertEqual(contents(self.dir / "study"), before)
@@ -294,7 +290,7 @@ class ByLines(PersonTest):
         self.ok(*self.args(), stdin=self.ANSWERS)
         self.assertEqual([r["early"] for r in self.rows("01", "pairs")], ["true"] * 2)
         self.assertEqual([r["early"] for r in self.rows("01", "marks")], ["false"] * 2)
-        runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        runs = self.analysis()["runs"]
         self.assertEqual((runs["pairs"]["early"], runs["marks"]["early"]), (2, 0))
         trials = [line.split("\t") for line in self.ok("analyze", "study", "--format", "tsv").stdout.splitlines() if not line.startswith("#")]
         self.assertEqual([(t[1], t[-1]) for t in trials], [("run", "early"), *[("pairs", "true")] * 2, *[("marks", "false")] * 2])
@@ -325,23 +321,13 @@ class Masking(PersonTest):
         self.write("noisy.toml", SHORT.replace("[[motion]]", f'[masking]\nnoise = "white"\nlevel_dbfs = -20\n{extra}[[motion]]', 1))
         return "noisy.toml"
 
-    def covered(self, name):
-        """Returns the length of each piece of full noise, in 10 ms (S32, stereo)."""
-        values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
-        self.assertEqual(values[::2], values[1::2])
-        left = values[::2]
-        power = [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
-        self.assertEqual(power[0], 0)
-        full = "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)
-        return [len(r) for r in re.findall("1+", full)]
-
     def test_noise_surrounds_each_stimulus_or_lasts_through_the_run(self):
         # Two tactors of the walk, three pairs and two single stimuli; without answers to wait for, neighbours may merge. Both devices'
         # clocks stand still where the machine does; timed/test_times.py checks durations.
         for code, extra, most in (("01", "", 7), ("02", 'while = "run"\n', 4)):
             self.ok(*self.args("--masker", f"raw:noise{code}.raw", definition=self.noisy(extra), code=code), stdin=ByLines.ANSWERS)
             self.assertEqual(self.session(code)["masker"], f"raw:noise{code}.raw")
-            self.assertIn(len(self.covered(f"noise{code}.raw")), range(1, most + 1))
+            self.assertIn(count_noise(self.dir / f"noise{code}.raw"), range(1, most + 1))
 
     def test_renamed_headphones_are_accepted(self):
         args = self.args(definition=self.noisy())
@@ -368,7 +354,7 @@ class Masking(PersonTest):
         self.assertIn("white noise, -20 dBFS, on raw:noise.raw", said)
         self.assertEqual(said.splitlines()[1:2] + said.splitlines()[4:], ["noise", "silence", "noise"])
         self.assertRegex(said.splitlines()[2], r"^a stimulus of 0\.\d\d s$")
-        self.assertLessEqual(len(self.covered("noise.raw")), 3)
+        self.assertLessEqual(count_noise(self.dir / "noise.raw"), 3)
         self.assertFalse((self.dir / "study").exists())
         self.ok(*check, "--masker", "null")  # without keys it ends
         self.refused(2, *check)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Tables of tactor experiment left by a crash, an editor, a spreadsheet, R or pandas: which resume, which are refused."""
-import json
 import re
 import shutil
 
@@ -36,7 +35,7 @@ class Tables(ExperimentTest):
             saved = {p: way(p.read_bytes()) for p in tables}
             for path, data in saved.items():
                 path.write_bytes(data)
-            self.assertEqual(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["participants"], 1)
+            self.assertEqual(self.analysis()["participants"], 1)
             self.assertNotIn("cut", self.simulate("01", "--resume").stderr)
             self.assertEqual(set(contents(self.dir / "study")), set(whole))
             for path, data in saved.items():
@@ -84,13 +83,13 @@ class Tables(ExperimentTest):
             else:  # a column is missing
                 table.write_text(good.replace("\tvoid", "\tother", 1))
             before = contents(self.dir / "study")
-            self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
+            self.simulate("01", "--resume", status=2)
             self.assertEqual(contents(self.dir / "study"), before)
         table.write_text(good)
         people = self.dir / "study/participants.tsv"
         text = people.read_text()
         people.write_text(text.replace("participant_id", "id"))
-        self.simulate("02", run=lambda *a: self.refused(2, *a))
+        self.simulate("02", status=2)
         people.write_text(text)
         self.simulate("01", "--resume")
         self.assertEqual(contents(self.dir / "study"), whole)
@@ -137,9 +136,7 @@ class Tables(ExperimentTest):
         self.assertEqual(contents(self.dir / "study"), before)
         table.write_text(text + "0.5\t")
         before = contents(self.dir / "study")
-        for refusal in (self.refused(2, "analyze", "study"),
-                        self.simulate("01", "--resume", run=lambda *a: self.refused(
-                            2, *a))):
+        for refusal in (self.refused(2, "analyze", "study"), self.simulate("01", "--resume", status=2)):
             self.assertNotIn("--resume", refusal.stderr)
         self.assertEqual(contents(self.dir / "study"), before)
 
