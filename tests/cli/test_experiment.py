@@ -305,26 +305,8 @@ class Simulated(ExperimentTest):
         self.simulate(folder="three", spec="seed=2,sigma=1")
         self.assertNotEqual(contents(self.dir / "one"), contents(self.dir / "three"))
 
-    def test_a_study_of_several_is_analysed(self):
-        for n in range(1, 4):
-            self.simulate(f"{n:02}")
-        told = self.analysis()
-        self.assertEqual((told["participants"], told["simulated"]), (3, True))
-        self.assertEqual({name: (run["n"], run["trials"]) for name, run in told["runs"].items()}, {"which-one": (3, 12), "how good": (3, 12), "what": (3, 9)})
-        rows = [r for n in range(1, 4) for r in self.rows(f"{n:02}", "whichone")]
-        chosen = sum(r["method_" + r["response"]] == "park" for r in rows)
-        self.assertAlmostEqual(told["runs"]["which-one"]["preference"]["all"]["mean"], 100 * chosen / len(rows), 9)
-
 
 class Folder(ExperimentTest):
-    def test_a_known_participant_is_refused_without_resume(self):
-        self.simulate()
-        before = contents(self.dir / "study")
-        self.simulate(status=2)
-        result = self.simulate("01", "--resume")
-        self.assertIn("finished", result.stdout)
-        self.assertEqual(contents(self.dir / "study"), before)
-
     def test_a_table_that_is_missing_before_a_later_one_is_not_asked_for_again(self):
         self.simulate()
         scans = (self.dir / "study/sub-01/sub-01_scans.tsv").read_text(encoding="utf-8").splitlines()
