@@ -13,15 +13,11 @@ CSV = "t_s,x_mm,y_mm\n0,0,0\n1,20,0\n"
 
 
 class ErrorsTest(ToolTest):
-    def refused_each(self, *lines, status=2):
-        """Runs command lines; returns what each says."""
-        said = []
+    def refused_each(self, *lines):
+        """Runs command lines; the golden message of each names what is wrong with it."""
         for line in lines:
             with self.subTest(line):
-                r = self.refused(status, *shlex.split(line))
-                self.assertEqual(r.stdout, "")
-                said.append(r.stderr)
-        return said
+                self.assertEqual(self.refused(2, *shlex.split(line)).stdout, "")
 
 
 class Help(ErrorsTest):
@@ -81,46 +77,32 @@ class CommandLine(ErrorsTest):
             "check park2016-1", "devices --format csv", "devices --array palm-9x9")
 
     def test_a_unit_gets_a_hint_with_the_number_to_give(self):
-        for option, value, says in (("--soa", "70ms", "as 0.07"), ("--burst", "60 ms", "as 0.06"), ("--duration", "2s", "as 2;"), ("--duration", "3min", "as 180;"),
-                                    ("--duration", "1,5", "as 1.5"), ("--carrier", "0.2kHz", "as 200"), ("--speed", "6cm/s", "as 60"),
-                                    ("--level-dbfs", "-20dB", "as -20")):
-            self.assertNotIn("1000000000", self.refused(2, "plan", "park2016-1", f"{option}={value}", says=[option, "not a number", says]).stderr)
-        # A unit that no factor can make right is only refused.
-        for value in ("70furlongs", "70", "1e300"):
-            self.assertNotRegex(self.refused(2, "plan", "park2016-1", "--soa", value).stderr, "without a unit|1000000000")
+        self.refused_each(*(f"plan park2016-1 {given}" for given in (
+            "--soa=70ms", "--burst='60 ms'", "--duration=2s", "--duration=3min", "--duration=1,5", "--carrier=0.2kHz", "--speed=6cm/s",
+            "--level-dbfs=-20dB", "--soa=70furlongs", "--soa=70", "--soa=1e300")))  # no factor makes the last three right
 
     def test_what_is_nearly_right_is_suggested(self):
-        for line, meant in (("plan park2016-1 --speeed 3", "--speed"), ("plan park2016-1 --sped 3", "--speed"), ("plan park2016-1 --arry 3", "--array"),
-                            ("plan park2016-1 --algoritm 3", "--algorithm"), ("play park2016-1 -d null", "-D"), ("-v", "--version"),
-                            ("play park2016-1 -v", "--void-on-xrun or --verbose"), ("play park2016-1 --volume 3", "--level-dbfs"),
-                            ("serve --port 4003", "--http"), ("play park2016-1 -duration 1", "--duration"), ("plan park2016-1 --array plam-3x3", "'palm-3x3'"),
-                            ("play park2016-1 --level-dbfs 12", "-12")):
-            self.assertIn(f"did you mean {meant}?", *self.refused_each(line))
-        for said in self.refused_each("plan park2016-1 --seed 3", "plan park2016-1 --loop", "plan park2016-1 --soap-opera", "plan park2016-1 -s"):
-            self.assertNotIn("did you mean", said)
-        for option in ("--http", "--tcp", "--osc"):
-            self.refused(2, "serve", option, "80000", says=["80000 is no port", "0 to 65535"])
+        self.refused_each(
+            "plan park2016-1 --speeed 3", "plan park2016-1 --sped 3", "plan park2016-1 --arry 3", "plan park2016-1 --algoritm 3",
+            "play park2016-1 -d null", "-v", "play park2016-1 -v", "play park2016-1 --volume 3", "serve --port 4003",
+            "play park2016-1 -duration 1", "plan park2016-1 --array plam-3x3", "play park2016-1 --level-dbfs 12", "serve --http 80000",
+            "serve --tcp 80000", "serve --osc 80000",
+            # These are near nothing.
+            "plan park2016-1 --seed 3", "plan park2016-1 --loop", "plan park2016-1 --soap-opera", "plan park2016-1 -s")
 
     def test_the_command_comes_first_and_blanks_need_quotes(self):
         self.write("my last drawing.toml", STROKE)
         self.write("my array.toml", GRID)
-        path = 'quote the path: --path "M 0 10 L 40 -30"'
-        for line, says in (("--config f.toml plan park2016-1", "the command comes first: tactor plan --config f.toml park2016-1"),
-                           ("park2016-1 play", "the command comes first: tactor play park2016-1"),
-                           ("--path 'M 0 0 L 9 9' plan", 'the command comes first: tactor plan --path "M 0 0 L 9 9"'),
-                           ("plan --path M 0 10 L 40 -30 --duration 1", path), ("play -D null --path M 0 10 L 40 -30 --duration 1", path),
-                           ("plan my last drawing.toml", 'quote it: "my last drawing.toml"'), ("play my last drawing.toml -D null", "quote it: "),
-                           ("plan park2016-1 --array my array.toml", 'quote it: "my array.toml"'),
-                           ("render park2016-1 -o my sound.wav", "render takes one STROKE")):  # a name that no file has yet
-            self.assertIn(says, *self.refused_each(line))
+        self.refused_each(
+            "--config f.toml plan park2016-1", "park2016-1 play", "--path 'M 0 0 L 9 9' plan", "plan --path M 0 10 L 40 -30 --duration 1",
+            "play -D null --path M 0 10 L 40 -30 --duration 1", "plan my last drawing.toml", "play my last drawing.toml -D null",
+            "plan park2016-1 --array my array.toml", "render park2016-1 -o my sound.wav")  # a name that no file has yet
 
     def test_characters_of_print_are_named(self):
-        for line, says in (("plan park2016-1 \u2013\u2013duration 2", "type --duration"), ("plan park2016-1 \u2013duration 2", "type --duration"),
-                           ("plan park2016-1 \u2014duration 2", "type --duration"), ("play park2016-1 \u2011D null", "type -D"),
-                           ("plan park2016-1 --level-dbfs \u221212", "type -12"), ("plan park2016-1 --level-dbfs=\u201312", "type --level-dbfs=-12"),
-                           ("plan --path 'M 20 20 L 20 \u20135'", "type M 20 20 L 20 -5"), ("plan --path \u201cM 0 0 L 9 9\u201d", 'type " on the keyboard')):
-            (said,) = self.refused_each(line)
-            self.assertTrue(says in said and "as in print" in said, said)
+        self.refused_each(
+            "plan park2016-1 \u2013\u2013duration 2", "plan park2016-1 \u2013duration 2", "plan park2016-1 \u2014duration 2", "play park2016-1 \u2011D null",
+            "plan park2016-1 --level-dbfs \u221212", "plan park2016-1 --level-dbfs=\u201312", "plan --path 'M 20 20 L 20 \u20135'",
+            "plan --path \u201cM 0 0 L 9 9\u201d")
 
     def test_what_defaults_say_is_refused_at_its_place(self):
         for text in ("soa = 5", "burst = 3", "carrier = 30000", 'waveform = "no.wav"', "level-dbfs = 12"):
@@ -142,14 +124,11 @@ class CommandLine(ErrorsTest):
 
 class Files(ErrorsTest):
     def test_missing_files_and_folders_are_named(self):
-        for args in (("plan", "no/such.toml"), ("plan", "missing.csv"), ("plan", "park2016-1", "--array", "missing.toml"),
-                     ("plan", "park2016-1", "--config", "missing.toml")):
-            self.refused(2, *args)
+        self.refused_each("plan no/such.toml", "plan missing.csv", "plan park2016-1 --array missing.toml", "plan park2016-1 --config missing.toml")
         self.refused(2, "plan", "park2016-1", env={"TACTOR_CONFIG": "gone.toml"})
         (self.dir / "folder.json").mkdir()
-        for said in self.refused_each("plan .", "plan folder.json", "plan park2016-1 --array .", "plan park2016-1 --config .", "experiment ./ --dry-run",
-                                      "render park2016-1 -o .", "play park2016-1 -D null --log ."):
-            self.assertTrue("folder" in said and "irectory" not in said, said)
+        self.refused_each("plan .", "plan folder.json", "plan park2016-1 --array .", "plan park2016-1 --config .", "experiment ./ --dry-run",
+                          "render park2016-1 -o .", "play park2016-1 -D null --log .")
 
     def test_faults_have_their_place_and_keys_stay_as_they_are(self):
         for name, text in (("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pich_mm = 20.0 }\n'), ("a.toml", "[array\n"), ("a.toml", ""),
