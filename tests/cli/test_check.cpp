@@ -15,7 +15,6 @@ namespace check_test {
 
 using namespace tactor;
 using namespace tactor::cli;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -79,19 +78,10 @@ gpio_line_place find(const gpio_line_name& l)
             {.offset = amplifier ? 17U : 27U, .name = l.name, .consumer = amplifier ? "" : "led"}};
 }
 
-class fake_root {
-public:
-    const fake_root& write(const std::string& file, const std::string& text = "") const
-    {
-        files_.write(file, text);
-        return *this;
-    }
-    system_facts read() const { return read_system(files_.path(), "ann"); }
-    const fs::path& path() const { return files_.path(); }
-
-private:
-    folder files_;
-};
+system_facts read(const folder& root)
+{
+    return read_system(root.path(), "ann");
+}
 
 // A user with all rights on a machine without faults.
 system_facts good()
@@ -113,7 +103,7 @@ system_needs card_and_amplifier()
         .pcm = "hw:CARD=Tactor", .card = card_info{1, "Tactor", "DAC8x"}, .gpio = true, .amplifier = true};
 }
 
-finding judged(const system_facts& f, const system_needs& n, const std::string& check)
+finding judged(const system_facts& f, const std::string& check, const system_needs& n = card_and_amplifier())
 {
     return named(check_system(f, n), check);
 }
@@ -138,6 +128,9 @@ TEST_CASE("check lists places: number, grid, size, distances")
     ragged.tactors[7].position.x_mm += 5.0;
     CHECK(array_finding(ragged, "array").found ==
           "palm-2x4: 8 tactors, no grid, 65 x 20 mm, neighbours 20 to 20.62 mm apart");
+    array many = make_grid("many", 25, 40, 10.0, 7.0);
+    std::reverse(many.tactors.begin() + 100, many.tactors.end()); // neighbours are far apart in the file
+    CHECK(has(array_finding(many, "array").found, "neighbours 7 mm apart"));
 }
 
 TEST_CASE("an array that is not in millimetres, or has one tactor, is a warning")
@@ -146,13 +139,6 @@ TEST_CASE("an array that is not in millimetres, or has one tactor, is a warning"
     CHECK(array_finding(make_grid("um", 2, 2, 20000.0, 20000.0), "array").how == level::warning);
     CHECK(array_finding(make_grid("one", 1, 1, 20.0, 20.0), "array").how == level::warning);
     CHECK(array_finding(make_grid("arm", 1, 4, 60.0, 60.0), "array").how == level::ok);
-}
-
-TEST_CASE("nearest neighbours are found in any order of the file")
-{
-    array a = make_grid("many", 25, 40, 10.0, 7.0);
-    std::reverse(a.tactors.begin() + 100, a.tactors.end());
-    CHECK(has(array_finding(a, "array").found, "neighbours 7 mm apart"));
 }
 
 TEST_CASE("check lists channels and the marker")
@@ -355,8 +341,8 @@ TEST_CASE("a machine without faults needs no hint")
 
 TEST_CASE("an empty machine is read without complaint")
 {
-    const fake_root r;
-    const system_facts f = r.read();
+    const folder r;
+    const system_facts f = read(r);
     CHECK(f.sound.empty());
     CHECK(f.gpio.empty());
     CHECK(f.servers.empty());
@@ -367,10 +353,11 @@ TEST_CASE("an empty machine is read without complaint")
 
 TEST_CASE("groups and devices are read")
 {
-    const fake_root r;
+    const folder r;
     r.write("etc/group", "root:x:0:\naudio:x:29:bob,ann\ngpio:x:990:annabel\n");
-    r.write("dev/snd/pcmC1D0p").write("dev/snd/pcmC1D0c").write("dev/snd/controlC1").write("dev/gpiochip0");
-    const system_facts f = r.read();
+    for (const char* device : {"dev/snd/pcmC1D0p", "dev/snd/pcmC1D0c", "dev/snd/controlC1", "dev/gpiochip0"})
+        r.write(device);
+    const system_facts f = read(r);
     CHECK(f.joined == std::vector<std::string>{"audio"});
     REQUIRE(f.sound.size() == 1);
     CHECK(f.sound[0].path == (r.path() / "dev/snd/pcmC1D0p").string());
@@ -384,19 +371,19 @@ TEST_CASE("a device that may not be opened names the group to join, or the missi
     system_facts f = good();
     f.groups = {"ann"};
     f.sound[0].may_open = false;
-    const finding x = judged(f, card_and_amplifier(), "sound rights");
+    const finding x = judged(f, "sound rights");
     CHECK(x.how == level::error);
     CHECK(x.kind == error_kind::not_available);
     CHECK(has(x.cure, "sudo usermod -aG audio $USER"));
-    CHECK(judged(f, {.pcm = "null"}, "sound rights").how == level::warning);
+    CHECK(judged(f, "sound rights", {.pcm = "null"}).how == level::warning);
     f.joined = {"audio"};
-    CHECK(has(judged(f, card_and_amplifier(), "sound rights").cure, "log out and in again"));
-    CHECK(judged(f, card_and_amplifier(), "sound rights").cure.find("usermod") == std::string::npos);
+    CHECK(has(judged(f, "sound rights").cure, "log out and in again"));
+    CHECK(judged(f, "sound rights").cure.find("usermod") == std::string::npos);
 
     f.gpio[0] = {"/dev/gpiochip0", "root", false};
-    CHECK(judged(f, card_and_amplifier(), "GPIO rights").how == level::error);
-    CHECK(has(judged(f, card_and_amplifier(), "GPIO rights").cure, "udev"));
-    CHECK(judged(f, {.pcm = "null"}, "GPIO rights").how == level::warning);
+    CHECK(judged(f, "GPIO rights").how == level::error);
+    CHECK(has(judged(f, "GPIO rights").cure, "udev"));
+    CHECK(judged(f, "GPIO rights", {.pcm = "null"}).how == level::warning);
 }
 
 TEST_CASE("limits below what play asks for are warnings, and errors where real time is required")
@@ -404,26 +391,28 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     system_facts f = good();
     f.rights = {.priority = 0, .lockable_bytes = 8U << 20};
     system_needs n = card_and_amplifier();
-    CHECK(judged(f, n, "real time").how == level::warning);
-    CHECK(has(judged(f, n, "real time").found, "RLIMIT_RTPRIO is 0"));
-    CHECK(has(judged(f, n, "memory").found,
+    CHECK(judged(f, "real time", n).how == level::warning);
+    CHECK(has(judged(f, "real time", n).found, "RLIMIT_RTPRIO is 0"));
+    CHECK(has(judged(f, "memory", n).found,
               "8 MiB may be locked (RLIMIT_MEMLOCK), 100 MiB must be, a reserve included"));
-    CHECK_FALSE(judged(f, n, "memory").cure.empty());
+    CHECK_FALSE(judged(f, "memory", n).cure.empty());
     f.rights.priority = 40;
-    CHECK(has(judged(f, n, "real time").found, "SCHED_FIFO up to 40 only, 65 is asked for"));
+    CHECK(has(judged(f, "real time", n).found, "SCHED_FIFO up to 40 only, 65 is asked for"));
     n.require_realtime = true;
-    CHECK(judged(f, n, "real time").how == level::error);
-    CHECK(judged(f, n, "memory").kind == error_kind::not_available);
+    CHECK(judged(f, "real time", n).how == level::error);
+    CHECK(judged(f, "memory", n).kind == error_kind::not_available);
     f.rights = {.priority = 99, .lockable_bytes = {}};
-    CHECK(judged(f, n, "real time").how == level::ok);
-    CHECK(judged(f, n, "memory").how == level::ok);
+    CHECK(judged(f, "real time", n).how == level::ok);
+    CHECK(judged(f, "memory", n).how == level::ok);
 }
 
 TEST_CASE("running sound servers are found, and udev's word for a card")
 {
-    const fake_root r;
-    r.write("proc/812/comm", "pipewire\n").write("proc/99/comm", "jackd\n").write("proc/7/comm", "bash\n");
-    const auto servers = r.read().servers;
+    const folder r;
+    r.write("proc/812/comm", "pipewire\n");
+    r.write("proc/99/comm", "jackd\n");
+    r.write("proc/7/comm", "bash\n");
+    const auto servers = read(r).servers;
     REQUIRE(servers.size() == 2);
     CHECK(servers[0].program == "jackd");
     CHECK(servers[1].pid == 812);
@@ -439,30 +428,30 @@ TEST_CASE("a server that may take the card, or has it, is a warning")
     system_facts f = good();
     system_needs n = card_and_amplifier();
     f.servers = {{99, "jackd"}};
-    CHECK(judged(f, n, "sound servers").how == level::ok);
+    CHECK(judged(f, "sound servers", n).how == level::ok);
     f.servers.push_back({812, "pipewire"});
-    CHECK(judged(f, n, "sound servers").how == level::warning);
-    CHECK(has(judged(f, n, "sound servers").found, "pipewire (process 812): may take card Tactor"));
-    CHECK(has(judged(f, n, "sound servers").cure, "70-tactor.rules"));
+    CHECK(judged(f, "sound servers", n).how == level::warning);
+    CHECK(has(judged(f, "sound servers", n).found, "pipewire (process 812): may take card Tactor"));
+    CHECK(has(judged(f, "sound servers", n).cure, "70-tactor.rules"));
     n.ignored = true;
-    CHECK(judged(f, n, "sound servers").how == level::ok);
+    CHECK(judged(f, "sound servers", n).how == level::ok);
     n.holders = {{99, "jackd"}};
-    CHECK(has(judged(f, n, "sound servers").found, "jackd (process 99) plays on card Tactor"));
+    CHECK(has(judged(f, "sound servers", n).found, "jackd (process 99) plays on card Tactor"));
     n.holders = {{100, "mpd"}};
-    CHECK(judged(f, n, "sound servers").how == level::warning);
-    CHECK(judged(f, n, "sound servers").cure == "stop it: kill 100");
-    CHECK(judged(f, {.pcm = "null"}, "sound servers").how == level::ok);
+    CHECK(judged(f, "sound servers", n).how == level::warning);
+    CHECK(judged(f, "sound servers", n).cure == "stop it: kill 100");
+    CHECK(judged(f, "sound servers", {.pcm = "null"}).how == level::ok);
 }
 
 TEST_CASE("lines that keep their level are a warning where an amplifier hangs on one")
 {
-    const fake_root r;
-    r.write("sys/module/pinctrl_rp1/parameters/persist_gpio_outputs", "Y\n")
-        .write("proc/device-tree/model", std::string("Raspberry Pi 5 Model B\0", 23));
-    system_facts f = r.read();
+    const folder r;
+    r.write("sys/module/pinctrl_rp1/parameters/persist_gpio_outputs", "Y\n");
+    r.write("proc/device-tree/model", std::string("Raspberry Pi 5 Model B\0", 23));
+    system_facts f = read(r);
     CHECK(f.raspberry_pi);
     CHECK_FALSE(f.keeps_outputs.empty());
-    const finding x = judged(f, card_and_amplifier(), "GPIO release");
+    const finding x = judged(f, "GPIO release");
     CHECK(x.how == level::warning);
     CHECK(has(x.found, "nothing switches the amplifier off when player and holder are killed together"));
     CHECK(has(x.cure, "strict_gpiod"));
@@ -472,12 +461,12 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
                        [](const finding& y) { return y.check == "GPIO release"; }));
 
     r.write("sys/module/pinctrl_rp1/parameters/persist_gpio_outputs", "N\n");
-    CHECK(judged(r.read(), card_and_amplifier(), "GPIO release").how == level::ok);
-    const fake_root silent;
+    CHECK(judged(read(r), "GPIO release").how == level::ok);
+    const folder silent;
     silent.write("proc/device-tree/model", "Raspberry Pi 4");
-    CHECK(judged(silent.read(), card_and_amplifier(), "GPIO release").how == level::warning);
-    const fake_root other;
-    const finding unknown = judged(other.read(), card_and_amplifier(), "GPIO release");
+    CHECK(judged(read(silent), "GPIO release").how == level::warning);
+    const folder other;
+    const finding unknown = judged(read(other), "GPIO release");
     CHECK(unknown.how == level::ok);
     CHECK(has(unknown.cure, "tactor off"));
 }
