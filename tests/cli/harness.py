@@ -133,6 +133,16 @@ class ToolTest(unittest.TestCase):
         return subprocess.run([TOOL, *map(str, args)], input=stdin, capture_output=True, text=True, timeout=timeout,
                               cwd=self.dir, env=self.env | (env or {}), check=False, preexec_fn=before)
 
+    def begun(self, *args, stdin=""):
+        """Starts the tool with pipes for its text, and writes to its standard input, which stays open."""
+        p = subprocess.Popen([TOOL, *map(str, args)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                             stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(p.communicate)
+        self.addCleanup(p.kill)
+        p.stdin.write(stdin)
+        p.stdin.flush()
+        return p
+
     def ok(self, *args, **more):
         result = self.run_tool(*args, **more)
         self.assertEqual(result.returncode, 0, f"{args}: {result.stderr}")

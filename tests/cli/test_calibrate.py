@@ -6,11 +6,10 @@ import json
 import re
 import resource
 import signal
-import subprocess
 import tomllib
 
 from experiments import count_noise
-from harness import PATIENCE_S, TOOL, ToolTest, main
+from harness import PATIENCE_S, ToolTest, main
 from pages import Session
 from terminal import Terminal
 
@@ -41,13 +40,6 @@ class CalibrateTest(ToolTest):
 
     def toml(self, name="me.toml"):
         return tomllib.loads((self.dir / name).read_text())
-
-    def begun(self, *args):
-        p = subprocess.Popen([TOOL, *map(str, args or self.ARGS)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                             stderr=subprocess.DEVNULL, text=True)
-        self.addCleanup(lambda: [f.close() for f in (p.stdin, p.stdout)])
-        self.addCleanup(p.wait)
-        return p
 
 
 class Simulated(CalibrateTest):
@@ -214,9 +206,7 @@ class Person(CalibrateTest):
         result = self.refused(1, *self.ARGS, "--array", "a.toml", stdin="1\n2\n1\n")
         self.assertNotIn("a limit changed it", result.stdout)
         self.write("a.toml", TWO + "[limits]\nmax_drive_s = 2.5\nwindow_s = 1200\n")
-        tool = self.begun(*replaced(self.ARGS, "--array", "a.toml", "-o", "you.toml", "--interval", 1))
-        tool.stdin.write("1\n2\n")
-        tool.stdin.flush()
+        tool = self.begun(*replaced(self.ARGS, "--array", "a.toml", "-o", "you.toml", "--interval", 1), stdin="1\n2\n")
         while not (line := tool.stdout.readline()).startswith("a pause of 2"):
             self.assertTrue(line)
         tool.send_signal(signal.SIGINT)
@@ -244,9 +234,7 @@ class Person(CalibrateTest):
         self.assertEqual(self.responses(), ["1", "2"])
 
     def test_a_session_killed_at_any_moment_loses_no_answer(self):
-        tool = self.begun()
-        tool.stdin.write("1\n1\n")
-        tool.stdin.flush()
+        tool = self.begun(*self.ARGS, stdin="1\n1\n")
         for line in tool.stdout:
             if line.startswith("trial 2"):
                 break
@@ -373,7 +361,7 @@ class Refused(CalibrateTest):
         self.bad(*same, says=["me.json: it is missing"])
 
     def test_two_sessions_on_one_log_are_refused(self):
-        first = self.begun()
+        first = self.begun(*self.ARGS)
         first.stdout.readline()  # the question: the log is open
         for more in ((), ("--resume",)):
             self.refused(2, *self.ARGS, *more)

@@ -6,13 +6,11 @@ import json
 import os
 import re
 import shutil
-import signal
-import subprocess
 import time
 import unittest
 
 from experiments import SHORT, SMALL, PersonTest, Terminal, contents, count_noise, read_table
-from harness import PATIENCE_S, TOOL, main
+from harness import PATIENCE_S, main
 
 AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
 RATE = 48000
@@ -272,14 +270,12 @@ class ByLines(PersonTest):
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]))
 
     def test_a_session_killed_at_any_moment_loses_no_answer(self):
-        with subprocess.Popen([TOOL, *map(str, self.args())], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as tool:
-            tool.stdin.write(AGREED + "1\n2\n")
-            tool.stdin.flush()
-            for line in tool.stdout:
-                if line.startswith("Trial 2"):
-                    break
-            tool.send_signal(signal.SIGKILL)
+        tool = self.begun(*self.args(), stdin=AGREED + "1\n2\n")
+        for line in tool.stdout:
+            if line.startswith("Trial 2"):
+                break
+        tool.kill()
+        tool.wait()
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2"])
         self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n1\n2\n")
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2", "1"])

@@ -212,6 +212,15 @@ class FullDisk(ExperimentTest):
         t = Terminal(self, ("experiment", "short.toml", "--participant", "01", "-o", "disk/study", "-D", "null", *more))
         return t
 
+    def asked(self, answered):
+        """Begins a session on a disk, and answers some questions; returns the disk, and the terminal with the next one."""
+        disk, t = Disk(self), self.person()
+        t.begin()
+        for _ in range(answered):
+            t.answer("Which one\\? ", "1")
+        t.until("Which one\\? ")
+        return disk, t
+
     def answers(self, run):
         return [r["rating" if run == "marks" else "response"] for r in self.rows("01", run, "disk/study")]
 
@@ -225,12 +234,7 @@ class FullDisk(ExperimentTest):
         self.assertEqual(t.end(), 0, t.said())
 
     def test_a_disk_that_fills_while_somebody_answers(self):
-        disk = Disk(self)
-        t = self.person()
-        t.begin()
-        for _ in range(2):  # practice, and a trial
-            t.answer("Which one\\? ", "1")
-        t.until("Which one\\? ")
+        disk, t = self.asked(2)  # practice, and a trial
         disk.fill()
         t.key("2")  # there is space where the table ends
         t.answer("Any key begins", " ")
@@ -243,11 +247,7 @@ class FullDisk(ExperimentTest):
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3", "1"]))
 
     def test_a_disk_without_names_while_somebody_answers(self):
-        disk = Disk(self)
-        t = self.person()
-        t.begin()
-        t.answer("Which one\\? ", "1")
-        t.until("Which one\\? ")
+        disk, t = self.asked(1)
         disk.fill_names()
         t.key("2")
         self.assertEqual(t.end(), 1)
@@ -255,12 +255,7 @@ class FullDisk(ExperimentTest):
         self.assertEqual(self.answers("pairs"), ["2"])
 
     def test_a_disk_that_becomes_read_only_while_somebody_answers(self):
-        disk = Disk(self)
-        t = self.person()
-        t.begin()
-        for _ in range(2):
-            t.answer("Which one\\? ", "1")
-        t.until("Which one\\? ")
+        disk, t = self.asked(2)
         disk.read_only()
         t.key("2")
         self.assertEqual(t.end(), 1)
