@@ -7,39 +7,17 @@
 #include "cli/check/check.hpp"
 #include "cli/play/play.hpp"
 #include "session/device.hpp"
+#include "studio.hpp"
 
 namespace {
 
 using namespace tactor;
 using namespace tactor::cli;
 
-session::device_list studio()
+session::device_list devices()
 {
-    session::device_list d;
-    d.array_name = "palm-2x4";
-    d.wanted = {.pcm = "hw:DAC8x", .channels = 8};
+    session::device_list d = tactor::test::studio();
     d.wanted.format = format_kind::s16;
-    d.pcm_is_configured = true;
-    d.pcms = {{.name = "hw:CARD=DAC8x,DEV=0",
-               .description = "snd_rpi_hifiberry_dac8x",
-               .hardware = true,
-               .wanted = true,
-               .opened = true,
-               .can = pcm_abilities{.channels = {{2, 2}, {8, 8}},
-                                    .rates_hz = {44100, 192000},
-                                    .usual_rates_hz = {44100, 48000},
-                                    .formats = {format_kind::s32, format_kind::s16},
-                                    .period_frames = {32, 4096},
-                                    .periods = {2, 32},
-                                    .buffer_frames = {64, 65536}}},
-              {.name = "hw:CARD=Busy,DEV=0",
-               .hardware = true,
-               .error = "it is busy",
-               .holders = {{812, "pipewire"}, {813, ""}}},
-              {.name = "default", .error = "not tried", .tried = false}};
-    gpio_chip_info chip{.path = "/dev/gpiochip0", .name = "gpiochip0", .label = "pinctrl-rp1"};
-    chip.lines = {{.offset = 17, .name = "GPIO17", .consumer = "tactor", .output = true}, {.offset = 18}};
-    d.chips = {chip, {.path = "/dev/gpiochip4", .error = "no permission"}};
     return d;
 }
 
@@ -76,7 +54,7 @@ std::string walked()
 
 int main()
 {
-    fmt::print("[{},\n{},\n", session::devices_json(studio()), walked());
+    fmt::print("[{},\n{},\n", session::devices_json(devices()), walked());
     print_json(troubled_run());
     fmt::print("]\n");
 }

@@ -9,11 +9,13 @@
 #include "cli/devices.hpp"
 #include "cli/play/play.hpp"
 #include "cli/settings.hpp"
+#include "studio.hpp"
 
 namespace texts_test {
 
 using namespace tactor;
 using namespace tactor::cli;
+using tactor::test::studio;
 
 namespace {
 
@@ -25,46 +27,6 @@ std::string spell(const error& e)
 std::string spell(const char* hint)
 {
     return spell(error(error_kind::bad_input, "soa_s", "no", hint).with_field("soa_s"));
-}
-
-gpio_chip_info header_chip()
-{
-    gpio_chip_info c{.path = "/dev/gpiochip0", .name = "gpiochip0", .label = "pinctrl-rp1"};
-    for (unsigned i = 0; i < 8; ++i)
-        c.lines.push_back({.offset = i});
-    c.lines[2] = {.offset = 2, .name = "GPIO17", .consumer = "tactor", .output = true};
-    c.lines[3] = {.offset = 3, .name = "GPIO18", .consumer = "", .output = false};
-    return c;
-}
-
-session::device_list studio()
-{
-    session::device_list d;
-    d.array_name = "palm-2x4";
-    d.wanted = {.pcm = "hw:DAC8x", .channels = 8};
-    d.pcm_is_configured = true;
-    const pcm_abilities can{.channels = {{2, 2}, {4, 4}, {8, 8}},
-                            .rates_hz = {44100, 192000},
-                            .usual_rates_hz = {44100, 48000, 96000, 192000},
-                            .formats = {format_kind::s32, format_kind::s16},
-                            .period_frames = {32, 4096},
-                            .periods = {2, 32},
-                            .buffer_frames = {64, 65536}};
-    d.pcms = {{.name = "hw:CARD=DAC8x,DEV=0",
-               .description = "snd_rpi_hifiberry_dac8x, HifiBerry DAC8x",
-               .hardware = true,
-               .wanted = true,
-               .opened = true,
-               .can = can},
-              {.name = "hw:CARD=Headphones,DEV=0",
-               .hardware = true,
-               .error = "it is busy: pipewire (process 812) plays on it (a sound server has it: the udev "
-                        "rules keep those off the card Tactor)",
-               .holders = {{812, "pipewire"}, {813, ""}}},
-              {.name = "default", .error = "not tried", .tried = false}};
-    d.chips = {header_chip(),
-               {.path = "/dev/gpiochip4", .error = "no permission to open /dev/gpiochip4 (do)"}};
-    return d;
 }
 
 constexpr const char* tired = "it is tired";
