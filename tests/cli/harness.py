@@ -102,6 +102,15 @@ pcm = "null"
 """
 
 
+def end_process(process):
+    """Ends a process if it still runs, and closes its streams."""
+    process.kill()
+    process.wait()
+    for stream in (process.stdin, process.stdout, process.stderr):
+        if stream is not None:
+            stream.close()
+
+
 class ToolTest(unittest.TestCase):
     """A test with a temporary folder, in which the tool runs."""
 
@@ -127,6 +136,12 @@ class ToolTest(unittest.TestCase):
             self.assertTrue(process is None or process.poll() is None, "it ended early")
             self.assertLess(time.monotonic(), deadline, "it hangs")
             time.sleep(0.01)
+
+    def start_tool(self, *args, program=TOOL, **more):
+        """Starts the tool, or another program, which ends with the test at the latest."""
+        process = subprocess.Popen([program, *map(str, args)], **({"cwd": self.dir, "env": self.env} | more))
+        self.addCleanup(end_process, process)
+        return process
 
     def run_tool(self, *args, stdin="", env=None, timeout=PATIENCE_S, before=None):
         """Runs the tool; `before` is called in the process before it becomes the tool."""

@@ -6,7 +6,7 @@ import re
 import select
 import subprocess
 
-from harness import PATIENCE_S, TOOL
+from harness import PATIENCE_S
 from websocket import TEXT, Peer
 
 
@@ -15,9 +15,8 @@ class Session:
 
     def __init__(self, test, args):
         self.test = test
-        self.process = subprocess.Popen([TOOL, *map(str, args)], cwd=test.dir, env=test.env, stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=0)
-        test.addCleanup(self.kill)
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+        self.process = test.start_tool(*args, **pipes, text=True, bufsize=0)
         self.said = ""
         self.address = self.told(r"page is at http://([^/]+)/\n")[1]
 
@@ -43,13 +42,6 @@ class Session:
 
     def participant(self):
         return Participant(self)
-
-    def kill(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
-            stream.close()
-        self.process.wait()
 
 
 class Participant(Peer):

@@ -7,7 +7,7 @@ import subprocess
 
 import jsonschema
 
-from harness import PATIENCE_S, ROOT, TOOL, ToolTest
+from harness import PATIENCE_S, ROOT, TOOL, ToolTest, end_process
 
 # Every message of a server is checked against its schema.
 MESSAGE = jsonschema.Draft202012Validator(
@@ -139,11 +139,7 @@ class Server:
         return self.process.returncode, out, err
 
     def kill(self):
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
-        for stream in (self.process.stdout, self.process.stderr):
-            stream.close()
+        end_process(self.process)
 
 
 class ServeTest(ToolTest):

@@ -26,7 +26,7 @@ LONG = ("--path", "M 0 10 L 40 30", "--duration", "7200")
 
 class Output(ToolTest):
     def start(self, *args, **more):
-        return subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, **({"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | more))
+        return self.start_tool(*args, **({"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | more))
 
     def ended(self, *args, **more):
         """Runs the tool; returns exit status, output and messages."""

@@ -20,7 +20,7 @@ except ImportError:
     print("SKIPPED: the live picture: python3-pyte is not here\n0 passed, 0 failed, 1 skipped")
     sys.exit(0)
 
-from harness import PATIENCE_S, TOOL, ToolTest, main  # noqa: E402
+from harness import PATIENCE_S, ToolTest, main  # noqa: E402
 
 LONG = ("play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D", "null")
 SHORT = ("play", "--path", "M 0 10 L 40 30", "--duration", "0.5", "-D", "null")
@@ -50,15 +50,12 @@ class Window:
         self.stream = pyte.ByteStream(self.screen)
         self.raw = b""
         self.set_size(columns, rows)
-        self.process = subprocess.Popen([TOOL, *args], cwd=test.dir, stdin=secondary, stdout=secondary, stderr=subprocess.PIPE,
-                                        env=test.env | {"TERM": "xterm", "LC_ALL": "C.UTF-8"} | env, start_new_session=True)
-        os.close(secondary)
         test.addCleanup(self.close)
+        self.process = test.start_tool(*args, stdin=secondary, stdout=secondary, stderr=subprocess.PIPE,
+                                       env=test.env | {"TERM": "xterm", "LC_ALL": "C.UTF-8"} | env, start_new_session=True)
+        os.close(secondary)
 
     def close(self):
-        self.process.kill()
-        self.process.wait()
-        self.process.stderr.close()
         if self.primary >= 0:
             os.close(self.primary)
 

@@ -57,8 +57,8 @@ class Play(ToolTest):
     def test_ctrl_c_fades_out_reports_and_exits_130(self):
         raw = self.dir / "out.raw"
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            p = subprocess.Popen([TOOL, "play", "park2016-1", "park2016-2", "--duration", "3600", "-D", f"raw:{raw}", "--sample-format", "s16",
-                                  "--level-dbfs", "0", "--format", "json", *WHOLE_FADE], cwd=self.dir, env=self.env, stdout=subprocess.PIPE)
+            p = self.start_tool("play", "park2016-1", "park2016-2", "--duration", "3600", "-D", f"raw:{raw}", "--sample-format", "s16",
+                                "--level-dbfs", "0", "--format", "json", *WHOLE_FADE, stdout=subprocess.PIPE)
             self.heard_for(p, raw, 18 * 4800)
             p.send_signal(number)
             out, _ = p.communicate(timeout=PATIENCE_S)
@@ -115,13 +115,8 @@ class Play(ToolTest):
         folder.mkdir()
         self.write("long.toml", '[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 3600\n')
 
-        def ignore():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-
-        p = subprocess.Popen([TOOL, "play", "long.toml", "park2016-1", "-D", f"raw:{folder}/out.raw", "--sample-format", "s32",
-                              *args], preexec_fn=ignore, cwd=self.dir, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                             text=True)
-        self.addCleanup(p.kill)
+        p = self.start_tool("play", "long.toml", "park2016-1", "-D", f"raw:{folder}/out.raw", "--sample-format", "s32", *args,
+                            preexec_fn=lambda: signal.signal(signal.SIGXFSZ, signal.SIG_IGN), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.heard_for(p, folder / "out.raw", 60000 * 36)
         _, hard = resource.prlimit(p.pid, resource.RLIMIT_FSIZE)
         size = (folder / "out.raw").stat().st_size  # more than a log has
@@ -215,9 +210,8 @@ class Play(ToolTest):
         self.refused(3, "play", *self.SHORT, "-D", "nowhere", "--log", "play.log")
 
     def test_ctrl_c_does_not_wait_for_a_buffer_of_a_minute(self):
-        p = subprocess.Popen([TOOL, "play", "park2016-1", "-D", "null", "--period-frames", "1048576",
-                              "--rate", "8000"], cwd=self.dir,
-                             env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        p = self.start_tool("play", "park2016-1", "-D", "null", "--period-frames", "1048576", "--rate", "8000", stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE)
         self.assertIn(b"latency 393216.0 ms", p.stdout.readline())
         p.send_signal(signal.SIGINT)
         # 0.4 s on a quiet machine; the period takes 131 s, the buffer 393 s.
@@ -261,7 +255,6 @@ class Play(ToolTest):
         self.refused(3, "play", *self.SHORT, "--config", "c.toml", "-D", "null")
         self.ok("play", *self.SHORT, "--config", "c.toml", "-D", "null", "--no-gpio")
         self.refused(2, "play", *self.SHORT, "--arm", "-D", "null")
-
 
 
 class KeptDrive(ToolTest):

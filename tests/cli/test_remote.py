@@ -6,7 +6,7 @@ import socket
 import subprocess
 import time
 
-from harness import PATIENCE_S, TOOL, main
+from harness import PATIENCE_S, main
 from serving import ServeTest
 
 BRIEF = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "0.05")
@@ -15,12 +15,7 @@ LONG = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "3
 
 class Remote(ServeTest):
     def begun(self, *args):
-        p = subprocess.Popen([TOOL, *args], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                             cwd=self.dir, env=self.env)
-        self.addCleanup(lambda: [f.close() for f in (p.stdin, p.stdout, p.stderr) if f])
-        self.addCleanup(p.wait)
-        self.addCleanup(p.kill)
-        return p
+        return self.start_tool(*args, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def fed(self, where, *lines):
         """Begins a live stroke from standard input."""

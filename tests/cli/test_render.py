@@ -212,7 +212,7 @@ class File(ToolTest):
 
     def test_ctrl_c_and_quit_end_a_long_render_and_leave_nothing(self):
         for number in (signal.SIGINT, signal.SIGQUIT):
-            process = subprocess.Popen([TOOL, *self.LONG], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True)
+            process = self.start_tool(*self.LONG, stderr=subprocess.PIPE, text=True)
             self.until(self.leftovers, process)
             process.send_signal(number)
             process.communicate(timeout=PATIENCE_S)

@@ -13,7 +13,7 @@ import stat
 import subprocess
 import time
 
-from harness import PATIENCE_S, TOOL, main
+from harness import PATIENCE_S, main
 from serving import LONG, SHORT, Client, ServeTest
 from websocket import Peer
 
@@ -443,9 +443,7 @@ class Limits(ServeTest):
             self.skipTest("there is no /dev/full")
         file = str(self.dir / "full.sock")
         with open("/dev/full", "w", encoding="ascii") as full:
-            p = subprocess.Popen([TOOL, "serve", "-D", "null", "--socket", file], stdout=full, stderr=subprocess.PIPE, text=True,
-                                 cwd=self.dir, env=self.env)
-        self.addCleanup(p.stderr.close)
+            p = self.start_tool("serve", "-D", "null", "--socket", file, stdout=full, stderr=subprocess.PIPE, text=True)
         said = next(line for line in p.stderr if "standard output" in line)
         self.assertIn("No space left on device: where it listens could not be said", said)
         c = Client(file)

@@ -97,10 +97,7 @@ class ServeOsc(ServeTest):
         s = self.serve("--osc", "0")
         port = s.where["osc"].rpartition(":")[2]
         # At a port that the kernel chooses: a free one may be taken by then.
-        dump = subprocess.Popen(["oscdump", "-L", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.addCleanup(dump.stdout.close)
-        self.addCleanup(dump.wait)
-        self.addCleanup(dump.kill)
+        dump = self.start_tool("-L", "0", program="oscdump", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.until(lambda: udp_ports(dump.pid), dump)
         ears, = udp_ports(dump.pid)
         watcher = s.client()

@@ -32,14 +32,8 @@ def touch(x, y, *more):
 
 
 class Examples(ToolTest):
-    def start(self, name, *args, **more):
-        p = subprocess.Popen([EXAMPLES / name, *map(str, args)], cwd=self.dir, env=self.env, stdout=subprocess.PIPE,
-                             stderr=subprocess.PIPE, text=True, **more)
-        self.addCleanup(p.stdout.close)
-        self.addCleanup(p.stderr.close)
-        self.addCleanup(p.wait)
-        self.addCleanup(p.kill)
-        return p
+    def start(self, name, *args):
+        return self.start_tool(*args, program=EXAMPLES / name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def run_example(self, name, *args, status=0):
         p = self.start(name, *args)
@@ -197,11 +191,8 @@ class Examples(ToolTest):
         server = Server(self, "--osc", "0")
         port = server.where["osc"].rpartition(":")[2]
         patch = self.write("client.pd", (ROOT / "examples/serve_client.pd").read_text(encoding="utf-8").replace("4002", port))
-        pd = subprocess.Popen(["pd", "-nogui", "-noaudio", "-nomidi", "-open", patch, "-send", "play bang"],
-                              stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(pd.stderr.close)
-        self.addCleanup(pd.wait)
-        self.addCleanup(pd.kill)
+        pd = self.start_tool("-nogui", "-noaudio", "-nomidi", "-open", patch, "-send", "play bang", program="pd", env=None,
+                             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         said = []
         for line in pd.stderr:
             said.append(line.strip())

@@ -118,10 +118,7 @@ class Flood(ServeTest):
 
     def floor(self, priority):
         path = self.dir / f"floor-{time.monotonic_ns()}.sock"
-        echo = subprocess.Popen([sys.executable, "-c", ECHO, path, str(priority)], stdout=subprocess.PIPE)
-        self.addCleanup(echo.stdout.close)
-        self.addCleanup(echo.wait)
-        self.addCleanup(echo.kill)
+        echo = self.start_tool("-c", ECHO, path, priority, program=sys.executable, stdout=subprocess.PIPE)
         echo.stdout.readline()
         client = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.addCleanup(client.close)
@@ -208,10 +205,7 @@ class Planning(ServeTest):
     def test_drafts_are_answered_while_somebody_draws(self):
         """A page asks 30 times a second for the percept of the stroke so far, 2 s long, beside twenty others."""
         s = self.serve()
-        others = subprocess.Popen([sys.executable, "-c", OTHERS, s.where["socket"]], stdout=subprocess.PIPE)
-        self.addCleanup(others.stdout.close)
-        self.addCleanup(others.wait)
-        self.addCleanup(others.kill)
+        others = self.start_tool("-c", OTHERS, s.where["socket"], program=sys.executable, stdout=subprocess.PIPE)
         others.stdout.readline()
         c = s.client()
         points = [[i / 60, 20 + 18 * math.cos(i / 20), 20 + 18 * math.sin(i / 30)] for i in range(121)]
