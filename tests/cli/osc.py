@@ -84,8 +84,7 @@ class Sender:
 
 def begun_by_a_time_tag(test, server):
     """Returns the lateness of a play, a drive and a live stroke of one bundle, s, and the time of a period, s."""
-    watcher = server.client()
-    watcher.ok("subscribe", events=["strokes"])
+    watcher = server.watcher()
     stream = watcher.ok("hello")["stream"]
     a = Sender(test, server)
     then = time.time() + 0.6

@@ -132,6 +132,12 @@ class Server:
         self.test.addCleanup(c.close)
         return c
 
+    def watcher(self, *events):
+        """Returns a client that hears of the strokes of all, or of other events."""
+        c = self.client()
+        c.ok("subscribe", events=events or ["strokes"])
+        return c
+
     def terminate(self, with_signal=signal.SIGTERM):
         """Ends it; returns its exit status and the rest of its output."""
         self.process.send_signal(with_signal)
@@ -156,6 +162,12 @@ class ServeTest(ToolTest):
         self.assertIsNone(s.where)
         self.assertEqual(s.process.returncode, status, s.errors)
         self.assertIn(says, s.errors)
+
+    def token(self, text="secret"):
+        """Returns the part of a configuration that asks for a token."""
+        file = self.write("token", text + "\n")
+        file.chmod(0o600)
+        return f'[serve]\ntoken_file = "{file}"\n'
 
     def check_error(self, error, code, what=None):
         self.assertEqual(error["code"], code, error)

@@ -97,8 +97,7 @@ class Remote(ServeTest):
 
     def test_stop_and_ctrl_c_end_it_with_their_status(self):
         s = self.serve()
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
         p = self.begun("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         self.ok("stop", "--socket", s.where["socket"])
@@ -128,8 +127,7 @@ class Remote(ServeTest):
 
     def test_nothing_begins_that_was_still_planned_at_ctrl_c(self):
         s = self.serve()
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
         much = ("--path", "M 0 0 L 40 40", "--duration", "240", "--soa", "0.001", "--burst", "0.001", "--level-dbfs", "-60")
         for signals in ((signal.SIGINT,), (signal.SIGINT, signal.SIGTERM)):
             p = self.begun("play", *much, "--socket", s.where["socket"])
@@ -145,8 +143,7 @@ class Remote(ServeTest):
 
     def test_a_second_signal_does_not_wait_for_the_fade(self):
         s = self.serve()
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
         p = self.begun("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         s.process.send_signal(signal.SIGSTOP)
@@ -185,8 +182,7 @@ class Remote(ServeTest):
 
     def test_lines_move_a_live_stroke_through_a_server(self):
         s = self.serve()
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
         p = self.fed(s.where["socket"], "10 10\n\n# a remark\n20 20 0.5\n")
         n = self.started(watcher)["stroke"]
         out, err = p.communicate("30 30", timeout=PATIENCE_S)

@@ -125,9 +125,7 @@ class Sockets(ServeTest):
                 pass
 
     def test_bad_addresses_are_refused_with_the_reason(self):
-        token = self.write("token", "fifteen letters\n")
-        token.chmod(0o600)
-        short = {"config": f'[serve]\ntoken_file = "{token}"\n', "says": "15 characters (put at least 16"}
+        short = {"config": self.token("fifteen letters"), "says": "15 characters (put at least 16"}
         for args, more in ((("--tcp", "nonsense:1:2"), {"says": "no address"}), (("--tcp", "0.0.0.0:0"), {"says": "token_file"}),
                            (("--http", "0.0.0.0:0"), {"says": "token_file"}),
                            (("--tcp", "0.0.0.0:0"), short), (("--http", "0.0.0.0:0"), short), (("--socket", "x" * 200), {"says": "name"}),
@@ -156,11 +154,10 @@ class Sockets(ServeTest):
             self.assertIsNone(c.next())
 
     def test_a_token_is_required(self):
-        token = self.write("token", "secret\n")
-        token.chmod(0o604)
-        config = f'[serve]\ntcp = 0\nmax_message_s = 600\ntoken_file = "{token}"\n'
+        config = self.token() + "tcp = 0\nmax_message_s = 600\n"
+        (self.dir / "token").chmod(0o604)
         self.refuses_to_start(2, config=config, says="others may read it")
-        token.chmod(0o600)
+        (self.dir / "token").chmod(0o600)
         s = self.serve(config=config)
         c = s.client(tcp=True)
         self.check_error(c.error("hello"), -32003, "token")
@@ -175,9 +172,7 @@ class Sockets(ServeTest):
         s.client().ok("status")
 
     def test_a_token_that_does_not_come_ends_the_connection(self):
-        token = self.write("token", "secret\n")
-        token.chmod(0o600)
-        s = self.serve("--tcp", "0", config=f'[serve]\ntoken_file = "{token}"\nmax_message_s = 0.2\n')
+        s = self.serve("--tcp", "0", config=self.token() + "max_message_s = 0.2\n")
         for said in (b"\n", b'{"jsonrpc":"2.0","id":1,"method":"hello"}\n'):
             c = s.client(tcp=True)
             with contextlib.suppress(BrokenPipeError, ConnectionResetError):
@@ -297,8 +292,7 @@ class Protocol(ServeTest):
 
     def test_a_leaving_client_ends_only_its_live_strokes_and_a_half_closed_one_gets_the_end(self):
         s = self.serve()
-        c, watcher, half = s.client(), s.client(), s.client()
-        watcher.ok("subscribe", events=["strokes", "touches", "stops"])
+        c, watcher, half = s.client(), s.watcher("strokes", "touches", "stops"), s.client()
         live = c.ok("begin", timeout_s=3600)["stroke"]
         c.raw(b'{"jsonrpc":"2.0","id":77,"method":"to","params":{"stroke":%d,"x_mm":1e400,"y_mm":0}}\n' % live)
         self.check_error(c.reply()["error"], -32602, "x_mm")
@@ -455,8 +449,7 @@ class Limits(ServeTest):
     def test_a_card_that_comes_later_is_used(self):
         conf = self.dir / "late.conf"
         conf.write_text("pcm.!default { type null }\n")
-        c = self.serve(device=("-D", "late"), env={"ALSA_CONFIG_PATH": str(conf), "XDG_RUNTIME_DIR": str(self.dir)}).client()
-        c.ok("subscribe", events=["stream"])
+        c = self.serve(device=("-D", "late"), env={"ALSA_CONFIG_PATH": str(conf), "XDG_RUNTIME_DIR": str(self.dir)}).watcher("stream")
         for method, params in (("play", SHORT), ("begin", {})):
             self.check_error(c.error(method, **params), -32000, "stream")
         conf.write_text("pcm.!default { type null }\npcm.late { type null }\n")
@@ -466,8 +459,7 @@ class Limits(ServeTest):
         self.assertEqual(c.await_end(n)["state"], "finished")
 
     def test_an_idle_stream_stops_and_starts_with_the_next_stroke(self):
-        c = self.serve("--idle-stop", "0.05").client()
-        c.ok("subscribe", events=["stream"])
+        c = self.serve("--idle-stop", "0.05").watcher("stream")
         # The notification may have come before anybody listened.
         while c.ok("status")["stream"]["state"] != "idle":
             pass

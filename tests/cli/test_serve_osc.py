@@ -100,8 +100,7 @@ class ServeOsc(ServeTest):
         dump = self.start_tool("-L", "0", program="oscdump", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.until(lambda: udp_ports(dump.pid), dump)
         ears, = udp_ports(dump.pid)
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
 
         def oscsend(*args):
             subprocess.run(["oscsend", "127.0.0.1", port, *args], check=True, timeout=PATIENCE_S)

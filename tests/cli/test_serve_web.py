@@ -154,9 +154,7 @@ class Web(ServeTest):
         self.assertEqual(s.peer().request("http://pi.lan/status", Origin=f"http://{s.address}")[0], 403)
 
     def test_the_token_is_required(self):
-        token = self.write("token", "secret\n")
-        token.chmod(0o600)
-        s = self.serve(config=f'[serve]\ntoken_file = "{token}"\n')
+        s = self.serve(config=self.token())
         self.assertEqual(s.peer().request("/")[0], 200)
         self.assertEqual(s.peer().request("/status")[0], 401)
         for wait_s in (0.2, 0.4):  # the later, the more guesses came from there
@@ -189,8 +187,7 @@ class Web(ServeTest):
         number = p.call("begin", timeout_s=86400)["result"]["stroke"]
         p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "to", "params": {"stroke": number, "x_mm": 5, "y_mm": 5}}).encode())
         self.assertEqual(p.message()["params"]["state"], "started")
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
         p.socket.close()
         self.assertEqual(watcher.await_end(number)["state"], "finished")
 

@@ -16,7 +16,7 @@ WSCAT = pathlib.Path(sys.argv.pop(3))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from harness import PATIENCE_S, ROOT, ToolTest, Wav, main  # noqa: E402
 from osc import Sender  # noqa: E402
-from serving import MESSAGE, Server  # noqa: E402
+from serving import MESSAGE, Server, ServeTest  # noqa: E402
 
 
 class Program:
@@ -57,11 +57,9 @@ class Program:
             yield self.said[-1]
 
 
-class Wscat(ToolTest):
+class Wscat(ServeTest):
     def serve(self):
-        s = Server(self, "--http", "0")
-        if s.where is None:
-            self.fail(s.errors)
+        s = super().serve("--http", "0")
         s.rpc = s.where["http"].replace("http:", "ws:") + "rpc"
         return s
 
@@ -168,8 +166,7 @@ class SuperCollider(ToolTest):
     def test_the_example(self):
         felt = self.dir / "felt.raw"
         s = Server(self, "--osc", "0", device=("-D", f"raw:{felt}"))
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
+        watcher = s.watcher()
         port = s.where["osc"].rpartition(":")[2]
         parts = blocks((ROOT / "examples/serve_client.scd").read_text(encoding="utf-8").replace("4002", port))
         self.assertEqual(len(parts), 6)
@@ -177,31 +174,22 @@ class SuperCollider(ToolTest):
         p, sclang = self.start(parts)
 
         sclang.say("/evaluate", handlers)
-        sclang.say("/evaluate", preset)
-        p.until("^stroke 1: started$")
-        p.until("^stroke 1: finished$")
-        told = watcher.notification(lambda m: m["params"]["state"] != "started")["params"]
-        self.assertEqual((told["state"], told["frames"]), ("finished", 70560))
-
-        sclang.say("/evaluate", circle)
-        p.until("^stroke 2: started$")
-        p.until("^stroke 2: finished$")
-        told = watcher.notification(lambda m: m["params"]["state"] != "started")["params"]
+        for number, block in ((1, preset), (2, circle), (3, later)):
+            sclang.say("/evaluate", block)
+            p.until(f"^stroke {number}: started$")
+            p.until(f"^stroke {number}: finished$")
+        of_preset, of_circle = (watcher.notification(lambda m: m["params"]["state"] != "started")["params"] for _ in range(2))
+        self.assertEqual((of_preset["state"], of_preset["frames"]), ("finished", 70560))
         # A second of points, however late they were sent.
-        self.assertEqual(told["state"], "finished")
-        self.assertGreater(told["frames"], 40000)
-
-        sclang.say("/evaluate", later)
-        p.until("^stroke 3: started$")
-        p.until("^stroke 3: finished$")
+        self.assertEqual(of_circle["state"], "finished")
+        self.assertGreater(of_circle["frames"], 40000)
 
         other = Sender(self, s)
         other.say("/tactor/play", 1, "M 0 0 L 40 40", "duration=300")
         self.assertEqual(other.next(), ["/tactor/stroke", 1, "started"])
         sclang.say("/evaluate", levels)
-        shown = p.until(r"^\[ (-?\d.*) \]$")[1]
-        while max(dbfs := [float(v) for v in shown.split(",")]) < -30:
-            shown = p.until(r"^\[ (-?\d.*) \]$")[1]
+        while max(dbfs := [float(v) for v in p.until(r"^\[ (-?\d.*) \]$")[1].split(",")]) < -30:
+            pass
         self.assertEqual(len(dbfs), 9)
         self.assertEqual(min(dbfs), -200)
         sclang.say("/evaluate", stop)
