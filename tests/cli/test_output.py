@@ -306,8 +306,11 @@ class Large(ToolTest):
         status, said, mb, _ = self.cost("plan", "long.csv", "--format", "csv")
         self.assertEqual((status, said), (0, ""))
         self.assertLess(mb, path.stat().st_size / MB + 32 + 32)  # points of 32 bytes; the tool itself
-        peaks = [self.cost("render", "park2016-1", "--duration", s, "-o", "-")[2] for s in ("1", "3600")]
-        self.assertLess((peaks[1] - peaks[0]) * MB, 100 * 3600 / 0.07)  # a tenth of a kilobyte a burst
+        # A tenth of a kilobyte a burst; 4 MB for a curve of any length.
+        for algorithm, most_bytes in (("park2016", 100 * 3600 / 0.07), ("continuous", 4 * MB)):
+            costs = [self.cost("render", "park2016-1", "--algorithm", algorithm, "--duration", s, "--rate", "8000", "-o", "-") for s in ("1", "3600")]
+            self.assertEqual([status for status, *_ in costs], [0, 0])
+            self.assertLess((costs[1][2] - costs[0][2]) * MB, most_bytes, algorithm)
 
     def test_a_text_for_a_tree_has_a_lower_limit(self):
         for name, first in (("big.svg", b"<svg>"), ("big.toml", b"#")):

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""tactor render: samples as a reader of the plan's JSON computes them, what sounds, and the fate of the file."""
+"""tactor render: samples as a reader of the plan's JSON computes them, and what sounds; test_output.py has the files."""
 import json
 import math
 import os
-import signal
-import subprocess
-import unittest
 
 import record
-from harness import PATIENCE_S, SANITIZED, TOOL, ToolTest, Wav, main, wav_bytes
+from harness import ToolTest, Wav, main, wav_bytes
 from record import PAIR, STROKES
 
 RATE = ("--rate", "8000")
@@ -194,46 +191,12 @@ class Sound(RenderTest):
             self.refused(2, "plan", *LINE, "--config", "c.toml")
         self.refused(2, "plan", "-", stdin='[stroke]\npath = "M 0 0 L 40 0"\nwaveform = "x.wav"\n')
 
-
-class File(ToolTest):
-    # A day's; with sanitizers planning it took half a minute.
-    LONG = ("render", "--path", "M 0 10 L 40 30", "--duration", "3600" if SANITIZED else "86400", "-o", "long.wav")
-
-    def leftovers(self):
-        return sorted(p.name for p in self.dir.iterdir() if p.name != "alsa.conf")
-
-    def test_a_failed_render_leaves_no_file_and_an_old_one_alone(self):
-        self.write("o.wav", "old")
-        (self.dir / "folder").mkdir()
-        for args in (("--path", "M 0 -50 L 40 -50", "-o", "o.wav"), ("park2016-1", "-o", "missing/o.wav"), ("park2016-1", "-o", "folder")):
-            self.refused(2, "render", *args)
-        self.assertEqual((self.dir / "o.wav").read_text(), "old")
-        self.assertEqual((self.leftovers(), list((self.dir / "folder").iterdir())), (["folder", "o.wav"], []))
-
-    def test_ctrl_c_and_quit_end_a_long_render_and_leave_nothing(self):
-        for number in (signal.SIGINT, signal.SIGQUIT):
-            process = self.start_tool(*self.LONG, stderr=subprocess.PIPE, text=True)
-            self.until(self.leftovers, process)
-            process.send_signal(number)
-            process.communicate(timeout=PATIENCE_S)
-            self.assertEqual((process.returncode, self.leftovers()), (128 + number, []))
-
     def test_the_largest_array_is_rendered_and_played(self):
         self.write("large.toml", '[array]\nname = "large"\ngrid = { rows = 32, columns = 32, pitch_mm = 2 }\n')
         stroke = ("--array", "large.toml", "--path", "M 0 0 L 4 4", "--duration", "0.1")
         self.ok("render", *stroke, "-o", "large.wav")
         self.assertEqual(Wav(self.dir / "large.wav").channels, 1024)
         self.ok("play", *stroke, "-D", "null")
-
-    @unittest.skipIf(SANITIZED, "a sanitizer keeps freed memory for a while")
-    def test_memory_does_not_grow_with_the_length(self):
-        def peak(seconds):
-            process = subprocess.Popen([TOOL, *self.LONG[:3], "--duration", str(seconds), "--algorithm", "continuous", *RATE, "-o", "m.wav"],
-                                       cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL)
-            _, status, usage = os.wait4(process.pid, 0)
-            self.assertEqual(status, 0)
-            return usage.ru_maxrss
-        self.assertLess(peak(3600), peak(1) + 4096)
 
 
 if __name__ == "__main__":
