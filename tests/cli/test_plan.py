@@ -150,10 +150,7 @@ class Options(PlanTest):
             with self.subTest(command=command[0]):
                 self.refused(2, *command, "park2016-3", *LOW)
                 self.ok(*command, "park2016-3", *LOW, "--fit")
-        p = self.plan("park2016-3", *LOW, "--fit")
-        for place in places(p):
-            self.assertAlmostEqual(math.dist(place, (30, 10)), 10, 6)
-        self.assertEqual(len(p["bursts"]), 31)  # with its original time
+        self.assertEqual(len(self.plan("park2016-3", *LOW, "--fit")["bursts"]), 31)  # with its original time
 
     def test_json_and_text_report_the_fit(self):
         self.assertNotIn("fit", self.plan("wave-2x4", *LOW)["stroke"])
@@ -204,8 +201,7 @@ class Strokes(PlanTest):
     def test_a_place_and_a_duration_are_a_tap(self):
         def is_tap(plan):
             self.assertEqual((plan["stroke"]["length_mm"], plan["stroke"]["duration_s"], set(places(plan))), (0, 1.0, {(20, 20)}))
-        for data in ("M 20 20", "M 20 20 Z", "M20,20L20,20", "M 20 20 l 0 0 l 0 0"):
-            is_tap(self.plan("--path", data, "--duration", "1"))
+        is_tap(self.plan(*TAP))
         for algorithm in ("park2016", "continuous"):
             for command in COMMANDS:
                 self.ok(*command, *TAP, "--algorithm", algorithm)
@@ -299,14 +295,9 @@ class Strokes(PlanTest):
             self.refused(2, "plan", *args)
         self.refused(2, "plan", "-", stdin="[stroke]\n" + far)
 
-    def test_every_example_can_be_planned(self):
-        arrays = sorted((ROOT / "examples/arrays").glob("*.toml"))
-        for array in arrays:
-            first = self.plan("--path", "M 0 0 L 1 0", "--array", array, "--outside", "clamp")["array"]["tactors"][0]
-            at = f"M {first['x_mm']} {first['y_mm']} l 0.1 0.1"
-            self.assertTrue(self.plan("--path", at, "--array", array, "--outside", "clamp")["bursts"])
+    def test_every_example_can_be_planned(self):  # test_plot.py plans on each array
         strokes = [f for f in sorted((ROOT / "examples/strokes").iterdir()) if f.suffix in (".toml", ".csv", ".svg")]
-        self.assertTrue(arrays and {f.suffix for f in strokes} == {".toml", ".csv", ".svg"})
+        self.assertEqual({f.suffix for f in strokes}, {".toml", ".csv", ".svg"})
         for stroke in strokes:
             self.plan(stroke, *(LOW if stroke.stem.endswith("-2x4") else ()))
 
