@@ -163,7 +163,6 @@ class Options(PlanTest):
         self.assertIn("onto the line of the array", self.ok("plan", "park2016-1", "--array", ARM, "--fit").stdout)
 
     def test_compensation_is_told_by_every_command(self):
-        (self.dir / "p.json").write_text(self.ok("plan", "park2016-1", *MOVE, "--format", "json").stdout)
         for command in (*COMMANDS, ("plan", "--format", "csv")):
             said = self.both(command[0], "park2016-1", *MOVE, *command[1:])
             for word in ("low-speed", "sigma 5 mm", "sigma_v 100 mm/s", "built for taps"):

@@ -17,6 +17,12 @@ class Remote(ServeTest):
     def begun(self, *args):
         return self.start_tool(*args, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
+    def ended(self, p, *statuses, stdin=None):
+        """Waits until the tool ends with one of these exit statuses; returns its output and its messages."""
+        out, err = p.communicate(stdin, timeout=PATIENCE_S)
+        self.assertIn(p.returncode, statuses, out + err)
+        return out, err
+
     def fed(self, where, *lines):
         """Begins a live stroke from standard input."""
         p = self.begun("play", "--live", "-", "--socket", where)
@@ -101,14 +107,11 @@ class Remote(ServeTest):
         p = self.begun("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         self.ok("stop", "--socket", s.where["socket"])
-        out, err = p.communicate(timeout=PATIENCE_S)
-        self.assertEqual(p.returncode, 1, out)
-        self.assertIn("cancelled", err)
+        self.assertIn("cancelled", self.ended(p, 1)[1])
         p = self.begun("play", *LONG, "--socket", s.where["socket"])
         n = self.started(watcher)["stroke"]
         p.send_signal(signal.SIGINT)
-        p.communicate(timeout=PATIENCE_S)
-        self.assertEqual(p.returncode, 130)
+        self.ended(p, 130)
         self.assertEqual(watcher.await_end(n)["state"], "cancelled")
 
     def test_a_signal_ends_a_client_whose_server_does_not_answer(self):
@@ -122,8 +125,7 @@ class Remote(ServeTest):
                     with door.accept()[0] as taken:
                         self.assertTrue(taken.recv(1))  # it has asked
                         p.send_signal(sent)
-                        p.communicate(timeout=PATIENCE_S)
-                    self.assertEqual(p.returncode, status, command)
+                        self.ended(p, status)
 
     def test_nothing_begins_that_was_still_planned_at_ctrl_c(self):
         s = self.serve()
@@ -136,8 +138,7 @@ class Remote(ServeTest):
             for sent in signals:
                 p.send_signal(sent)
                 time.sleep(0.05)
-            p.communicate(timeout=PATIENCE_S)
-            self.assertIn(p.returncode, (130, 143))
+            self.ended(p, 130, 143)
             end = self.started(watcher, ("started", "finished", "cancelled", "interrupted"))
             self.assertEqual((end["state"], end["frames"], end["reason"]), ("cancelled", 0, "cancelled by its client"))
 
@@ -149,8 +150,7 @@ class Remote(ServeTest):
         s.process.send_signal(signal.SIGSTOP)
         for sent in (signal.SIGINT, signal.SIGTERM):  # two of one kind may be merged
             p.send_signal(sent)
-        p.communicate(timeout=PATIENCE_S)
-        self.assertIn(p.returncode, (130, 143))
+        self.ended(p, 130, 143)
         s.process.send_signal(signal.SIGCONT)
 
     def test_status_watches(self):
@@ -185,14 +185,11 @@ class Remote(ServeTest):
         watcher = s.watcher()
         p = self.fed(s.where["socket"], "10 10\n\n# a remark\n20 20 0.5\n")
         n = self.started(watcher)["stroke"]
-        out, err = p.communicate("30 30", timeout=PATIENCE_S)
-        self.assertEqual(p.returncode, 0, err)
-        self.assertIn("live: played", out)
+        self.assertIn("live: played", self.ended(p, 0, stdin="30 30")[0])
         self.assertEqual(watcher.await_end(n)["state"], "finished")
         p = self.fed(s.where["socket"], "10 10\n")
         n = self.started(watcher)["stroke"]
-        self.assertIn("standard input:2:", p.communicate("10 x\n", timeout=PATIENCE_S)[1])
-        self.assertEqual(p.returncode, 2)
+        self.assertIn("standard input:2:", self.ended(p, 2, stdin="10 x\n")[1])
         self.assertIn(watcher.await_end(n)["state"], ("cancelled", "finished"))
         # The server's interruption is a failure.
         p = self.fed(self.serve("--socket", self.dir / "b.sock", config="[serve]\nmax_stroke_s = 0.1\n").where["socket"], "10 10\n")
@@ -219,8 +216,7 @@ class Remote(ServeTest):
                                  {"reason": "", "frames": 1, "started_s": None, "late_s": 0}}
                     lines.write(json.dumps({"jsonrpc": "2.0"} | ({"id": m["id"]} if "id" in m else {}) | reply) + "\n")
                     lines.flush()
-        out, err = p.communicate(timeout=PATIENCE_S)
-        self.assertEqual((p.returncode, err), (0, ""), out)
+        self.assertEqual(self.ended(p, 0)[1], "")
 
     def test_points_that_a_limit_refuses_are_sent_again_and_none_is_lost(self):
         taken, refused = [], set()
@@ -293,8 +289,7 @@ class Remote(ServeTest):
         p = self.begun("play", "--live", "-", "-D", "null")
         self.assertIn("null", p.stdout.readline())
         p.send_signal(signal.SIGINT)
-        p.communicate(timeout=PATIENCE_S)
-        self.assertEqual(p.returncode, 130)
+        self.ended(p, 130)
 
 
 if __name__ == "__main__":
