@@ -24,18 +24,13 @@ class Program:
 
     def __init__(self, test, command, fd=None, **more):
         self.said = []
-        self.process = subprocess.Popen(list(map(str, command)), **more)
+        self.process = test.start_tool(*command[1:], program=command[0], **more)
         self.output = self.process.stdout if fd is None else os.fdopen(fd, "rb")
+        test.addCleanup(self.output.close)
         # A process that hangs is ended, and its lines with it.
         patience = threading.Timer(PATIENCE_S, self.process.kill)
         patience.start()
-        for undo in (self.close, self.process.wait, self.process.kill, patience.cancel):
-            test.addCleanup(undo)
-
-    def close(self):
-        for stream in (self.process.stdin, self.output):
-            if stream is not None:
-                stream.close()
+        test.addCleanup(patience.cancel)
 
     def until(self, pattern):
         """Returns the match in the first line from here on that has it."""
@@ -159,7 +154,7 @@ class SuperCollider(ToolTest):
         # Without the user's files, and leaving none in their home.
         env = self.env | NO_SCREEN | {"HOME": str(self.dir), "XDG_CONFIG_HOME": str(self.dir / "config"), "XDG_DATA_HOME": str(self.dir / "data"),
                                       "XDG_RUNTIME_DIR": str(self.dir)}
-        p = Program(self, ["sclang", driver], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env, cwd=self.dir)
+        p = Program(self, ["sclang", driver], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env)
         where = p.until(r"^evaluates at (\d+)$")[1]
         return p, Sender(self, type("At", (), {"where": {"osc": f"127.0.0.1:{where}"}}))
 
