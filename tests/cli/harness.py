@@ -16,6 +16,7 @@ import unittest
 
 TOOL = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(ROOT / "tests/study"))  # studies.py
 
 
 class Messages:

@@ -12,10 +12,8 @@ import sys
 
 import jsonschema
 from harness import ROOT, ToolTest, main, wav_bytes
+import studies
 from record import PAIR, STROKES
-
-sys.path.insert(0, str(ROOT / "tests/study"))
-import studies  # noqa: E402
 
 sys.path.insert(0, str(ROOT / "man"))
 import write_fields  # noqa: E402

@@ -11,13 +11,10 @@ import select
 import signal
 import struct
 import subprocess
-import sys
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
-import studies
 
 from experiments import ExperimentTest, contents
 from harness import GRID, PATIENCE_S, TOOL, ToolTest, Wav, main, wav_bytes
+import studies
 
 ESCAPE = "\x1b[31m"
 MB = 1 << 20

@@ -11,7 +11,6 @@ import time
 from harness import ALSA_CONFIG, GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
 from serving import Server
 
-PATIENCE = str(PATIENCE_S)
 # The fade of 10 ms is in one period: it is written whole, even where the machine stands still beyond the wait for it.
 WHOLE_FADE = ("--period-frames", "1024", "--periods", "3")
 
@@ -156,14 +155,14 @@ class Play(ToolTest):
         self.assertRegex(r.stderr, r"tactor: long.toml: interrupted after \d+\.\d+ s: .*--reopen-s")
 
     def test_an_interrupted_stroke_voids_the_run_where_asked_for(self):
-        r, _, _ = self.on_failing_device("--void-on-xrun", "--reopen-s", PATIENCE)
+        r, _, _ = self.on_failing_device("--void-on-xrun", "--reopen-s", PATIENCE_S)
         self.assertEqual(r.returncode, 1)
         self.assertRegex(r.stderr, r"tactor: long.toml: interrupted after .*void")
         self.assertIn("long.toml: interrupted after", r.stdout)
         self.assertNotIn("park2016-1", r.stdout)
 
     def test_a_device_that_comes_back_gets_the_next_stroke(self):
-        r, told, states = self.on_failing_device("--format", "json", "--reopen-s", PATIENCE, "--log", "play.log", "--verbose", comes_back=True)
+        r, told, states = self.on_failing_device("--format", "json", "--reopen-s", PATIENCE_S, "--log", "play.log", "--verbose", comes_back=True)
         # The first did not finish, whatever came after it.
         self.assertEqual((r.returncode, states), (1, ["interrupted", "finished"]), r.stderr)
         self.assertEqual(told["counters"]["reopened"], 1)

@@ -5,17 +5,13 @@ import itertools
 import json
 import math
 import os
-import pathlib
 import re
 import shutil
 import subprocess
-import sys
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
-import studies
 
 from harness import ROOT, SANITIZED, main
 from pictures import BRUSH, NS, PlotTest, Png, Svg, box, number, overlap
+import studies
 
 SEVERAL = ROOT / "examples/strokes/several.toml"
 KNOCKS = ROOT / "examples/strokes/knocks.toml"

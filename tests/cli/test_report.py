@@ -6,14 +6,11 @@ import json
 import re
 import shutil
 import statistics
-import sys
 
 import experiments
 from experiments import ExperimentTest, contents, read_table
-from harness import ROOT, main
-
-sys.path.insert(0, str(ROOT / "tests/study"))
-import studies  # noqa: E402
+from harness import main
+import studies
 
 RUNS = ("similarity", "uniformity", "similarityrating", "uniformityrating")
 
