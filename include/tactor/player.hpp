@@ -4,6 +4,7 @@
 /// they sound (from a sensor, a finger, a simulation), and it reports about strokes and streams that ended.
 #pragma once
 
+#include <chrono>
 #include <compare>
 #include <concepts>
 #include <cstddef>
@@ -25,18 +26,11 @@
 #include <tactor/render.hpp>
 #include <tactor/sink.hpp>
 
-namespace tactor::detail {
-
-/// Types that can count frames or nanoseconds. They exclude double: seconds would become a count of 0 or 1.
-template <typename T>
-concept whole_number = std::integral<T> && !std::same_as<T, bool>;
-template <typename T>
-concept no_count = std::floating_point<T> || std::same_as<T, bool>;
-
-} // namespace tactor::detail
-
 namespace tactor {
 inline namespace v0 {
+
+/// A time of CLOCK_MONOTONIC, to the nanosecond.
+using monotonic_time = std::chrono::steady_clock::time_point;
 
 /// Identifier of a stroke of a player. A plain value. The number is unique in one player; 0 means no stroke.
 struct stroke_id {
@@ -185,8 +179,8 @@ public:
     /// Bursts: the next burst has this place. It starts at most one SOA later. With live_options::smooth_s,
     /// both begin at that time to move there.
     ///
-    /// `at_ns`: time of the touch, CLOCK_MONOTONIC; stroke_report::delay counts from it. None: now. It does
-    /// not change when the stroke gets there.
+    /// `at`: time of the touch; stroke_report::delay counts from it. None: now. It does not change when the
+    /// stroke gets there.
     ///
     /// Returns false if the stroke has ended; its report says why. If the phantom model gives a tactor more
     /// than the intensity (after the intensity scale), the stroke ends interrupted.
@@ -196,12 +190,7 @@ public:
     ///         pass through, too, and the stroke ends interrupted, with what() as its reason; std::bad_alloc
     ///         does not end it. error (runtime) if such a model calls this for the stroke that asks it. The
     ///         model may end or cancel that stroke, but must not wait for another thread that calls this.
-    bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<std::int64_t> at_ns = {});
-    /// Deleted: a time stamp is not an intensity, and seconds are not a time stamp.
-    template <std::same_as<std::int64_t> T>
-    bool to(double x_mm, double y_mm, T time_stamp) = delete;
-    template <std::floating_point T>
-    bool to(double x_mm, double y_mm, double intensity, T seconds) = delete;
+    bool to(double x_mm, double y_mm, double intensity = 1.0, std::optional<monotonic_time> at = {});
 
     /// Announces that no more points come. The stroke fades out (continuous) or plays its last burst to the
     /// end, and ends finished.
@@ -232,36 +221,29 @@ TACTOR_KIND(start_kind);
 /// Start of a stroke. A plain value.
 class start_at {
 public:
-    start_at(const auto& frame_or_seconds) = delete; ///< name the unit: frame() or time()
-
     /// Starts with the next period that is written.
     [[nodiscard]] static constexpr start_at now() noexcept { return {}; }
     /// Starts at a frame of the stream. If that frame has been written already, the stroke starts as soon as
     /// possible. If it never comes, the stroke waits until it is cancelled. The frame count continues over an
     /// xrun.
     /// \throws error (bad_input) for a negative frame.
-    template <detail::whole_number T>
-    [[nodiscard]] static constexpr start_at frame(T stream_frame)
+    [[nodiscard]] static constexpr start_at frame(std::integral auto stream_frame)
     {
-        if constexpr (std::signed_integral<T>)
+        if constexpr (std::signed_integral<decltype(stream_frame)>)
             if (stream_frame < 0)
                 refuse_frame(stream_frame);
         start_at s;
         s.frame_ = static_cast<std::uint64_t>(stream_frame);
         return s;
     }
-    template <detail::no_count T>
-    static start_at frame(T seconds) = delete;
-    /// Starts so that the first sample is at the DAC at this time, CLOCK_MONOTONIC in ns, within half a frame
-    /// and the error of the DAC clock. If the time has passed, the stroke starts as soon as possible; see
-    /// stroke_report::late_s. Any number is valid.
-    template <detail::no_count T>
-    static start_at time(T seconds) = delete;
-    [[nodiscard]] static constexpr start_at time(std::int64_t monotonic_ns) noexcept
+    /// Starts so that the first sample is at the DAC at this time, within half a frame and the error of the
+    /// DAC clock. If the time has passed, the stroke starts as soon as possible; see stroke_report::late_s.
+    /// Any time is valid.
+    [[nodiscard]] static constexpr start_at time(monotonic_time t) noexcept
     {
         start_at s;
         s.kind_ = start_kind::time;
-        s.time_ns_ = monotonic_ns;
+        s.time_ = t;
         return s;
     }
     /// Arms the stroke: it waits silently for an edge at player_lines::trigger or for player::fire(),
@@ -275,7 +257,7 @@ public:
 
     [[nodiscard]] constexpr start_kind what() const noexcept { return kind_; }
     [[nodiscard]] constexpr std::uint64_t stream_frame() const noexcept { return frame_; }
-    [[nodiscard]] constexpr std::int64_t time_ns() const noexcept { return time_ns_; }
+    [[nodiscard]] constexpr monotonic_time when() const noexcept { return time_; }
 
 private:
     constexpr start_at() noexcept = default;
@@ -283,7 +265,7 @@ private:
 
     start_kind kind_ = start_kind::frame;
     std::uint64_t frame_ = 0;
-    std::int64_t time_ns_ = 0;
+    monotonic_time time_ = {};
 };
 
 /// Options of a player.
@@ -428,12 +410,10 @@ public:
     /// after that. A stroke for start_at::frame() so many frames later joins it to the frame.
     [[nodiscard]] std::optional<std::uint64_t> first_frame(stroke_id id) const;
 
-    /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as soon
-    /// as possible if that time has passed. Returns the number of strokes. An edge at the trigger line does
-    /// the same, player_lines::trigger_delay_s after its own time. Does not block.
-    std::size_t fire(std::int64_t monotonic_ns);
-    template <detail::no_count T>
-    std::size_t fire(T seconds) = delete;
+    /// Starts all armed strokes: their first samples are at the DAC at a time, or as soon as possible if that
+    /// time has passed. Returns the number of strokes. An edge at the trigger line does the same,
+    /// player_lines::trigger_delay_s after its own time. Does not block.
+    std::size_t fire(monotonic_time t);
 
     /// Begins a stroke that the program feeds point by point. It is silent until its first point, which must
     /// come within live_options::timeout_s. It ends in a report like every stroke. At most 64 such strokes
@@ -451,13 +431,11 @@ public:
     /// without waiting. It also returns false after stop() and when the stream has ended.
     bool cancel_all();
 
-    /// Blocks until the stroke has ended, at most for timeout_s if it is given, and returns how it ended. In
+    /// Blocks until the stroke has ended, at most for `timeout` if it is given, and returns how it ended. In
     /// a handler it does not block, because reports come from the handler's own thread. wait() returns each
     /// report once; the handler, if any, gets it as well. Of reports for which nobody waits, the 4096 newest
     /// are kept.
-    wait_result wait(stroke_id id, std::optional<double> timeout_s = {});
-    template <std::same_as<std::int64_t> T>
-    wait_result wait(stroke_id id, T nanoseconds) = delete;
+    wait_result wait(stroke_id id, std::optional<std::chrono::duration<double>> timeout = {});
 
     /// Sets a handler that the control thread calls for each stroke that begins, soon after its first frame
     /// went to the device and before its report. It gets the CLOCK_MONOTONIC time, ns, at which that frame is

@@ -542,9 +542,9 @@ stroke_id live_stroke::id() const noexcept
     return impl_->id;
 }
 
-bool live_stroke::to(double x_mm, double y_mm, double intensity, std::optional<std::int64_t> at_ns)
+bool live_stroke::to(double x_mm, double y_mm, double intensity, std::optional<monotonic_time> at)
 {
-    return impl_->to({x_mm, y_mm}, intensity, at_ns);
+    return impl_->to({x_mm, y_mm}, intensity, at ? std::optional(rt::to_ns(*at)) : std::nullopt);
 }
 
 void live_stroke::end() noexcept

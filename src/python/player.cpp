@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <cstdint>
@@ -268,16 +269,16 @@ py::object next_event(player_handle& h)
     return py::make_tuple(l.kind, l.text);
 }
 
-std::int64_t nanoseconds(double s)
+monotonic_time to_time(double s)
 {
-    return static_cast<std::int64_t>(std::llround(s * 1e9));
+    return monotonic_time(std::chrono::nanoseconds(std::llround(s * 1e9)));
 }
 
 std::uint32_t submit(const player_handle& h, const score& s, bool armed, std::optional<double> at_s,
                      std::optional<std::int64_t> frame)
 {
     const start_at start = armed   ? start_at::trigger()
-                           : at_s  ? start_at::time(nanoseconds(*at_s))
+                           : at_s  ? start_at::time(to_time(*at_s))
                            : frame ? start_at::frame(*frame)
                                    : start_at::now();
     return h.use([&](player& p) { return p.submit(s, start).number; });
@@ -394,7 +395,7 @@ void bind_live(py::module_& m)
         .def(
             "to",
             [](const live_handle& l, double x, double y, double intensity, std::optional<double> at_s) {
-                return l.use().to(x, y, intensity, at_s ? std::optional(nanoseconds(*at_s)) : std::nullopt);
+                return l.use().to(x, y, intensity, at_s ? std::optional(to_time(*at_s)) : std::nullopt);
             },
             free_call())
         .def(
@@ -431,7 +432,7 @@ void bind_player(py::module_& m)
         .def(
             "fire",
             [](const player_handle& h, double at_s) {
-                return h.use([t = nanoseconds(at_s)](player& p) { return p.fire(t); });
+                return h.use([t = to_time(at_s)](player& p) { return p.fire(t); });
             },
             free_call())
         .def(

@@ -4,6 +4,7 @@
 /// of day. Async-signal-safe.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <ctime>
 
@@ -21,6 +22,16 @@ inline std::int64_t monotonic_ns() noexcept
     timespec t{};
     ::clock_gettime(CLOCK_MONOTONIC, &t);
     return to_ns(t);
+}
+
+/// Convert times of CLOCK_MONOTONIC, which std::chrono counts as its steady clock.
+constexpr std::chrono::steady_clock::time_point to_time(std::int64_t monotonic_ns) noexcept
+{
+    return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(monotonic_ns));
+}
+constexpr std::int64_t to_ns(std::chrono::steady_clock::time_point t) noexcept
+{
+    return std::chrono::nanoseconds(t.time_since_epoch()).count();
 }
 
 inline std::int64_t boottime_ns() noexcept

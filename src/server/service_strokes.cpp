@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "rt/clock.hpp"
 #include "server/faults.hpp"
 #include "session/log.hpp"
 
@@ -80,7 +81,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         start_at when = asked.armed ? start_at::trigger() : start_at::now();
         if (asked.at_ns || (!asked.armed && scores.size() > 1)) {
             const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
-            when = start_at::time(at);
+            when = start_at::time(rt::to_time(at));
             if (asked.at_ns)
                 r.asked_ns = at;
         }
@@ -288,7 +289,7 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
         no_stream(stream_.reason());
     // Armed strokes keep a stream going: if it was stopped for want of strokes, there is nothing to start.
     const std::int64_t now = options_.now_ns();
-    std::size_t n = p == nullptr ? 0 : p->fire(now);
+    std::size_t n = p == nullptr ? 0 : p->fire(rt::to_time(now));
     for (auto& [number, r] : strokes_) {
         if (r.state != "armed" || r.player != stream_.number())
             continue;
@@ -367,7 +368,8 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
         if (out != nullptr)
             try {
                 add_submission(
-                    r, out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r)));
+                    r, out->submit(later, start_at::time(rt::to_time(at_ns + std::llround(after_s * 1e9))),
+                                   level_db(r)));
                 r.state = "waiting";
                 continue;
             } catch (const error& e) {

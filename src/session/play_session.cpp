@@ -133,7 +133,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
 {
     player& p = *stream_.current();
     for (;;) {
-        if (const auto report = p.wait(playing_, 0.0)) {
+        if (const auto report = p.wait(playing_, std::chrono::seconds(0))) {
             // The loss of the device is reported after the strokes that it interrupted.
             if (report->state == state_kind::interrupted)
                 wait_for(-1, settled_ms);

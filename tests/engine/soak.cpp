@@ -124,7 +124,7 @@ private:
             const std::uint64_t kind = random() % 5;
             r_.submit(random() % 20 == 0 ? longer_ : shorter_,
                       kind == 0   ? start_at::trigger()
-                      : kind == 1 ? start_at::time(r_.now + 3'000'000'000)
+                      : kind == 1 ? start_at::time(rt::to_time(r_.now + 3'000'000'000))
                       : kind == 2 ? start_at::frame(r_.status().written + 20'000)
                                   : start_at::now());
         }
@@ -364,7 +364,8 @@ private:
         case 0:
             return start_at::frame(r_.status().written + random_() % 20'000);
         case 1:
-            return start_at::time(r_.now + static_cast<std::int64_t>(random_() % 400'000'000) - 50'000'000);
+            return start_at::time(
+                rt::to_time(r_.now + static_cast<std::int64_t>(random_() % 400'000'000) - 50'000'000));
         case 2:
             return start_at::trigger();
         default:

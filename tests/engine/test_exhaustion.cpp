@@ -235,7 +235,7 @@ COUNTING_TEST_CASE("every call without memory reports it at any of its allocatio
 COUNTING_TEST_CASE("a stroke that finds no memory for its level or itself is not played")
 {
     const score s = tone(0.1);
-    for (const start_at when : {start_at::frame(0), start_at::time(0), start_at::trigger()}) {
+    for (const start_at when : {start_at::frame(0), start_at::time(rt::to_time(0)), start_at::trigger()}) {
         engine::link link;
         engine::feeder feed(link, 24'000);
         bool fits = false;
@@ -271,7 +271,8 @@ COUNTING_TEST_CASE("the player's thread waits for memory: every stroke ends and 
     constexpr unsigned strokes = 30;
     const score s = tone(0.002);
     for (unsigned i = 0; i < strokes; ++i) {
-        const stroke_id id = p.submit(s, i % 3 == 0 ? start_at::time(0) : start_at::frame(96 * i));
+        const stroke_id id =
+            p.submit(s, i % 3 == 0 ? start_at::time(rt::to_time(0)) : start_at::frame(96 * i));
         if (i % 7 == 0)
             p.cancel(id);
     }

@@ -269,7 +269,7 @@ TEST_CASE("the lateness of a timed stroke is known even where the clock of its b
         CAPTURE(then.valid());
         engine::link link;
         engine::feeder feed(link, 4800);
-        feed.submit({1}, tone(0.01), start_at::time(1'000'000'000));
+        feed.submit({1}, tone(0.01), start_at::time(rt::to_time(1'000'000'000)));
         feed.pump(9600, clock);
         const engine::ticket t = take_all(link).front().score;
         feed.pump(9600, then); // the device was started anew

@@ -280,7 +280,7 @@ TEST_CASE("a handler may call all members, and replace itself")
         CHECK(live.to(1.0, 1.0));
         live.cancel();
         p.on_report({});
-        CHECK(p.fire(0) == 1);
+        CHECK(p.fire({}) == 1);
         first.count_down();
     });
     const stroke_id id = p.submit(tone(0.001));
@@ -301,7 +301,7 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
     CHECK_THROWS_AS(p.submit(tone(0.01)), error);
     CHECK_THROWS_AS(p.submit(tone(0.01), start_at::trigger()), error);
     CHECK_THROWS_AS(p.begin(), error);
-    CHECK(p.fire(0) == 0);
+    CHECK(p.fire({}) == 0);
     CHECK_FALSE(p.cancel(id));
     CHECK_FALSE(live.to(1.0, 1.0));
     CHECK(p.wait(id)->state == state_kind::cancelled);
@@ -438,7 +438,7 @@ TEST_CASE("objects that a handler holds may call the player when they are destro
         const stroke_id id = p.submit(tone(0.01), start_at::trigger());
         for (int i = 0; i < 2; ++i)
             REQUIRE(p.on_end(id, [held = std::make_shared<asking>(p, gone)](const stroke_report&) {}));
-        p.fire(0);
+        p.fire({});
         await(gone, 2);
     }
     SUBCASE("of beginnings, replaced by itself")

@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -101,7 +102,7 @@ player_lines with(const std::shared_ptr<line_state>& s)
 }
 
 // Only a failure takes so long.
-constexpr double long_enough_s = 60.0;
+constexpr std::chrono::seconds long_enough(60);
 
 /// Counts the heap calls of the thread that switches it, from the first time on.
 class counting_output final : public enable_line {
@@ -422,23 +423,27 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
 {
     const auto state = std::make_shared<line_state>();
     state->works = false;
-    player p(open_alsa(nine()), palm(), {}, with(state));
-    CHECK(play_to_failure(p, tone(0.05)).find("the amplifier's line cannot be switched") !=
+    std::optional<player> p(std::in_place, open_alsa(nine()), palm(), player_options{}, with(state));
+    CHECK(play_to_failure(*p, tone(0.05)).find("the amplifier's line cannot be switched") !=
           std::string::npos);
-    p.stop();
-    CHECK_THROWS_AS(p.submit(tone(0.05)), error);
+    p->stop();
+    CHECK_THROWS_AS(p->submit(tone(0.05)), error);
     // It refuses to go off as well.
-    REQUIRE(p.ended());
-    CHECK(p.ended()->reason == reason_kind::left_on);
-    CHECK(p.ended()->why == "the amplifier's line cannot be switched off: it may be on");
-    CHECK(p.stats().left_on);
+    REQUIRE(p->ended());
+    CHECK(p->ended()->reason == reason_kind::left_on);
+    CHECK(p->ended()->why == "the amplifier's line cannot be switched off: it may be on");
+    CHECK(p->stats().left_on);
     // Each try but the first was to switch it off. The last one is counted a moment later.
     const auto tries = [&] {
         const std::lock_guard lock(state->mutex);
         return state->log.size();
     };
-    while (p.stats().off_failures != tries() - 1)
+    while (p->stats().off_failures != tries() - 1)
         std::this_thread::yield();
+    // At its end it tries once more.
+    const std::size_t before = tries();
+    p.reset();
+    CHECK(tries() == before + 1);
 }
 
 TEST_CASE("cancel() is reported without a frame being played")
@@ -448,11 +453,11 @@ TEST_CASE("cancel() is reported without a frame being played")
     dac_player p(patient(), std::move(lines));
     const stroke_id score = p.submit(tone(1.0));
     const live_stroke live = p.begin({.timeout_s = 86400.0});
-    CHECK_FALSE(p.wait(score, 1e-9));
+    CHECK_FALSE(p.wait(score, std::chrono::nanoseconds(1)));
     CHECK(p.cancel(score));
     CHECK(p.cancel(live.id()));
     for (const stroke_id id : {score, live.id()}) {
-        const auto r = p.wait(id, long_enough_s);
+        const auto r = p.wait(id, long_enough);
         REQUIRE(r);
         CHECK(r->state == state_kind::cancelled);
         CHECK(r->frames == 0);

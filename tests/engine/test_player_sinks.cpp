@@ -344,7 +344,7 @@ TEST_CASE("a time before all times plays now and reports how late; one after all
     rig r;
     r.play(48'000);
     REQUIRE(r.link.clock.load().valid());
-    const stroke_id early = r.submit(tone(0.01), start_at::time(earliest));
+    const stroke_id early = r.submit(tone(0.01), start_at::time(rt::to_time(earliest)));
     const stroke_id fired = r.submit(tone(0.01), start_at::trigger());
     CHECK(r.feed.fire(earliest) == 1);
     r.play_out();
@@ -352,7 +352,7 @@ TEST_CASE("a time before all times plays now and reports how late; one after all
         CHECK(r.end(id).state == state_kind::finished);
         CHECK(r.end(id).late_s > 9e9);
     }
-    const stroke_id late = r.submit(tone(0.01), start_at::time(latest));
+    const stroke_id late = r.submit(tone(0.01), start_at::time(rt::to_time(latest)));
     const stroke_id far = r.submit(tone(0.01), start_at::frame(std::numeric_limits<std::uint64_t>::max()));
     r.play(48'000);
     CHECK_FALSE(r.report(late));
@@ -368,9 +368,9 @@ TEST_CASE("the longest wait has no end, the shortest does not wait")
 {
     clocked_player p;
     const stroke_id id = p.submit(tone(0.1));
-    CHECK(p.wait(id, std::numeric_limits<double>::infinity()));
+    CHECK(p.wait(id, std::chrono::duration<double>(std::numeric_limits<double>::infinity())));
     const stroke_id other = p.submit(tone(0.1), start_at::trigger());
-    CHECK_FALSE(p.wait(other, -std::numeric_limits<double>::infinity()));
+    CHECK_FALSE(p.wait(other, -std::chrono::duration<double>(std::numeric_limits<double>::infinity())));
     p.stop();
 }
 

@@ -208,7 +208,7 @@ TEST_CASE("a start at a time puts the first sample at the DAC then, within a fra
         const std::int64_t ahead = 9 * ms + static_cast<std::int64_t>(random() % 3'000'000'000);
         const std::int64_t due = r.now + ahead;
         const std::uint64_t from = r.dac.captured_frames();
-        const stroke_id id = r.submit(tone(0.01), start_at::time(due));
+        const stroke_id id = r.submit(tone(0.01), start_at::time(rt::to_time(due)));
         const stroke_report report = r.play_out(id);
         CHECK(report.state == state_kind::finished);
         CHECK(report.late_s == 0.0);
@@ -230,7 +230,7 @@ TEST_CASE("a time that is over means now, and the lateness is reported")
         r.play(100 * 96);
         const std::uint64_t next = r.status().written;
         const std::int64_t due = r.now - ago;
-        const stroke_id id = r.submit(tone(0.01), start_at::time(due));
+        const stroke_id id = r.submit(tone(0.01), start_at::time(rt::to_time(due)));
         r.play_out();
         CHECK(r.first_sound() == next + 1);
         CHECK(r.end(id).late_s ==
@@ -242,14 +242,14 @@ TEST_CASE("a start a buffer and a period ahead is just in time")
 {
     rig r(slow());
     r.play(100 * 96);
-    const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 8 * ms));
+    const stroke_id id = r.submit(tone(0.01), start_at::time(rt::to_time(r.now + 8 * ms)));
     CHECK(r.play_out(id).late_s == 0.0);
 }
 
 TEST_CASE("a start at a time that is given before the clock is known waits for the clock")
 {
     rig r(slow(false));
-    const stroke_id id = r.submit(tone(0.01), start_at::time(r.now + 300 * ms));
+    const stroke_id id = r.submit(tone(0.01), start_at::time(rt::to_time(r.now + 300 * ms)));
     CHECK_FALSE(r.link.clock.load().valid());
     REQUIRE(r.start().status == io_kind::ok);
     const std::int64_t due = r.now + 300 * ms;
@@ -303,7 +303,7 @@ TEST_CASE("armed strokes can be cancelled before and after they are fired, and e
         rig r;
         const stroke_id a = r.submit(tone(0.1), start_at::trigger());
         const stroke_id b = r.submit(tone(0.1), start_at::trigger());
-        const stroke_id c = r.submit(tone(0.1), start_at::time(r.now + 3600'000 * ms));
+        const stroke_id c = r.submit(tone(0.1), start_at::time(rt::to_time(r.now + 3600'000 * ms)));
         CHECK(r.feed.cancel(a));
         CHECK_FALSE(r.feed.cancel(a));
         r.play(960);
@@ -311,7 +311,7 @@ TEST_CASE("armed strokes can be cancelled before and after they are fired, and e
         CHECK(r.feed.cancel(b));
         CHECK(r.feed.cancel(c));
         const stroke_id d = r.submit(tone(0.1), start_at::trigger());
-        const stroke_id e = r.submit(tone(0.1), start_at::time(r.now + 3600'000 * ms));
+        const stroke_id e = r.submit(tone(0.1), start_at::time(rt::to_time(r.now + 3600'000 * ms)));
         r.stop(closing);
         r.play(9600);
         r.control();

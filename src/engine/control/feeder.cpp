@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "engine/control/line_threads.hpp"
+#include "rt/clock.hpp"
 
 namespace tactor::engine {
 namespace {
@@ -373,7 +374,7 @@ void feeder::submit(stroke_id id, const score& s, start_at start, float gain)
         waiting_.emplace(start.stream_frame(), task{id, s});
         break;
     case start_kind::time:
-        timed_.emplace(start.time_ns(), task{id, s, start.time_ns()});
+        timed_.emplace(rt::to_ns(start.when()), task{id, s, rt::to_ns(start.when())});
         break;
     case start_kind::trigger:
         armed_.emplace(id, task{id, s});

@@ -122,10 +122,10 @@ float to_gain(double level_db)
 }
 
 // Returns the time of a time-out, at most a century from now, so that the clock cannot overflow.
-std::chrono::steady_clock::time_point deadline(double timeout_s)
+monotonic_time deadline(std::chrono::duration<double> timeout)
 {
     constexpr double century_s = 100.0 * 365.0 * 86400.0;
-    const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, century_s) : 0.0;
+    const double wait_s = timeout.count() > 0.0 ? std::min(timeout.count(), century_s) : 0.0;
     return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
 }
 
@@ -283,9 +283,9 @@ std::optional<std::uint64_t> player::first_frame(stroke_id id) const
     return impl_->feed.find_first_frame(id);
 }
 
-std::size_t player::fire(std::int64_t monotonic_ns)
+std::size_t player::fire(monotonic_time t)
 {
-    return impl_->fire(monotonic_ns);
+    return impl_->fire(rt::to_ns(t));
 }
 
 live_stroke player::begin(const live_options& o)
@@ -346,15 +346,15 @@ bool player::cancel_all()
     return true;
 }
 
-wait_result player::wait(stroke_id id, std::optional<double> timeout_s)
+wait_result player::wait(stroke_id id, std::optional<std::chrono::duration<double>> timeout)
 {
     impl& p = *impl_;
     std::unique_lock lock(p.mutex);
     const auto settled = [&] { return p.find_report(id) != p.ended.end() || !p.feed.knows(id); };
     // In the control thread it would wait for itself.
     if (!p.control->is_current()) {
-        if (timeout_s)
-            p.news.wait_until(lock, deadline(*timeout_s), settled);
+        if (timeout)
+            p.news.wait_until(lock, deadline(*timeout), settled);
         else
             p.news.wait(lock, settled);
     }
