@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -87,17 +88,23 @@ TEST_CASE("a drawing as Illustrator exports it plays without a warning")
         before + "\n.cls-2,\n.cls-3{opacity:1; DISPLAY : none!important}" + behind, "d.svg");
     CHECK(names(hidden) == list{"a"});
     CHECK(hidden.front().warnings.empty());
-    const auto unseen = parse_strokes_svg(before + ".cls-2{visibility:hidden}" + behind, "d.svg");
-    CHECK(names(unseen) == list{"a"});
+    for (const char* hides : {"visibility:hidden", "visibility:collapse"})
+        CHECK(names(parse_strokes_svg(before + ".cls-2{" + hides + "}" + behind, "d.svg")) == list{"a"});
     // Other rules that hide are refused, and those that move are warned of.
     CHECK(refusal(before + "g .cls-2, .cls-1{display:none}" + behind) ==
           "a.svg:3:8: a rule hides what 'g .cls-2, .cls-1' selects, which is not understood (delete what is "
           "hidden, or export presentation attributes)");
-    const auto ruled = parse_strokes_svg(before + "g .cls-2{transform:scale(2)}" + behind, "d.svg");
-    CHECK(names(ruled) == list{"a", "b"});
-    CHECK(ruled.front().warnings ==
-          list{"d.svg:3:8: transform in <style> is not followed: what it hides or moves plays as if it were "
-               "not there (export presentation attributes)"});
+    for (const auto& [name, value] :
+         {std::pair<std::string, std::string>{"display", "inline"}, {"transform", "scale(2)"}}) {
+        const auto ruled =
+            parse_strokes_svg(before + "g .cls-2{" + name + ":" + value + "}" + behind, "d.svg");
+        CHECK(names(ruled) == list{"a", "b"});
+        CHECK(
+            ruled.front().warnings ==
+            list{"d.svg:3:8: " + name +
+                 " in <style> is not followed: what it hides or moves plays as if it were not there (export "
+                 "presentation attributes)"});
+    }
 }
 
 TEST_CASE("a drawing as Inkscape saves it plays what its layers show")

@@ -433,7 +433,7 @@ void svg_document::note_rules(pugi::xml_node style)
                 css.substr(open + 1, close - open), [&](std::size_t property, std::string_view v) {
                     const std::string value = tidy(v.substr(0, v.find('!')));
                     if ((property == svg_display && value == "none") ||
-                        (property == svg_visibility && value == "hidden")) {
+                        (property == svg_visibility && (value == "hidden" || value == "collapse"))) {
                         if (!add_hidden(selectors))
                             fail(style,
                                  fmt::format("a rule hides what {} selects, which is not understood",
