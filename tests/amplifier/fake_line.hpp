@@ -34,6 +34,7 @@ struct switched {
 class fake_line {
 public:
     fake_line();
+    fake_line(fake_line&&) = delete; // held() points into it
 
     amplifier::held_line held();
     /// Blocks until the line is switched, or for that long.

@@ -76,11 +76,12 @@ TEST_CASE("make_grid refuses impossible grids, and names the field")
         {0, 3, 20.0, 20.0, "rows", "grid: 0 rows x 3 columns (1 to 1024 tactors)"},
         {3, 1025, 20.0, 20.0, "columns", "grid: 3 rows x 1025 columns (1 to 1024 tactors)"},
         {33, 32, 20.0, 20.0, "", "grid: 33 rows x 32 columns (1 to 1024 tactors)"}, // both together
+        {3, 1024, 20.0, 20.0, "", "grid: 3 rows x 1024 columns (1 to 1024 tactors)"},
         // 2^32 tactors, which is 0 in 32 bits
         {65536, 65536, 20.0, 20.0, "rows", "grid: 65536 rows x 65536 columns (1 to 1024 tactors)"},
         {3, 3, 0.0, 20.0, "pitch_x_mm", "grid: the pitch is 0 mm (it must be more than 0)"},
         {3, 3, 20.0, not_a_number, "pitch_y_mm", "grid: the pitch is nan mm (it must be more than 0)"},
-        {3, 3, 20.0, -inf, "pitch_y_mm", "grid: the pitch is -inf mm (it must be more than 0)"},
+        {3, 3, 20.0, -1.0, "pitch_y_mm", "grid: the pitch is -1 mm (it must be more than 0)"},
     };
     for (const row& r : all) {
         const auto make = [&r] { return make_grid("g", r.rows, r.columns, r.pitch_x_mm, r.pitch_y_mm); };
