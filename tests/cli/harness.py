@@ -151,10 +151,7 @@ class ToolTest(unittest.TestCase):
 
     def begun(self, *args, stdin=""):
         """Starts the tool with pipes for its text, and writes to its standard input, which stays open."""
-        p = subprocess.Popen([TOOL, *map(str, args)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                             stderr=subprocess.DEVNULL, text=True)
-        self.addCleanup(p.communicate)
-        self.addCleanup(p.kill)
+        p = self.start_tool(*args, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         p.stdin.write(stdin)
         p.stdin.flush()
         return p

@@ -48,6 +48,10 @@ class Terminal:
         self.until(pattern)
         self.key(key)
 
+    def poll(self):
+        """Returns nothing while it runs, as Popen.poll() does."""
+        return os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+
     def end(self):
         """Returns its exit status."""
         with contextlib.suppress(OSError):  # the terminal closes with the program

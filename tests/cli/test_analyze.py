@@ -7,14 +7,11 @@ import json
 import os
 import re
 import shutil
-import sys
 
-from harness import ROOT, ToolTest, main
+from harness import ToolTest, main
 from pictures import Svg, number
-
-sys.path.insert(0, str(ROOT / "tests/study"))
-import check_r  # noqa: E402
-import studies  # noqa: E402
+import check_r
+import studies
 
 BEH = "sub-01/beh/sub-01_task-taste_beh.tsv"
 

@@ -187,7 +187,7 @@ class Walk(ToolTest):
             # The fade is in one period: it is written whole, however long the machine stands still.
             t = self.on_terminal(*self.recorder, "--level-dbfs", "0", "--period-frames", "1024", "--periods", "3", *(auto or ("-o", "felt.toml")))
             if auto:
-                self.until(lambda: self.raw.exists() and any(self.raw.read_bytes()[-120 * 4800:]))
+                self.until(lambda: self.raw.exists() and any(self.raw.read_bytes()[-120 * 4800:]), t)
             else:
                 t.until("which did you feel\\?")
             os.kill(t.pid, signal.SIGINT)

@@ -6,17 +6,14 @@ What a document's text and earlier commands make is there for the later ones. hw
 import collections
 import dataclasses
 import os
-import pathlib
 import re
 import shlex
 import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
-import studies
-
 from harness import ALSA_CONFIG, PATIENCE_S, ROOT, TOOL, ToolTest, main
+import studies
 
 # Code in documents: commands, names of commands, and files, in the order of the text.
 PROGRAMS = r"(?:\S*/)?(?:tactor|quickstart|run)|sudo|meson|man|c\+\+|cp|dpkg-\w+|grep|ulimit|kill|python3"

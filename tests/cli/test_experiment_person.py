@@ -188,9 +188,9 @@ class ByLines(PersonTest):
         self.assertFalse(self.analysis()["simulated"])
         before = contents(self.dir / "study")
         self.assertIn("finished", self.ok(*self.args("--resume")).stdout)
-        self.assertEqual(contents(self.dir / "study"), before)
         self.refused(2, *self.args())
         self.refused(2, "experiment", "short.toml", "--participant", "03", "-o", "study", "--simulate", "seed=1")
+        self.assertEqual(contents(self.dir / "study"), before)
 
     def test_no_consent_no_data(self):
         for said, warned in (("put your names here", True), ("A. Author", False)):
@@ -245,6 +245,8 @@ class ByLines(PersonTest):
         self.assertIn("That is no answer: 1 east, 2 west", result.stdout)
         self.assertNotIn("agree", result.stdout)  # without a consent question
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
+        told = self.analysis()["runs"]["what"]
+        self.assertEqual((told["n"], told["trials"]), (1, 2))
 
     def test_a_wait_for_max_drive_s_is_shown_once(self):
         self.write("tired.toml", "[limits]\nmax_drive_s = 0.5\nwindow_s = 4.0\n")

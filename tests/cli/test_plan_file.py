@@ -62,13 +62,13 @@ class PlanFile(ToolTest):
 
     def test_a_plan_renders_the_bytes_of_its_stroke_and_is_the_same_text(self):
         for args in (*(f"park2016-3 --algorithm {a} --phantom {p}" for a in ("park2016", "tactile-brush", "continuous")
-                       for p in ("inverse-distance", "barycentric", "gaussian")),
+                       for p in ("inverse-distance", "barycentric", "linear", "log", "gaussian")),
                      "park2016-1 --algorithm continuous --duration 5.00033", "wave-2x4 --array palm-2x4", "half.toml --algorithm continuous --speed 33",
                      "park2016-1 --array palm-2x4 --fit --fit-margin 1.3", "park2016-3 --array arm.toml --fit",
                      "park2016-3 --rate 44100 --level-dbfs -20.05 --phase burst --ramp 0.0013",
                      "park2016-2 --algorithm tactile-brush --overlap max --carrier 187.5", "park2016-1 --array desk.toml",
                      "half.toml --array heard.toml --sl 7.7", "half.toml --array heard.toml --sl 20 --intensity-scale sl",
-                     "half.toml --intensity-scale stevens --algorithm continuous", "park2016-1 --faces nearest",
+                     "half.toml --intensity-scale stevens", "half.toml --intensity-scale stevens --algorithm continuous", "park2016-1 --faces nearest",
                      "park2016-1 --faces nearest --algorithm continuous", "three.toml --rate 44100", "three.toml --algorithm continuous --rate 44100",
                      "rise.toml", "rise.toml --algorithm continuous", "rise.toml --waveform square", "rise.toml --array heard.toml --sl 7",
                      "half.toml --waveform noise:80-300 --noise-seed 9007199254740991", "half.toml --waveform triangle --am 30:0.5",

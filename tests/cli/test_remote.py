@@ -14,7 +14,7 @@ LONG = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "3
 
 
 class Remote(ServeTest):
-    def begun(self, *args):
+    def talking(self, *args):
         return self.start_tool(*args, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def ended(self, p, *statuses, stdin=None):
@@ -25,7 +25,7 @@ class Remote(ServeTest):
 
     def fed(self, where, *lines):
         """Begins a live stroke from standard input."""
-        p = self.begun("play", "--live", "-", "--socket", where)
+        p = self.talking("play", "--live", "-", "--socket", where)
         p.stdin.write("".join(lines))
         p.stdin.flush()
         return p
@@ -104,11 +104,11 @@ class Remote(ServeTest):
     def test_stop_and_ctrl_c_end_it_with_their_status(self):
         s = self.serve()
         watcher = s.watcher()
-        p = self.begun("play", *LONG, "--socket", s.where["socket"])
+        p = self.talking("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         self.ok("stop", "--socket", s.where["socket"])
         self.assertIn("cancelled", self.ended(p, 1)[1])
-        p = self.begun("play", *LONG, "--socket", s.where["socket"])
+        p = self.talking("play", *LONG, "--socket", s.where["socket"])
         n = self.started(watcher)["stroke"]
         p.send_signal(signal.SIGINT)
         self.ended(p, 130)
@@ -121,7 +121,7 @@ class Remote(ServeTest):
             door.listen()
             for command in (("status",), ("status", "--watch"), ("stop",), ("play", "park2016-1"), ("play", "--live", "-")):
                 for sent, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-                    p = self.begun(*command, "--socket", hung)
+                    p = self.talking(*command, "--socket", hung)
                     with door.accept()[0] as taken:
                         self.assertTrue(taken.recv(1))  # it has asked
                         p.send_signal(sent)
@@ -132,7 +132,7 @@ class Remote(ServeTest):
         watcher = s.watcher()
         much = ("--path", "M 0 0 L 40 40", "--duration", "240", "--soa", "0.001", "--burst", "0.001", "--level-dbfs", "-60")
         for signals in ((signal.SIGINT,), (signal.SIGINT, signal.SIGTERM)):
-            p = self.begun("play", *much, "--socket", s.where["socket"])
+            p = self.talking("play", *much, "--socket", s.where["socket"])
             self.assertIn("through", p.stdout.readline())  # it asks next
             time.sleep(0.1)
             for sent in signals:
@@ -145,7 +145,7 @@ class Remote(ServeTest):
     def test_a_second_signal_does_not_wait_for_the_fade(self):
         s = self.serve()
         watcher = s.watcher()
-        p = self.begun("play", *LONG, "--socket", s.where["socket"])
+        p = self.talking("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         s.process.send_signal(signal.SIGSTOP)
         for sent in (signal.SIGINT, signal.SIGTERM):  # two of one kind may be merged
@@ -155,7 +155,7 @@ class Remote(ServeTest):
 
     def test_status_watches(self):
         s = self.serve()
-        p = self.begun("status", "--watch", "--format", "json", "--socket", s.where["socket"])
+        p = self.talking("status", "--watch", "--format", "json", "--socket", s.where["socket"])
         self.assertEqual(json.loads(p.stdout.readline())["clients"], 1)
         n = s.client().ok("drive", tactor=0, duration_s=0.05)["stroke"]
         said = []
@@ -170,7 +170,7 @@ class Remote(ServeTest):
 
     def test_a_watch_ends_with_its_reader(self):
         s = self.serve()
-        p = self.begun("status", "--watch", "--socket", s.where["socket"])
+        p = self.talking("status", "--watch", "--socket", s.where["socket"])
         p.stdout.readline()
         p.stdout.close()
         client = s.client()
@@ -286,7 +286,7 @@ class Remote(ServeTest):
         self.ok("play", "--live", "-", "-D", "null", stdin="nan nan\n")
 
     def test_ctrl_c_ends_a_live_stroke(self):
-        p = self.begun("play", "--live", "-", "-D", "null")
+        p = self.talking("play", "--live", "-", "-D", "null")
         self.assertIn("null", p.stdout.readline())
         p.send_signal(signal.SIGINT)
         self.ended(p, 130)

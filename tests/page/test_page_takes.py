@@ -133,9 +133,10 @@ class Takes(TakesTest):
         p.until(f"{TAKE}.strokes[0].knots.length === {len(knots) - 1}")
         # A key does the same.
         p.value("document.querySelector('#field').focus()")
+        p.key("ArrowRight")
         p.key("Delete")
         p.until(f"{TAKE}.strokes[0].knots.length === {len(knots) - 2}")
-        for _ in range(4):
+        for _ in range(5):
             p.click("#undo")
         p.until(f"{TAKE}.strokes[0].knots.length === {len(knots)}")
         self.assertEqual(self.take(p)["strokes"][0]["knots"], knots)

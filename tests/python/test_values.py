@@ -217,8 +217,9 @@ def test_impossible_paths_and_strokes_are_refused(make):
 
 
 def test_a_path_of_one_place_is_a_tap_of_the_given_duration():
-    place = tactor.Path.svg("M 20 10")
-    assert tactor.Stroke.along(place, duration=0.3).duration == 0.3
+    for place in (tactor.Path.svg("M 20 10"), tactor.Path.polyline([(20, 10)])):
+        tap = tactor.Stroke.along(place, duration=0.3)
+        assert (tap.length_mm, tap.duration, tap.position(0.3)) == (0, 0.3, (20, 10))
     for options in ({}, {"speed": 60}):
         assert "duration" in str(refused(lambda: tactor.Stroke.along(place, **options)))
 
