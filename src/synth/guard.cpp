@@ -161,11 +161,9 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
         sum[j] = fits ? gain_ : 1.0;
         squeezed = !fits;
     }
-    if (changed > 0) {
-        for (const powered_channel& c : channels)
-            for (unsigned j = 0; j < n; ++j)
-                c.x[j] *= sum[j];
-    }
+    for (const powered_channel& c : channels)
+        for (unsigned j = 0; j < n; ++j)
+            c.x[j] *= sum[j];
     if (!squeezed)
         admit(channels, n - 1);
     return changed;
