@@ -83,7 +83,9 @@ TEST_CASE("a stop that gets no answer ends after two seconds of zeros, with the 
     playing r;
     r.also_control = {};
     r.stop();
+    const std::uint64_t before = r.dac.captured_frames();
     const std::int64_t took = end(r);
+    CHECK(r.dac.captured_frames() - before >= 90'000);
     CHECK(took >= 2000 * ms);
     CHECK(took <= 2070 * ms);
     CHECK(r.feed.end().why == may_be_on);
