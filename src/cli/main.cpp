@@ -29,6 +29,7 @@
 #include "cli/settings.hpp"
 #include "cli/usage.hpp"
 #include "core/split.hpp"
+#include "files/text_file.hpp"
 #include "options/settle.hpp"
 #include "session/process.hpp"
 #include "study/experiment/definition.hpp"
@@ -319,6 +320,7 @@ int main(int argc, char** argv)
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     hold_standard_files();
+    tactor::detail::guards_standard_output = true;
     try {
         int status = status_ok;
         try {

@@ -126,6 +126,16 @@ void refuse_other_kind(std::string_view text, const std::string& name, std::stri
                         hint);
 }
 
+bool is_standard_output(const struct stat& file)
+{
+    const auto goes_into = [&file](int descriptor) {
+        struct stat s {};
+        return ::fstat(descriptor, &s) == 0 && s.st_dev == file.st_dev && s.st_ino == file.st_ino &&
+               (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+    };
+    return goes_into(STDOUT_FILENO) || goes_into(STDERR_FILENO);
+}
+
 } // namespace
 
 void note_input(const fs::path& file, owner_kind owner)
@@ -135,6 +145,10 @@ void note_input(const fs::path& file, owner_kind owner)
         return;
     std::error_code ignored;
     fs::path whole = fs::absolute(file, ignored);
+    if (guards_standard_output && is_standard_output(s))
+        throw error(error_kind::bad_input,
+                    source_place{file == "/dev/fd/0" ? "standard input" : file.string()},
+                    "is where this program writes to", "write to another file");
     inputs& i = known_inputs();
     const std::lock_guard locked(i.guard);
     input& read = i.all.try_emplace(std::move(whole), input{.owner = owner}).first->second;

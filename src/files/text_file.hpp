@@ -29,8 +29,11 @@ enum class owner_kind {
     caller,  ///< writes text through the library
 };
 
+/// Set by a program, before it reads anything, whose standard output and error must not go into an input.
+inline bool guards_standard_output = false;
+
 /// Remembers a file that is read; a descriptor's name is /dev/fd/N. Pipes and devices do not count. Any
-/// thread; blocks on the file system.
+/// thread; blocks on the file system. \throws error (bad_input) where a guarded output would go into it.
 void note_input(const std::filesystem::path& file, owner_kind owner = owner_kind::user);
 
 /// Refuses to replace a file that was read and that this writer may not replace. An input that has been

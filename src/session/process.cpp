@@ -123,8 +123,7 @@ bool is_descriptor(const struct stat& s, int fd)
     return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
 }
 
-// A folder has no text. A terminal, or a pipe that this process writes to, would be read for ever; a file
-// would grow by what is made of it.
+// A folder has no text. A terminal, or a pipe that this process writes to, would be read for ever.
 void refuse_unreadable(const std::string& file)
 {
     struct stat s {};
@@ -133,8 +132,7 @@ void refuse_unreadable(const std::string& file)
     if (S_ISDIR(s.st_mode))
         throw error(error_kind::bad_input, source_place{file}, "is a folder", "name a file in it")
             .with_os_code(EISDIR);
-    if ((S_ISFIFO(s.st_mode) || S_ISREG(s.st_mode)) &&
-        (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
+    if (S_ISFIFO(s.st_mode) && (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
         throw error(error_kind::bad_input, file, "is where this program writes to",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))

@@ -206,20 +206,30 @@ class Inputs(ExperimentTest):
         for _ in range(2):
             self.ok("render", "s.toml", "--waveform", "tex.wav", "-o", "new.wav")  # not an input
 
-    def test_standard_input_and_standard_output_count(self):
+    def test_standard_input_counts(self):
         for args, extension in ((("render", "-"), ".wav"), (("plot", "-", "--force"), ".svg")):
             with open(self.dir / "s.toml", encoding="utf-8") as f:
-                self.assertEqual(self.redirected(*args, "-o", self.link("s.toml", extension), stdin=f), self.STROKE)
-        for args in (("render", "s.toml", "-o", "-"), ("plan", "s.toml"), ("plan", "s.toml", "--format", "json"), ("compare", "s.toml")):
-            with open(self.dir / "s.toml", "r+b") as f:
-                f.seek(0, os.SEEK_END)
-                self.assertEqual(self.redirected(*args, stdout=f), self.STROKE)
+                r = subprocess.run([TOOL, *args, "-o", self.link("s.toml", extension)], cwd=self.dir, env=self.env, stdin=f, capture_output=True,
+                                   timeout=PATIENCE_S, check=False)
+            self.assertEqual((r.returncode, (self.dir / "s.toml").read_text()), (2, self.STROKE), r.stderr)
 
-    def redirected(self, *args, **more):
-        r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, timeout=PATIENCE_S, check=False,
-                           **({"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL} | more))
-        self.assertEqual(r.returncode, 2, r.stderr)
-        return (self.dir / "s.toml").read_text()
+    def spared(self, file, *args, stdin=os.devnull):
+        """Checks that a command does not write over a file that it reads and its standard output goes to."""
+        before = (self.dir / file).read_bytes()
+        with open(self.dir / file, "r+b") as out, open(self.dir / stdin, "rb") as f:
+            out.seek(0, os.SEEK_END)
+            r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdin=f, stdout=out, stderr=subprocess.PIPE, timeout=PATIENCE_S, check=False, text=True)
+        self.assertEqual((r.returncode, (self.dir / file).read_bytes()), (2, before), f"{args}: {r.stderr}")
+        self.assertIn("is where this program writes to (write to another file)", r.stderr)
+
+    def test_standard_output_goes_over_no_input(self):
+        for file, args in self.READ:
+            self.spared(file, "plan", *args.split())
+        self.write("live.txt", "0 20 1\n")
+        for file, args, stdin in (("s.toml", "render s.toml -o -", os.devnull), ("s.toml", "compare s.toml", os.devnull),
+                                  ("a.toml", "check --array a.toml", os.devnull), ("s.toml", "plan -", "s.toml"),
+                                  ("live.txt", "play --live - -D null", "live.txt")):
+            self.spared(file, *args.split(), stdin=stdin)
 
     def test_a_calibration_replaces_none_of_its_inputs(self):
         calibrate = ("calibrate", "--participant", "P07", "--simulate", "threshold=-40,spread=2", "--tactors", "0", "--array", "a.toml", "--config", "c.toml")
@@ -235,6 +245,7 @@ class Inputs(ExperimentTest):
             for file in (*files, next((self.dir / "study").glob("sub-01/beh/*.tsv")).relative_to(self.dir / "study")):
                 for more in ((), ("--force",)):
                     self.kept(f"study/{file}", command, "study", "-o", self.link(f"study/{file}", extension), *more)
+                self.spared(f"study/{file}", command, "study")
                 self.assertEqual(contents(self.dir / "study"), before)
         definition = self.dir / "study/participants.json"
         definition.unlink()

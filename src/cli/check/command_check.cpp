@@ -19,6 +19,7 @@
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
 #include "files/setup_text.hpp"
+#include "files/text_file.hpp"
 #include "session/device.hpp"
 #include "session/process.hpp"
 #include "study/calibrate/calibration_files.hpp"
@@ -285,6 +286,8 @@ void check_usage(const settings& s, const check_options& o)
 int check(settings& s, const check_options& o)
 {
     check_usage(s, o);
+    if (s.array_name)
+        detail::note_input(*s.array_name); // what is found must not be written into it
     std::vector<finding> all;
     std::optional<environment> e;
     try {

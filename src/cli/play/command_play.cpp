@@ -206,6 +206,7 @@ void check_live(const settings& s)
 int play_live(settings& s, const play_options& o)
 {
     s.strokes.clear(); // standard input has its points, which come later
+    detail::note_input("/dev/fd/0");
     const environment e = session::read_environment(s);
     const live_options usual;
     live_options l;

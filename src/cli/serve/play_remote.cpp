@@ -50,6 +50,16 @@ error name_argument(const error& e, const std::string& argument)
     return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
 }
 
+// Puts the name of a STROKE in place of that of its kind, which a server's warnings begin with.
+std::vector<std::string> name_in(std::vector<std::string> warnings, const std::string& stroke)
+{
+    for (std::string& w : warnings)
+        for (const std::string_view kind : {"toml:", "csv:", "svg:"})
+            if (w.starts_with(kind))
+                w.replace(0, kind.size() - 1, shown_name(stroke));
+    return warnings;
+}
+
 // Returns a STROKE argument as parameter of `play`: a preset, or the text of a file.
 net::json make_params(const std::string& argument)
 {
@@ -57,7 +67,9 @@ net::json make_params(const std::string& argument)
     if (const auto preset = find_preset(argument))
         return {{"stroke", preset->name}};
     const bool piped = argument == "-";
-    if (!piped)
+    if (piped)
+        detail::note_input("/dev/fd/0");
+    else
         session::check_readable(argument);
     const detail::whole_text text = piped ? detail::read_text(STDIN_FILENO, shown_name(argument), most_bytes)
                                           : detail::read_text_file(argument, most_bytes);
@@ -206,7 +218,7 @@ private:
         } catch (const error& e) {
             throw name_argument(e, shown_name(out.name));
         }
-        say_warnings(r["warnings"].get<std::vector<std::string>>());
+        say_warnings(name_in(r["warnings"].get<std::vector<std::string>>(), out.name));
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
         if (stream_.arm && !options_.json())
