@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/kind_names.hpp"
+#include "core/split.hpp"
 #include "core/words.hpp"
 #include "files/text_file.hpp"
 
@@ -291,13 +293,23 @@ private:
     plan_parts none_; ///< of which no burst that is read needs anything
 };
 
-// Returns "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the
-// library's part.
-std::string said(const std::string& what)
+// Throws what the library says, "[json.exception.parse_error.101] parse error at line 1, column 2: syntax
+// error ...", with the place as that of the error.
+[[noreturn]] void refuse_json(std::string_view what, const std::string& name)
 {
-    const std::size_t at = what.find("line ");
-    return at == std::string::npos ? what.substr(std::min(what.find("] ") + 2, what.size()))
-                                   : what.substr(at);
+    constexpr std::string_view line = "parse error at line ";
+    constexpr std::string_view column = ", column ";
+    what.remove_prefix(std::min(what.find("] ") + 2, what.size()));
+    source_place place{name};
+    if (const std::size_t middle = what.find(column); what.starts_with(line) && middle != what.npos) {
+        const std::size_t end = what.find(": ", middle);
+        place = {
+            name, detail::number_in<unsigned>(what.substr(line.size(), middle - line.size())).value_or(0),
+            detail::number_in<unsigned>(what.substr(middle + column.size(), end - middle - column.size()))
+                .value_or(0)};
+        what.remove_prefix(std::min(end + 2, what.size()));
+    }
+    throw error(error_kind::bad_input, place, what, how_to_make);
 }
 
 // Reads a stream or a text. `begin` returns its first bytes, to explain a failure.
@@ -312,7 +324,7 @@ plan_file read_from(Input&& in, const std::string& name, recordings_kind recordi
             });
     } catch (const ordered_json::exception& e) {
         detail::refuse_other_form(begin(), name, "json", how_to_make);
-        throw error(error_kind::bad_input, name, said(e.what()), how_to_make);
+        refuse_json(e.what(), name);
     }
     return std::move(r).result();
 }
