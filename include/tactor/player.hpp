@@ -465,6 +465,10 @@ public:
     [[nodiscard]] std::optional<stream_end> ended() const;
 
     [[nodiscard]] player_position position() const noexcept;
+
+    /// Returns the drive time that earlier players and other programs had left on the device when the stream
+    /// began, s, by channel; see drive_limits::max_drive_s. Empty without player_options::keep_drive_time.
+    [[nodiscard]] std::vector<double> drive_levels_s() const;
     [[nodiscard]] player_stats stats() const;
 
 private:

@@ -102,6 +102,11 @@ player_position play_session::position() const
     return stream_.current() != nullptr ? stream_.current()->position() : player_position{};
 }
 
+std::vector<double> play_session::drive_levels_s() const
+{
+    return stream_.current() != nullptr ? stream_.current()->drive_levels_s() : std::vector<double>{};
+}
+
 std::optional<stroke_report> play_session::submit(const score& s, start_at start)
 {
     player& p = *stream_.current();

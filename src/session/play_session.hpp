@@ -82,6 +82,8 @@ public:
 
     /// Position of the stream in frames, from 0 after each opening.
     player_position position() const;
+    /// Returns player::drive_levels_s() of the stream that runs.
+    std::vector<double> drive_levels_s() const;
     /// Counters of all streams up to now.
     player_stats stats() const { return stream_.stats(); }
     bool locked_memory() const noexcept { return locked_; }

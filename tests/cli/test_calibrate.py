@@ -213,6 +213,15 @@ class Person(CalibrateTest):
         self.assertEqual(tool.wait(PATIENCE_S), 130)
         self.assertEqual(len(self.rows("you.tsv")), 2)
 
+    def test_a_trial_waits_for_what_was_driven_before(self):
+        (self.dir / "run").mkdir(mode=0o700)
+        self.env["XDG_RUNTIME_DIR"] = str(self.dir / "run")
+        self.write("a.toml", TWO + "[limits]\nmax_drive_s = 2\nwindow_s = 20\n")
+        self.ok("play", "--path", "M 20 0", "--duration", "1.9", "--algorithm", "continuous", "-D", "null", "--array", "a.toml", "--level-dbfs", "-20")
+        shown = self.refused(1, *replaced(self.ARGS, "--array", "a.toml", "--interval", 0.5), stdin="1\n").stdout
+        self.assertIn("a pause of ", shown.split("trial 1")[0])
+        self.assertNotIn("a limit changed it", shown)
+
     def test_a_whole_adjustment_by_lines(self):
         self.ok(*self.ARGS, "--method", "adjustment", "--masker", "null", "--masker-noise", "pink", stdin="--<a\n+>a\n--a\n++a\n-a\n+\n<a\n")
         self.assertEqual([float(r["level_dbfs"]) for r in self.rows()], [-9.5, -22, -11, -22, -9, -22.5])

@@ -152,29 +152,23 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
     return all;
 }
 
-// Returns the longest time that a tactor is driven in any window: in one trial of a staircase, before which
-// there may be a pause, or in the steady pulses of an adjustment.
-double longest_drive_s(const study::calibration_settings& c, const drive_limits& l)
-{
-    if (c.method == study::calibration_method::staircase)
-        return std::min(c.interval_s, l.window_s);
-    const double period_s = c.interval_s + study::interval_gap_s;
-    const double whole = std::floor(l.window_s / period_s);
-    return whole * c.interval_s + std::min(c.interval_s, l.window_s - whole * period_s);
-}
-
+// Refuses an interval that is too long by itself, and steady pulses of an adjustment that drive a tactor for
+// longer than their pauses let it rest. Before a trial of a staircase there may be a pause.
 void check_drive_time(const study::calibration_settings& c, const drive_limits& l)
 {
     constexpr double rounding_s = 1e-9;
-    const double longest_s = longest_drive_s(c, l);
-    if (l.max_drive_s < l.window_s && longest_s > l.max_drive_s + rounding_s)
-        refuse_option(
-            "--interval",
-            fmt::format("{} of {} s would drive a tactor {:.4g} s in {:.4g} s, and [limits] allow {:.4g} s "
-                        "(max_drive_s)",
-                        c.method == study::calibration_method::staircase ? "intervals" : "steady pulses",
-                        c.interval_s, longest_s, l.window_s, l.max_drive_s),
-            "shorter ones, or another max_drive_s");
+    if (l.max_drive_s >= l.window_s)
+        return;
+    const double leak = l.max_drive_s / (l.window_s - l.max_drive_s);
+    const bool steady = c.method == study::calibration_method::adjustment;
+    if (c.interval_s > l.max_drive_s + rounding_s ||
+        (steady && c.interval_s > leak * study::interval_gap_s + rounding_s))
+        refuse_option("--interval",
+                      fmt::format("{} of {} s, with pauses of {} s, would drive a tactor for longer than "
+                                  "[limits] allow (max_drive_s, {:.4g} s in {:.4g} s)",
+                                  steady ? "steady pulses" : "intervals", c.interval_s, study::interval_gap_s,
+                                  l.max_drive_s, l.window_s),
+                      "shorter ones, or another max_drive_s");
 }
 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
@@ -269,9 +263,10 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     study::calibration_settings c = o.settings;
     const array& a = e.tactors;
     const drive_limits limits = session::settle_limits({}, e);
-    if (!o.masker.empty())
+    if (!o.masker.empty() && !o.simulate) {
         c.masker = fmt::format("{} noise, {} dBFS", to_string(o.masking.color), o.masking.level_dbfs);
-    c.masker_pcm = o.masker;
+        c.masker_pcm = o.masker;
+    }
     c.carrier_hz = s.plan.carrier_hz;
     const unsigned rate = session::settle_render(s, e).rate;
     if (c.carrier_hz >= 0.5 * rate)

@@ -66,8 +66,8 @@ std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
     return std::max<std::uint64_t>(to_frames(o.horizon_s, s.rate, "horizon_s"), least);
 }
 
-engine::loop_options loop_options(const player_options& o, const engine::drive_book& before,
-                                  const stream_setup& s, bool amplifier)
+engine::loop_options loop_options(const player_options& o, std::vector<double> driven_s,
+                                  bool counts_for_others, const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
     l.fade_frames = to_frames(o.fade_s, s.rate, "fade_s");
@@ -77,9 +77,9 @@ engine::loop_options loop_options(const player_options& o, const engine::drive_b
     l.stall_ns = std::max(periods, to_ns(o.stall_s, "stall_s"));
     l.amplifier = amplifier;
     l.guards = synth::make_guards(o.limits, s.rate);
-    if (before.has_device() && l.guards.drive_frames == 0.0)
-        l.guards.drive_frames = std::numeric_limits<double>::infinity(); // counted for others
-    l.driven_s = before.read();
+    if (counts_for_others && l.guards.drive_frames == 0.0)
+        l.guards.drive_frames = std::numeric_limits<double>::infinity();
+    l.driven_s = std::move(driven_s);
     return l;
 }
 
@@ -406,6 +406,11 @@ player_position player::position() const noexcept
     return p;
 }
 
+std::vector<double> player::drive_levels_s() const
+{
+    return impl_->drive_levels_s;
+}
+
 player_stats player::stats() const
 {
     const engine::counters& c = impl_->link.count;
@@ -454,7 +459,9 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       log(o.log, link, o.limits),
       book(o.keep_drive_time ? out->setup().device : std::string(),
            synth::make_guards(o.limits, out->setup().rate)),
-      loop(*out, link, limits, loop_options(o, book, out->setup(), lines.amplifier != nullptr)),
+      drive_levels_s(book.read()),
+      loop(*out, link, limits,
+           loop_options(o, drive_levels_s, book.has_device(), out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o, "tactor-audio", 0, true))
 {
 }

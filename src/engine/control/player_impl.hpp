@@ -113,6 +113,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     engine::stream_log log;  ///< control thread, once that runs
     engine::drive_book book; ///< control thread, once that runs
 
+    const std::vector<double> drive_levels_s; ///< of the book, when the stream began
     engine::audio_loop loop;
     engine::audio_thread audio;
     std::unique_ptr<control_thread> control;

@@ -190,6 +190,7 @@ calibration_answer person::adjust(const calibration_trial& t)
         }
     };
     keys_.drop_keys();
+    make_room(trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s));
     session::show(fmt::format("series {}: + - > < a n\n", t.number));
     const noise_around noise(stage_);
     on_page(adjust_screen(words_));

@@ -15,6 +15,7 @@ stage::stage(const alsa_options& device, const session::stream_options& o, const
              const session::stream_source& source)
     : play_session(device, o, e, source), room_(setup().channels, session::settle_limits(o, e), setup().rate)
 {
+    room_.resume(drive_levels_s());
 }
 
 std::string given_stimulus::fault() const
@@ -112,6 +113,8 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     g.ended_ns = g.started_ns + length;
     if (g.first_frame)
         room_.played(s, before_ + *g.first_frame);
+    if (after.drives_cut != before.drives_cut)
+        room_.fill(before_ + position().played); // another program drives the array, too
     if (r.state != state_kind::finished)
         g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;
     else if (g.xruns > 0)

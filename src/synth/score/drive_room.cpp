@@ -91,13 +91,25 @@ std::optional<std::uint64_t> drive_room::wait(const score& s, std::uint64_t cloc
     return static_cast<std::uint64_t>(std::ceil(frames));
 }
 
+void drive_room::resume(std::span<const double> levels_s)
+{
+    for (std::size_t i = 0; i < std::min(levels_.size(), levels_s.size()); ++i)
+        levels_[i] = {std::min(levels_s[i] * rate_, limit_), 0};
+}
+
+void drive_room::fill(std::uint64_t clock)
+{
+    for (level& l : levels_)
+        l = {limit_, clock};
+}
+
 void drive_room::played(const score& s, std::uint64_t clock)
 {
     if (levels_.empty())
         return;
     const std::vector<need> needs = find_needs(s, leak_);
     for (std::size_t i = 0; i < std::min(needs.size(), levels_.size()); ++i)
-        if (needs[i].most > 0.0)
+        if (needs[i].until > 0)
             levels_[i] = {std::max(level_at(i, clock) + needs[i].sum, needs[i].rested),
                           clock + needs[i].until};
 }

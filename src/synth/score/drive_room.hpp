@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <tactor/render.hpp>
@@ -25,6 +26,12 @@ public:
     /// Returns the frames that a piece must wait from frame `clock` on; none if it would be cut even on a
     /// rested array.
     std::optional<std::uint64_t> wait(const score& s, std::uint64_t clock) const;
+
+    /// Begins with these levels, s, at frame 0; nothing for channels beyond.
+    void resume(std::span<const double> levels_s);
+
+    /// Takes all channels for full from a frame on: something drove them that is not known here.
+    void fill(std::uint64_t clock);
 
     /// Adds a score that was played from this frame on. Scores come in order of time.
     void played(const score& s, std::uint64_t clock);
