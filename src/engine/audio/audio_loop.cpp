@@ -171,7 +171,9 @@ void audio_loop::mix_period() noexcept
     // Drives that wait for space in the mixer are there in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
-    link_.sounds.store(mixer_.size() != 0, std::memory_order_relaxed);
+    const bool sounds = mixer_.size() != 0;
+    if (link_.sounds.exchange(sounds, std::memory_order_relaxed) != sounds && sounds)
+        link_.to_control.signal(); // what may be driven is written before it is
     mixer_.process(setup_.period_frames, block_.data());
     pending_ = setup_.period_frames;
     pending_from_ = 0;
