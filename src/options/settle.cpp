@@ -134,7 +134,9 @@ void settle(wishes& w)
                 throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave one of them out");
     const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
-    if (is_set(*find("slope")) || is_set(*find("intercept")))
+    const timing_profile usual; // its longest SOA is the paper's, which is rounded
+    if ((is_set(*find("slope")) || is_set(*find("intercept"))) &&
+        (law.slope != usual.slope || law.intercept_s != usual.intercept_s))
         law.max_soa_s = law.intercept_s / (1.0 - law.slope);
     if (w.plan.scale.kind == scale_kind::sl && (find("sl")->where & w.place) != 0) {
         if (!(w.render.sl_db.value_or(0.0) > 0.0))

@@ -184,9 +184,11 @@ void check_options(const plan_options& o)
 {
     if (o.algorithm == algorithm_kind::tactile_brush)
         check_profile(o.profile);
+    // Checks SOA and burst. Of the other algorithms, which have none, only an SOA that was chosen.
+    if (o.algorithm == algorithm_kind::park2016 || o.soa_s != plan_options{}.soa_s)
+        static_cast<void>(burst_duration_s(o));
     if (o.algorithm != algorithm_kind::park2016)
         return;
-    static_cast<void>(burst_duration_s(o)); // checks SOA and burst
     if (o.timing != timing_kind::fit || o.burst_s)
         return;
     const double longest = detail::law_duration_s(o.profile, o.soa_s);

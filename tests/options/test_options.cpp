@@ -183,9 +183,12 @@ TEST_CASE("a user's timing law has its own longest SOA")
     wishes w = with(on_plan, {{"slope", 0.3}, {"intercept", 0.04}});
     settle(w);
     CHECK(w.plan.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
-    wishes usual = with(on_plan, {{"soa", 0.06}});
-    settle(usual);
-    CHECK(usual.plan.profile.max_soa_s == 0.07);
+    for (const auto& said :
+         {std::pair("soa", 0.06), std::pair("slope", 0.32), std::pair("intercept", 0.0473)}) {
+        wishes usual = with(on_plan, {said});
+        settle(usual);
+        CHECK(usual.plan.profile.max_soa_s == 0.07);
+    }
 }
 
 TEST_CASE("marks are spelled, other braces stay")

@@ -428,6 +428,9 @@ TEST_CASE("a stroke's impossible SOA or burst is refused with its place")
              3});
     // The stroke's SOA is too short for the common duration.
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\n", {.burst_s = 0.06}).second == 3);
+    // Refuses it for algorithms without an SOA, too.
+    for (const algorithm_kind a : {algorithm_kind::tactile_brush, algorithm_kind::continuous})
+        CHECK(told(soa, {.algorithm = a}).second == 3);
     // The common value is not the file's fault.
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.02\n", {.soa_s = 90.0}).first.find("soa_s: ") ==
           0);
