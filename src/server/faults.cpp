@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include <fmt/format.h>
@@ -80,8 +81,10 @@ rpc_fault library_fault(const error& e, const std::string& source, const std::st
         f.column = e.place().column;
         return f;
     }
+    if (!e.place().file.empty())
+        return f; // a file of the owner's, which the client does not know
     const options::option* o = options::find(e.field());
-    if (o != nullptr && (o->where & options::by_client) != 0)
+    if (o != nullptr && (o->where & options::by_client) != 0 && worded.subject() != text)
         f.what = write_param(*o, {});
     // The library's words for what a client draws.
     const std::array own{f.what,
@@ -129,7 +132,9 @@ const json* member(const json& params, const char* name)
 
 double number(const json& v, const std::string& what, detail::bounds b)
 {
-    const std::string range = fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
+    const std::string range = b.high == std::numeric_limits<double>::max()
+                                  ? fmt::format("{} or more", plain_number(b.low))
+                                  : fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
     if (!v.is_number())
         bad_param(what, "it is no number", range);
     const auto n = v.get<double>();

@@ -604,7 +604,7 @@ void osc_clients::refuse(const endpoint& to, const std::string& address, const s
     if (errors_ns_.size() == most_errors)
         return;
     errors_ns_.push_back(now);
-    outside_.send(to, net::osc_packet("/tactor/error", {address, why.substr(0, most_words)}));
+    outside_.send(to, net::osc_packet("/tactor/error", {net::cut_echo(address), why.substr(0, most_words)}));
 }
 
 void osc_clients::check_later(const endpoint& e)

@@ -140,6 +140,7 @@ private:
         bool admitted = false; ///< its token was right, or it needs none
         bool input_over = false;
         unsigned wrong_tokens = 0;
+        unsigned refusals_waiting = 0; ///< answers to wrong tokens that are put off
         std::set<std::string> events = {};
         double levels_hz = 30.0;
         boost::asio::steady_timer levels_timer;

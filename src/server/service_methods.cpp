@@ -46,7 +46,10 @@ bool same_secret(const std::string& a, const std::string& b)
 bool is_taken_name(std::string_view name)
 {
     std::string small = in_small_letters(std::string(name));
-    std::erase(small, ' ');
+    for (const std::string_view blank :
+         {" ", "\u00a0", "\u200b", "\u200c", "\u200d", "\u2060", "\u3000", "\ufeff"})
+        for (std::size_t at = small.find(blank); at != small.npos; at = small.find(blank))
+            small.erase(at, blank.size());
     return small.empty() || small == "you" || small == "theowner";
 }
 
@@ -88,7 +91,9 @@ void service::hello(client& c, const json& params, const answer& to)
     if (name != nullptr && is_taken_name(name->get<std::string>()))
         bad_param("name", "pages call somebody else so, or nobody", "a name that others know you by");
     if (!c.admitted) {
-        if (token == nullptr || !same_secret(token->get<std::string>(), options_.token))
+        // Counts what comes before the answer to a wrong token as wrong: nobody tries in a hurry.
+        const bool compares = c.refusals_waiting == 0 && c.wrong_tokens < most_wrong_tokens;
+        if (!compares || token == nullptr || !same_secret(token->get<std::string>(), options_.token))
             return refuse_token(c, to, token == nullptr);
         c.admitted = true;
         wrong_token_wait_s_.erase(c.from);
@@ -117,11 +122,16 @@ void service::refuse_token(client& c, const answer& to, bool is_missing)
     const auto refuse = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
         to.fault({net::code_no_token, "token", "token", is_missing ? "it is owed" : "it is wrong",
                   "give what the server's token_file holds"});
-        if (client* const guest = find(number); guest != nullptr && last)
+        client* const guest = find(number);
+        if (guest == nullptr)
+            return;
+        guest->refusals_waiting -= is_missing ? 0 : 1;
+        if (last)
             guest->link->turn_out("three wrong tokens");
     };
     if (is_missing)
         return refuse();
+    ++c.refusals_waiting;
     const auto timer = late_answers_.emplace(late_answers_.end(), io_);
     timer->expires_after(std::chrono::nanoseconds(std::llround(count_wrong_token(c.from) * 1e9)));
     timer->async_wait([=, this](const boost::system::error_code& gone) {

@@ -249,6 +249,10 @@ class Protocol(ServeTest):
             self.assertAlmostEqual(c.ok("plan", **params)["stroke"]["duration_s"], duration_s)
         self.assertAlmostEqual(c.ok("hello")["stream"]["latency_s"], 0.005)
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -20)
+        self.write("a.toml", '[array]\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n[[tactor]]\ntactor = 4\nmax_dbfs = -30\n')
+        fault = self.serve("--socket", self.dir / "limited.sock", "--array", "a.toml").client().error("play", path="M 0 0 L 40 40")
+        self.assertIn("above its limit of -30 dBFS", fault["message"])
+        self.assertNotIn("a.toml", fault["message"])  # the owner's file
         c = self.serve("--socket", self.dir / "b.sock", config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -30)
         for method, params in (("play", line), ("begin", {})):

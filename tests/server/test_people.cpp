@@ -75,9 +75,10 @@ TEST_CASE("a name that could spoil what others read is refused, and the last one
     service_rig rig;
     const auto a = rig.client();
     rig.ok(a, "hello", {{"name", "Ann"}});
-    for (const json& bad : {json(""), json(std::string(41, 'x')), json("a\nb"), json("a\x1b[2J"), json(7),
-                            json(nullptr), json(" "), json("you"), json("You"), json("the owner"),
-                            json("The Owner ")}) { // the last ones pages give themselves
+    for (const json& bad :
+         {json(""), json(std::string(41, 'x')), json("a\nb"), json("a\x1b[2J"), json(7), json(nullptr),
+          json(" "), json("\u00a0"), json("you\u200b"), json("you"), json("You"), json("the owner"),
+          json("The Owner ")}) { // the last ones pages give themselves
         const json r = rig.call(a, "hello", {{"name", bad}});
         REQUIRE(r.contains("error"));
         CHECK(r["error"]["code"] == -32602);

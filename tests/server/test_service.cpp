@@ -567,6 +567,11 @@ TEST_CASE("over a network hello comes first, and the token where one is owed")
     CHECK(rig.code(d, "hello", {{"token", "right"}}) == 0);
     CHECK(rig.code(d, "status") == 0);
     CHECK(rig.code(rig.client(), "status") == 0);
+    // Sent before a wrong token is answered, the right one counts as wrong.
+    const auto hasty = rig.client(server::client_kind::network);
+    for (const char* token : {"wrong", "right"})
+        rig.send(hasty, {{"jsonrpc", "2.0"}, {"id", 1}, {"method", "hello"}, {"params", {{"token", token}}}});
+    CHECK(rig.code(hasty, "status") == -32003);
 }
 
 } // namespace service_test
