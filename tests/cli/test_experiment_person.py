@@ -344,7 +344,8 @@ class Masking(PersonTest):
         self.assertIn("masking noise has no device", said)
         text = self.ok("report", "study").stdout
         self.assertIn("| terminal without animation | none | none |", text)
-        self.assertIn(r"this masking noise: noise: white, level\_dbfs: -20", text)
+        self.assertNotIn("noise: white", text)
+        self.assertIn("before the first stimulus, shown on: terminal without animation", text)
 
     def test_the_noise_level_is_checked_by_ear(self):
         check = ("experiment", self.noisy(), "--check-noise", "-D", "null")

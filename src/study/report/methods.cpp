@@ -419,7 +419,13 @@ json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
         {"motions", join(o.motions)},
         {"attribute", fact([](const run_definition& r) { return r.attribute; })},
         {"question", fact([](const run_definition& r) { return r.question; })},
-        {"animation", fact([](const run_definition& r) { return r.animation ? "yes" : "no"; })},
+        {"animation", join_texts(f,
+                                 [run](const session_facts& s) {
+                                     if (!s.design)
+                                         return std::string();
+                                     return s.design->runs.at(run).animation ? stream_text(s, "display")
+                                                                             : std::string("no");
+                                 })},
         {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
         {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
         {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
@@ -500,6 +506,10 @@ json describe_results(json runs, const dataset& d)
 {
     for (const run_outline& o : d.experiment.runs) {
         json& run = runs.at(o.name);
+        if (run.at("n") == 0) // nobody answered all of it
+            for (const char* key : {"preference", "first_interval", "means", "paired", "anova", "tukey",
+                                    "correct", "confusion"})
+                run.erase(key);
         const interval possible = possible_values(o);
         for (const char* key : {"preference", "means", "correct"})
             if (run.contains(key))
@@ -576,7 +586,6 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
-    all["masking"] = fact("masking");
     all["sessions"] = json::array();
     for (const session_facts& s : f.sessions)
         all["sessions"].push_back(describe_session(s, d));
