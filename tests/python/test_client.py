@@ -60,6 +60,7 @@ def test_strokes_are_played_and_waited_for(client, tap):
     assert stroke.done() and stroke.report == report and stroke.id > 0
     for drawn in (tactor.Path.svg("M 5 5 L 9 9"), "park2016-1"):
         assert client.play(drawn, duration=0.05, algorithm="continuous").wait(LONG).state == "finished"
+    assert tactor.Client(client._wire.path).play(tap, algorithm="continuous").wait(LONG).state == "finished"
     late = client.play(tap, delay=0.2).wait(LONG)
     assert late.started_s > report.started_s + 0.2 and late.late_s < LONG
 

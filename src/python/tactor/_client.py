@@ -32,6 +32,7 @@ class Reply(_Awaited[_t.Any]):
     def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any] = lambda result: result) -> None:
         super().__init__()
         self._client = client
+        self._keeps: object = None  # a Client that nobody names any more is not closed before the answer
         self._convert = convert
 
     def done(self) -> bool:
@@ -336,10 +337,14 @@ class Client(_Unique):
         """True once it was closed, or the service has gone."""
         return self._wire.gone
 
+    def _ask(self, reply: _t.Any, method: str, params: dict[str, _t.Any]) -> _t.Any:
+        reply._keeps = self
+        return self._wire.ask(reply, method, params)
+
     def call(self, method: str, **params: _t.Any) -> Reply:
         """Calls any method of the protocol, with its parameters; gives its result as JSON has it."""
         _need(method, str, "method")
-        return self._wire.ask(Reply(self._wire), method, params)
+        return self._ask(Reply(self._wire), method, params)
 
     def play(self, stroke: _t.Union[Stroke, Path, str], *, start: _t.Union[str, dict[str, float]] = "now", at_s: float | None = None,
              delay: float | None = None, **options: _t.Any) -> RemoteStroke:
@@ -375,11 +380,11 @@ class Client(_Unique):
             start = {"monotonic_s": _number("at_s", at_s)}
         elif delay is not None:
             start = {"delay_s": _number("delay", delay)}
-        return self._wire.ask(RemoteStroke(self._wire), "play", {**_source(stroke), "options": _option_values(options), "start": start})
+        return self._ask(RemoteStroke(self._wire), "play", {**_source(stroke), "options": _option_values(options), "start": start})
 
     def plan(self, stroke: _t.Union[Stroke, Path, str], **options: _t.Any) -> Reply:
         """Plans a stroke as `play` would, and plays nothing; gives a `Plan`."""
-        return self._wire.ask(Reply(self._wire, Plan.from_dict), "plan", {**_source(stroke), "options": _option_values(options)})
+        return self._ask(Reply(self._wire, Plan.from_dict), "plan", {**_source(stroke), "options": _option_values(options)})
 
     def live(self, *, timeout: float | None = None, smooth: float | None = None, **options: _t.Any) -> RemoteLive:
         """Begins a stroke that is fed point by point; silent until the first. Blocks until the service has answered.
@@ -408,6 +413,7 @@ class Client(_Unique):
         if smooth is not None:
             params["smooth_s"] = _number("smooth", smooth)
         stroke = RemoteLive(self._wire)
+        stroke._keeps = self
         self._wire.ask(Reply(self._wire, stroke._take), "begin", params).wait()
         return stroke
 
@@ -415,7 +421,7 @@ class Client(_Unique):
         """Drives one tactor for a while, s, at an intensity of 0 to 1; gives a `Report`."""
         params = {"tactor": _whole("tactor", tactor, 0, 1023), "intensity": _number("intensity", intensity, 0.0, 1.0),
                   "duration_s": _number("duration", duration, 0.0)}
-        return self._wire.ask(RemoteStroke(self._wire), "drive", params)
+        return self._ask(RemoteStroke(self._wire), "drive", params)
 
     def stop(self) -> Reply:
         """Fades everybody's strokes out; the service goes on."""
@@ -423,7 +429,7 @@ class Client(_Unique):
 
     def fire(self) -> Reply:
         """Starts everybody's armed strokes; gives their count."""
-        return self._wire.ask(Reply(self._wire, lambda result: result["count"]), "fire", {})
+        return self._ask(Reply(self._wire, lambda result: result["count"]), "fire", {})
 
     def status(self) -> Reply:
         """Asks for the state of the service: a dict with stream, amplifier, clients, strokes and limits."""

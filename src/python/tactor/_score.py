@@ -228,7 +228,7 @@ class Score(_Value):
             a._core.sounds_like(b._core) for a, b in zip(self.plans, other.plans))
 
     def __hash__(self) -> int:
-        return hash(self._sounds())
+        return hash((self._sounds(), tuple((p.carrier, p.amplitudes.tobytes()) for p in self.plans)))
 
     def _sounds(self) -> tuple[_t.Any, ...]:
         """Returns all that decides on the samples, but for the plans' bursts and curves."""
