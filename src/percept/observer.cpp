@@ -401,7 +401,7 @@ std::string notice(const compensated_plan& p)
     if (p.at_edge != 0)
         text += fmt::format(
             "; {} of {} cannot be moved far enough on this array, which alone leaves {:.3f} mm RMS "
-            "and at most {:.3f} mm",
+            "and at most {:.3f} mm; where many places do equally well, others would too",
             p.at_edge, counted(p.taps.size(), "burst"), p.residual_rms_mm, p.residual_largest_mm);
     if (p.plan.algorithm == to_string(algorithm_kind::tactile_brush))
         text += "; off the lines of the grid they are no longer the Tactile Brush's";

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tactor play on ALSA's null and file devices, which need no hardware and pace themselves; and drive time from run to run."""
+import datetime
 import json
 import os
 import re
@@ -183,6 +184,8 @@ class Play(ToolTest):
                 self.assertRegex(line, f"^{self.LOG_LINE}$")
             self.assertEqual(sum('info PCM "null": 9 channels, 48000 Hz' in line for line in lines), times)
             self.assertEqual(sum(line.endswith("info the stream has ended") for line in lines), times)
+            at = datetime.datetime.fromisoformat(lines[-1].split()[0])
+            self.assertLess(abs(datetime.datetime.now(datetime.timezone.utc) - at).total_seconds(), PATIENCE_S)
         self.assertRegex(self.ok("play", *self.SHORT, "-D", "null", "--verbose").stderr, f"(?m)^{self.LOG_LINE}$")
 
     def test_a_log_has_a_line_a_stroke(self):
