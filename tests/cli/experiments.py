@@ -142,14 +142,14 @@ def read_table(path):
     return [dict(zip(head, line)) for line in lines]
 
 
-def count_noise(path):
-    """Returns the number of pieces of noise at -20 dBFS in a file (S32, stereo), looking every 10 ms."""
+def noise_pieces(path):
+    """Returns the length of each piece of noise at -20 dBFS in a file (S32, stereo), in 10 ms."""
     values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", path.read_bytes())]
     left = values[::2]
     assert left == values[1::2]
     power = [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
     assert power[0] == 0
-    return len(re.findall("1+", "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)))
+    return [len(piece) for piece in re.findall("1+", "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power))]
 
 
 def contents(folder):

@@ -9,7 +9,7 @@ import shutil
 import time
 import unittest
 
-from experiments import SHORT, SMALL, PersonTest, Terminal, contents, count_noise, read_table
+from experiments import SHORT, SMALL, PersonTest, Terminal, contents, noise_pieces, read_table
 from harness import PATIENCE_S, main
 
 AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
@@ -325,7 +325,7 @@ class Masking(PersonTest):
         for code, extra, most in (("01", "", 7), ("02", 'while = "run"\n', 4)):
             self.ok(*self.args("--masker", f"raw:noise{code}.raw", definition=self.noisy(extra), code=code), stdin=ByLines.ANSWERS)
             self.assertEqual(self.session(code)["masker"], f"raw:noise{code}.raw")
-            self.assertIn(count_noise(self.dir / f"noise{code}.raw"), range(1, most + 1))
+            self.assertIn(len(noise_pieces(self.dir / f"noise{code}.raw")), range(1, most + 1))
 
     def test_renamed_headphones_are_accepted(self):
         args = self.args(definition=self.noisy())
@@ -353,7 +353,7 @@ class Masking(PersonTest):
         self.assertIn("white noise, -20 dBFS, on raw:noise.raw", said)
         self.assertEqual(said.splitlines()[1:2] + said.splitlines()[4:], ["noise", "silence", "noise"])
         self.assertRegex(said.splitlines()[2], r"^a stimulus of 0\.\d\d s$")
-        self.assertLessEqual(count_noise(self.dir / "noise.raw"), 3)
+        self.assertLessEqual(len(noise_pieces(self.dir / "noise.raw")), 3)
         self.assertFalse((self.dir / "study").exists())
         self.ok(*check, "--masker", "null")  # without keys it ends
         self.refused(2, *check)

@@ -41,6 +41,7 @@ HAS_NOT = {
     "felt_places compensate compensated_places": "compare(observer=...) and plan(compensate=...) ask them of plans",
     "burst_ramp_s": "in the record of each burst: Plan.to_dict()",
     "sample_bytes": "the dtype's itemsize",
+    "monotonic_time": "seconds, as time.monotonic() has them",
     "resolve_start_s": "Score does it for its plans",
     "parse_envelope envelope_text": "envelope and tukey_part of a Score",
     "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",

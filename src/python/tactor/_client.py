@@ -337,7 +337,7 @@ class Client(_Unique):
         """True once it was closed, or the service has gone."""
         return self._wire.gone
 
-    def _ask(self, reply: _t.Any, method: str, params: dict[str, _t.Any]) -> _t.Any:
+    def _ask(self, reply: _R, method: str, params: dict[str, _t.Any]) -> _R:
         reply._keeps = self
         return self._wire.ask(reply, method, params)
 

@@ -6,18 +6,16 @@ import unittest
 
 import test_calibrate
 import test_experiment_person
-from experiments import read_table
+from experiments import noise_pieces, read_table
 from harness import SANITIZED, ToolTest, main
 from serving import LONG, ServeTest
 
 
 class Trials(test_calibrate.CalibrateTest):
-    read_noise, pieces = test_calibrate.Person.read_noise, test_calibrate.Person.pieces
-
     def test_noise_covers_both_intervals_of_each_trial(self):
         self.refused(1, *test_calibrate.Person.ARGS, "--masker", "raw:noise.raw", "--masker-dbfs", -20, stdin="1\n2\n",
                      says=["trial 3: there is no answer any more"])
-        pieces = self.pieces(self.read_noise("noise.raw"))
+        pieces = noise_pieces(self.dir / "noise.raw")
         # Three trials: half a second before interval 1, two intervals of 50 ms, half a second between.
         self.assertGreaterEqual(sum(pieces), 3 * 109)
         self.assertLessEqual(len(pieces), 3)
@@ -25,11 +23,11 @@ class Trials(test_calibrate.CalibrateTest):
 
 
 class Sessions(test_experiment_person.PersonTest):
-    noisy, covered = test_experiment_person.Masking.noisy, test_experiment_person.Masking.covered
+    noisy = test_experiment_person.Masking.noisy
 
     def test_noise_surrounds_each_stimulus(self):
         self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy()), stdin=test_experiment_person.ByLines.ANSWERS)
-        pieces = self.covered("noise.raw")
+        pieces = noise_pieces(self.dir / "noise.raw")
         # Two tactors of the walk (0.65 s), three pairs and two single stimuli after half a second each; without answers to wait
         # for, neighbours may merge.
         least = 2 * 65 + 100 * sum(0.5 + float(r["duration"]) for r in
@@ -40,7 +38,7 @@ class Sessions(test_experiment_person.PersonTest):
 
     def test_noise_lasts_through_the_run(self):
         self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy('while = "run"\n')), stdin=test_experiment_person.ByLines.ANSWERS)
-        pieces = self.covered("noise.raw")
+        pieces = noise_pieces(self.dir / "noise.raw")
         whole = [100 * (float(r["onset"]) + float(r["duration"])) for r in
                  (self.rows("01", "pairs")[-1], self.rows("01", "marks")[-1])]
         for run in whole:  # from its first sample to its last, in one piece
@@ -48,7 +46,7 @@ class Sessions(test_experiment_person.PersonTest):
 
     def test_noise_while_its_level_is_checked(self):
         self.ok("experiment", self.noisy(), "--check-noise", "-D", "null", "--masker", "raw:noise.raw", stdin="s\ns\nn\nx\nn\nq\n")
-        self.assertGreaterEqual(sum(self.covered("noise.raw")), 40)
+        self.assertGreaterEqual(sum(noise_pieces(self.dir / "noise.raw")), 40)
 
 
 class Served(ServeTest):
