@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from harness import ROOT, ToolTest, main  # noqa: E402
+from harness import ROOT, TOOL, ToolTest, main  # noqa: E402
 
 FUZZ = ROOT / "tests/fuzz"
 
@@ -48,6 +48,10 @@ class Lanes(ToolTest):
             said("sh", "-n", str(file))
         for file, text in pythons:
             ast.parse(text, str(file))
+
+    def test_what_measures_time_finds_its_helpers(self):
+        for file in ROOT.glob("tests/*/timed/test_*.py"):
+            said(sys.executable, "-c", f"import {file.stem}", str(TOOL), str(ROOT), "examples", env=os.environ | {"PYTHONPATH": f"{ROOT}/tests/cli:{file.parent}"})
 
     def test_packages_and_scripts_that_lanes_name_are_there(self):
         purposes = set(re.findall(r"^(\S+): ", (ROOT / "tests/packages").read_text(encoding="utf-8"), re.M))
