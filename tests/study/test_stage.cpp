@@ -222,6 +222,15 @@ TEST_CASE("a stimulus that falls silent because of those before says so")
     s.there.finish();
 }
 
+TEST_CASE("after a stimulus that a limit cut, the next one waits until it is whole")
+{
+    set_up s(0.3, 60.0);
+    CHECK(s.there.give(tone(0.5), 0.0, nobody).limited);
+    CHECK(s.there.make_room(tone(0.05), 0.1, [](double) { return true; }));
+    CHECK_FALSE(s.there.give(tone(0.05), 0.1, nobody).limited);
+    s.there.finish();
+}
+
 TEST_CASE("a stimulus that has waited for room is whole")
 {
     set_up s(0.3, 60.0);

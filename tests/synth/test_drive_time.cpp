@@ -389,8 +389,9 @@ TEST_CASE("a piece waits until the level leaves room for it, counting its own ta
     CHECK(wait_s(late, three, 10.0) == doctest::Approx(2.0));
     late.resume(std::vector{4.0});
     CHECK(wait_s(late, three, 0.0) == doctest::Approx(2.0));
-    late.fill(0);
-    CHECK(wait_s(late, piece({one(0.0, 3.0, 1)}, -12.0), 0.0) == doctest::Approx(3.0));
+    // A closed channel opens at half of 5 s.
+    late.close(0);
+    CHECK(wait_s(late, piece({one(0.0, 3.0, 1)}, -12.0), 0.0) == doctest::Approx(2.5 + 3.0));
     drive_limits short_rest{.max_drive_s = 4.0};
     short_rest.window_s = 5.0; // a second of rest takes 4 s away
     synth::drive_room s(2, short_rest, rate);

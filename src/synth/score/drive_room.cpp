@@ -97,10 +97,10 @@ void drive_room::resume(std::span<const double> levels_s)
         levels_[i] = {std::min(levels_s[i] * rate_, limit_), 0};
 }
 
-void drive_room::fill(std::uint64_t clock)
+void drive_room::close(std::uint64_t clock)
 {
     for (level& l : levels_)
-        l = {limit_, clock};
+        l = {1.5 * limit_, clock}; // at the limit when they open
 }
 
 void drive_room::played(const score& s, std::uint64_t clock)

@@ -30,8 +30,9 @@ public:
     /// Begins with these levels, s, at frame 0; nothing for channels beyond.
     void resume(std::span<const double> levels_s);
 
-    /// Takes all channels for full from a frame on: something drove them that is not known here.
-    void fill(std::uint64_t clock);
+    /// Takes all channels for closed by the guard at a frame, which opens them at half of the limit:
+    /// something drove them that is not known here.
+    void close(std::uint64_t clock);
 
     /// Adds a score that was played from this frame on. Scores come in order of time.
     void played(const score& s, std::uint64_t clock);
