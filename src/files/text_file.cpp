@@ -126,29 +126,31 @@ void refuse_other_kind(std::string_view text, const std::string& name, std::stri
                         hint);
 }
 
-bool is_standard_output(const struct stat& file)
+// Returns true if a descriptor writes to that file.
+bool writes_to(int descriptor, const struct stat& file)
 {
-    const auto goes_into = [&file](int descriptor) {
-        struct stat s {};
-        return ::fstat(descriptor, &s) == 0 && s.st_dev == file.st_dev && s.st_ino == file.st_ino &&
-               (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
-    };
-    return goes_into(STDOUT_FILENO) || goes_into(STDERR_FILENO);
+    return is_open_to(descriptor, file) && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
 }
 
 } // namespace
+
+bool is_open_to(int descriptor, const struct stat& file)
+{
+    struct stat s {};
+    return ::fstat(descriptor, &s) == 0 && s.st_dev == file.st_dev && s.st_ino == file.st_ino;
+}
 
 void note_input(const fs::path& file, owner_kind owner)
 {
     struct stat s {};
     if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode))
         return;
-    std::error_code ignored;
-    fs::path whole = fs::absolute(file, ignored);
-    if (guards_standard_output && is_standard_output(s))
+    if (guards_standard_output && (writes_to(STDOUT_FILENO, s) || writes_to(STDERR_FILENO, s)))
         throw error(error_kind::bad_input,
                     source_place{file == "/dev/fd/0" ? "standard input" : file.string()},
                     "is where this program writes to", "write to another file");
+    std::error_code ignored;
+    fs::path whole = fs::absolute(file, ignored);
     inputs& i = known_inputs();
     const std::lock_guard locked(i.guard);
     input& read = i.all.try_emplace(std::move(whole), input{.owner = owner}).first->second;

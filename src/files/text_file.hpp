@@ -29,6 +29,9 @@ enum class owner_kind {
     caller,  ///< writes text through the library
 };
 
+/// Returns true if a descriptor is open to that file.
+bool is_open_to(int descriptor, const struct stat& file);
+
 /// Set by a program, before it reads anything, whose standard output and error must not go into an input.
 inline bool guards_standard_output = false;
 

@@ -25,6 +25,7 @@
 #include <tactor/tactor.hpp>
 
 #include "core/owned.hpp"
+#include "files/text_file.hpp"
 #include "rt/thread.hpp"
 #include "session/say.hpp"
 
@@ -117,12 +118,6 @@ bool is_named_pipe(const std::string& file)
     return fs::is_fifo(fs::symlink_status(file, ignored));
 }
 
-bool is_descriptor(const struct stat& s, int fd)
-{
-    struct stat out {};
-    return ::fstat(fd, &out) == 0 && out.st_dev == s.st_dev && out.st_ino == s.st_ino;
-}
-
 // A folder has no text. A terminal, or a pipe that this process writes to, would be read for ever.
 void refuse_unreadable(const std::string& file)
 {
@@ -132,7 +127,7 @@ void refuse_unreadable(const std::string& file)
     if (S_ISDIR(s.st_mode))
         throw error(error_kind::bad_input, source_place{file}, "is a folder", "name a file in it")
             .with_os_code(EISDIR);
-    if (S_ISFIFO(s.st_mode) && (is_descriptor(s, STDOUT_FILENO) || is_descriptor(s, STDERR_FILENO)))
+    if (S_ISFIFO(s.st_mode) && (detail::is_open_to(STDOUT_FILENO, s) || detail::is_open_to(STDERR_FILENO, s)))
         throw error(error_kind::bad_input, file, "is where this program writes to",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
@@ -226,7 +221,7 @@ void check_readable(const std::string& file)
 bool is_standard_output(const std::string& file)
 {
     struct stat s {};
-    return ::stat(file.c_str(), &s) == 0 && is_descriptor(s, STDOUT_FILENO);
+    return ::stat(file.c_str(), &s) == 0 && detail::is_open_to(STDOUT_FILENO, s);
 }
 
 void refuse_standard_input(int code)

@@ -228,7 +228,7 @@ class Inputs(ExperimentTest):
         self.write("live.txt", "0 20 1\n")
         for file, args, stdin in (("s.toml", "render s.toml -o -", os.devnull), ("s.toml", "compare s.toml", os.devnull),
                                   ("a.toml", "check --array a.toml", os.devnull), ("s.toml", "plan -", "s.toml"),
-                                  ("live.txt", "play --live - -D null", "live.txt")):
+                                  ("live.txt", "play --live - -D null", "live.txt"), ("live.txt", "play --live - --socket none", "live.txt")):
             self.spared(file, *args.split(), stdin=stdin)
 
     def test_a_calibration_replaces_none_of_its_inputs(self):

@@ -188,7 +188,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
     });
 }
 
-// Refuses options that a live stroke does not have.
+// Refuses options that a live stroke does not have, and standard input that this program writes to.
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
@@ -200,13 +200,13 @@ void check_live(const settings& s)
                           "its points say when it is where");
     if (s.stream.arm)
         refuse_option("--arm", "a live stroke starts with its first point", "leave it out");
+    detail::note_input("/dev/fd/0");
 }
 
 // Plays until standard input ends.
 int play_live(settings& s, const play_options& o)
 {
     s.strokes.clear(); // standard input has its points, which come later
-    detail::note_input("/dev/fd/0");
     const environment e = session::read_environment(s);
     const live_options usual;
     live_options l;

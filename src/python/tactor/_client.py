@@ -29,10 +29,10 @@ class Reply(_Awaited[_t.Any]):
 
     _what = "the request"
 
-    def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any] = lambda result: result) -> None:
+    def __init__(self, client: Client, convert: _t.Callable[[_t.Any], _t.Any] = lambda result: result) -> None:
         super().__init__()
-        self._client = client
-        self._keeps: object = None  # a Client that nobody names any more is not closed before the answer
+        self._client = client._wire
+        self._keeps = client  # one that nobody names any more is not closed before the answer
         self._convert = convert
 
     def done(self) -> bool:
@@ -84,7 +84,7 @@ class RemoteStroke(Reply):
 
     _what = "the stroke"
 
-    def __init__(self, client: _Connection) -> None:
+    def __init__(self, client: Client) -> None:
         super().__init__(client)
         self._numbers: list[int] = []
         self._open: set[int] = set()
@@ -337,14 +337,10 @@ class Client(_Unique):
         """True once it was closed, or the service has gone."""
         return self._wire.gone
 
-    def _ask(self, reply: _R, method: str, params: dict[str, _t.Any]) -> _R:
-        reply._keeps = self
-        return self._wire.ask(reply, method, params)
-
     def call(self, method: str, **params: _t.Any) -> Reply:
         """Calls any method of the protocol, with its parameters; gives its result as JSON has it."""
         _need(method, str, "method")
-        return self._ask(Reply(self._wire), method, params)
+        return self._wire.ask(Reply(self), method, params)
 
     def play(self, stroke: _t.Union[Stroke, Path, str], *, start: _t.Union[str, dict[str, float]] = "now", at_s: float | None = None,
              delay: float | None = None, **options: _t.Any) -> RemoteStroke:
@@ -380,11 +376,11 @@ class Client(_Unique):
             start = {"monotonic_s": _number("at_s", at_s)}
         elif delay is not None:
             start = {"delay_s": _number("delay", delay)}
-        return self._ask(RemoteStroke(self._wire), "play", {**_source(stroke), "options": _option_values(options), "start": start})
+        return self._wire.ask(RemoteStroke(self), "play", {**_source(stroke), "options": _option_values(options), "start": start})
 
     def plan(self, stroke: _t.Union[Stroke, Path, str], **options: _t.Any) -> Reply:
         """Plans a stroke as `play` would, and plays nothing; gives a `Plan`."""
-        return self._ask(Reply(self._wire, Plan.from_dict), "plan", {**_source(stroke), "options": _option_values(options)})
+        return self._wire.ask(Reply(self, Plan.from_dict), "plan", {**_source(stroke), "options": _option_values(options)})
 
     def live(self, *, timeout: float | None = None, smooth: float | None = None, **options: _t.Any) -> RemoteLive:
         """Begins a stroke that is fed point by point; silent until the first. Blocks until the service has answered.
@@ -412,16 +408,15 @@ class Client(_Unique):
             params["timeout_s"] = _number("timeout", timeout)
         if smooth is not None:
             params["smooth_s"] = _number("smooth", smooth)
-        stroke = RemoteLive(self._wire)
-        stroke._keeps = self
-        self._wire.ask(Reply(self._wire, stroke._take), "begin", params).wait()
+        stroke = RemoteLive(self)
+        self._wire.ask(Reply(self, stroke._take), "begin", params).wait()
         return stroke
 
     def drive(self, tactor: int, intensity: float = 1.0, duration: float = 0.5) -> RemoteStroke:
         """Drives one tactor for a while, s, at an intensity of 0 to 1; gives a `Report`."""
         params = {"tactor": _whole("tactor", tactor, 0, 1023), "intensity": _number("intensity", intensity, 0.0, 1.0),
                   "duration_s": _number("duration", duration, 0.0)}
-        return self._ask(RemoteStroke(self._wire), "drive", params)
+        return self._wire.ask(RemoteStroke(self), "drive", params)
 
     def stop(self) -> Reply:
         """Fades everybody's strokes out; the service goes on."""
@@ -429,7 +424,7 @@ class Client(_Unique):
 
     def fire(self) -> Reply:
         """Starts everybody's armed strokes; gives their count."""
-        return self._ask(Reply(self._wire, lambda result: result["count"]), "fire", {})
+        return self._wire.ask(Reply(self, lambda result: result["count"]), "fire", {})
 
     def status(self) -> Reply:
         """Asks for the state of the service: a dict with stream, amplifier, clients, strokes and limits."""

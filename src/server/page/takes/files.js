@@ -34,7 +34,7 @@ async function open_files(files) {
   // After the changes of the takes, which end the faults of former ones.
   requestAnimationFrame(() => { state.fault = faults.join(" "); changed("link"); });
 }
-// Of a recording with values above 1 it asks which value means the level, as --intensity-max does.
+// Asks which value of a recording that goes above 1 means the level, as --intensity-max does.
 async function import_file(file) {
   const source = await what_to_import(file);
   try { return await call("import", source); } catch (e) {
