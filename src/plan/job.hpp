@@ -63,7 +63,7 @@ struct job {
 };
 
 /// Plans a stroke as make_plan() does, and passes its bursts to `take` instead of storing them.
-plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
+plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& common,
                     const burst_taker& take);
 
 /// Counts the plan's bursts, and passes them to job::take if there is one.

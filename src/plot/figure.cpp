@@ -37,8 +37,7 @@ std::string describe_waveform(const plan& p)
         low = least->hz;
         high = most->hz;
     }
-    const std::string frequency =
-        plain_number(low) + (low == high ? "" : " to " + plain_number(high)) + " Hz";
+    std::string frequency = plain_number(low) + (low == high ? "" : " to " + plain_number(high)) + " Hz";
     switch (p.wave.kind) {
     case waveform_kind::sine:
         return frequency;

@@ -51,7 +51,7 @@ std::string read_name(const json& params)
 {
     constexpr std::size_t longest_name = 255;
     const json* said = member(params, "name");
-    const std::string name = said == nullptr ? "stroke" : text(*said, "name");
+    std::string name = said == nullptr ? "stroke" : text(*said, "name");
     if (name.size() > longest_name)
         bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
     return name;

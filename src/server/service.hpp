@@ -271,7 +271,7 @@ private:
     void gather_levels();
     reply_json hello_result(const client& c);
     reply_json limits_json() const;
-    void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
+    void tell_subscribers(const std::string& event, const reply_json& params, client_number except = 0);
     void touch(stroke_record& r);
     void tell_touch(const stroke_record& r, bool down);
     void tell_stop(client_number by);

@@ -319,13 +319,13 @@ void service::send_levels(client_number number)
 }
 
 // Notifies the subscribers of an event, except for one client. Those that are behind get nothing.
-void service::tell_subscribers(const std::string& event, reply_json params, client_number except)
+void service::tell_subscribers(const std::string& event, const reply_json& params, client_number except)
 {
     std::string line;
     for (const auto& [number, c] : clients_)
         if (number != except && c->events.contains(event) && c->link->waiting() < enough_waiting) {
             if (line.empty())
-                line = net::json_line(net::notification(event, std::move(params)));
+                line = net::json_line(net::notification(event, params));
             c->link->send(line);
         }
 }

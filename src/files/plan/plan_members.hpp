@@ -300,8 +300,7 @@ void stroke_members(Io& io, Parts& r)
     members(io, r.sound);
     io.with("note", detail::omit_empty(note_text(r.note)),
             [&r](const auto& given) {
-                if (given == note_text(note_kind::reconstructed))
-                    r.note = note_kind::reconstructed;
+                r.note = given == note_text(note_kind::reconstructed) ? note_kind::reconstructed : r.note;
             },
             {"only of park2016-1 to -4: that they are reconstructed"});
     io.with("fit", make_matrix(r.fit),

@@ -112,7 +112,7 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
 std::string find_code(const std::vector<std::string>& known, const std::string& wanted,
                       std::string_view option)
 {
-    const std::string code = wanted.starts_with(prefix) ? wanted.substr(prefix.size()) : wanted;
+    std::string code = wanted.starts_with(prefix) ? wanted.substr(prefix.size()) : wanted;
     if (std::find(known.begin(), known.end(), code) == known.end())
         throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not in participants.tsv", wanted),
                     fmt::format("there are {}", fmt::join(known, ", ")));
