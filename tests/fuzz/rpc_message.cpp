@@ -176,8 +176,8 @@ private:
             static const std::set<int> codes{-32700, -32600, -32601, -32602, -32000, -32001, -32002};
             HOLDS(codes.contains(m["error"]["code"].get<int>()));
             const json& d = m["error"]["data"];
-            HOLDS(d.size() == 4 && !d["what"].get<std::string>().empty() &&
-                  !d["why"].get<std::string>().empty());
+            HOLDS(d.size() == 4 + d.count("line") + d.count("column")); // kind, what, why and hint
+            HOLDS(!d["what"].get<std::string>().empty() && !d["why"].get<std::string>().empty());
         } else if (const auto n = m["result"].find("stroke"); n != m["result"].end()) {
             const json& r = m["result"];
             for (const json& one : r.contains("strokes") ? r["strokes"] : json::array({*n}))
