@@ -202,6 +202,9 @@ class Takes(TakesTest):
         self.fingers(p, "touchMove", [35, 5], [35, 20], [35, 35])
         p.touch("touchEnd")
         p.until("tactor.state.takes.length === 1")
+        # The studio's words on the take move the lanes: waits until they stay where they are for half a second.
+        p.until("(now => now === globalThis.seen ? ++globalThis.looks > 30 : (Object.assign(globalThis, {seen: now, looks: 0}), false))"
+                "(JSON.stringify(document.querySelector('#lanes').getBoundingClientRect()))")
         x, y = p.value("(r => [r.x + r.width / 2, r.y + 43])(document.querySelector('#lanes').getBoundingClientRect())")
         for wanted in (1, 2, 0):
             p.tap(x, y)
