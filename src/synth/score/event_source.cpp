@@ -107,9 +107,11 @@ constexpr auto later = [](const expander* a, const expander* b) noexcept {
 
 } // namespace
 
-void expander::begin(const score::impl& s, std::size_t item_number, control_points* points)
+void expander::begin(const score::impl& s, std::size_t item_number, control_points* points,
+                     std::uint64_t shift)
 {
     score_ = &s;
+    shift_ = shift;
     item_ = &s.list.items[item_number];
     points_ = points;
     number_ = item_number;
@@ -149,7 +151,7 @@ void expander::advance()
 void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
 {
     const plan& p = score_->plans[item_->plan].plan;
-    event_.start = start;
+    event_.start = start + shift_;
     event_.length = static_cast<std::uint32_t>(length);
     const std::uint64_t stroke = score_->starts[item_->plan];
     const std::uint64_t origin = score_->phase == phase_kind::burst ? item_->start : stroke;
@@ -320,7 +322,10 @@ bool expander::next_points()
 }
 
 event_source::event_source(const score& s)
-    : piece_(detail::access::shared(s)), expanders_(piece_->open_items), points_(piece_->open_continuous)
+    : piece_(detail::access::shared(s)),
+      part_(piece_.get()),
+      expanders_(piece_->open_items),
+      points_(piece_->open_continuous)
 {
     free_expanders_.reserve(expanders_.size());
     for (expander& e : expanders_)
@@ -336,12 +341,12 @@ event_source::event_source(const score& s)
 /// Lets every item begin that may have the next event.
 void event_source::begin_items()
 {
-    const std::deque<item>& items = piece_->list.items;
+    const std::deque<item>& items = part_->list.items;
     while (next_item_ < items.size() &&
-           (heap_.empty() || items[next_item_].start <= heap_.front()->event().start)) {
+           (heap_.empty() || items[next_item_].start + shift_ <= heap_.front()->event().start)) {
         const bool is_continuous = items[next_item_].kind == item_kind::continuous;
         expander* e = free_expanders_.back();
-        e->begin(*piece_, next_item_, is_continuous ? free_points_.back() : nullptr);
+        e->begin(*part_, next_item_, is_continuous ? free_points_.back() : nullptr, shift_);
         ++next_item_;
         free_expanders_.pop_back();
         if (is_continuous)
@@ -353,6 +358,18 @@ void event_source::begin_items()
         heap_.push_back(e);
         std::push_heap(heap_.begin(), heap_.end(), later);
     }
+}
+
+/// Goes on to the next part of a joined score; false if there is none.
+bool event_source::begin_part() noexcept
+{
+    if (next_part_ == piece_->parts.size())
+        return false;
+    const score_part& next = piece_->parts[next_part_++];
+    part_ = next.made.get();
+    shift_ = next.start;
+    next_item_ = 0;
+    return true;
 }
 
 /// Takes the first event off the heap.
@@ -388,6 +405,8 @@ const drive_event* event_source::peek()
     if (popped_)
         move_on();
     begin_items();
+    while (heap_.empty() && begin_part())
+        begin_items();
     return heap_.empty() ? nullptr : &heap_.front()->event();
 }
 

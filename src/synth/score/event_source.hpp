@@ -40,7 +40,9 @@ struct control_points {
 class expander {
 public:
     /// Begins an item. `points` is for a continuous one; not to be shared while this expander is in use.
-    void begin(const score::impl& s, std::size_t item_number, control_points* points);
+    /// Events start `shift` frames later than in the score.
+    void begin(const score::impl& s, std::size_t item_number, control_points* points,
+               std::uint64_t shift = 0);
 
     bool done() const noexcept { return done_; }
     const drive_event& event() const noexcept { return event_; }
@@ -63,6 +65,7 @@ private:
     const item* item_ = nullptr;
     control_points* points_ = nullptr;
     std::size_t number_ = 0;
+    std::uint64_t shift_ = 0;
     std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
     std::uint64_t step_end_ = 0; ///< continuous: frame of the latest control point
     std::uint64_t step_ = 0;     ///< continuous: number of the latest control point
@@ -89,10 +92,14 @@ public:
 private:
     void move_on();
     void begin_items();
+    bool begin_part() noexcept;
     void release(expander* e) noexcept;
 
     // Items that have begun are expanders in a heap; the score knows how many that are at most.
     std::shared_ptr<const score::impl> piece_;
+    const score::impl* part_; ///< whose items come: the piece itself, or a part of a joined one
+    std::uint64_t shift_ = 0; ///< frame of the piece at which the part begins
+    std::size_t next_part_ = 0;
     std::vector<expander> expanders_;
     std::vector<control_points> points_;
     std::vector<expander*> free_expanders_;

@@ -66,6 +66,12 @@ struct item_list {
     std::vector<item_member> members;
 };
 
+/// A score in a joined one, and the frame at which it begins there.
+struct score_part {
+    std::shared_ptr<const score::impl> made;
+    std::uint64_t start = 0;
+};
+
 } // namespace tactor::synth
 
 namespace tactor {
@@ -86,6 +92,7 @@ struct score::impl {
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any
     synth::item_list list;
+    std::vector<synth::score_part> parts; ///< of a joined score, which has no items of its own; by start
     std::uint64_t frames = 0;
     unsigned channels = 0;
     unsigned rate = 0;
