@@ -129,6 +129,7 @@ enum place : std::uint64_t {
     in_stroke = 1 << 20,      ///< a stroke file has a key of the field's name
     in_player = 1 << 21,      ///< Python's Player()
     shown_first = 1 << 22,    ///< --help explains it; most people need it
+    unstated = 1 << 23,       ///< a report on methods does not state its default
 };
 
 /// A place and its name there.

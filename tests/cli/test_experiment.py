@@ -10,7 +10,7 @@ import signal
 import unittest
 
 from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
-from harness import ROOT, main
+from harness import ROOT, main, wav_bytes
 
 
 class Definition(ExperimentTest):
@@ -162,6 +162,46 @@ class DryRun(ExperimentTest):
                            "--format", "json").stdout
             self.assertIn({"sha256": hashlib.sha256(plan.encode()).hexdigest(), "motion": f"motion-{motion}",
                            "method": "park2016"}, told["stimuli"])
+
+    def test_a_method_has_the_options_that_tactor_plan_and_render_have(self):
+        felt = self.felt("felt.toml", [-40 - i for i in range(9)])
+        self.write("grain.wav", wav_bytes([0.5, 0.5, -0.5, -0.5] * 20))
+        motion, again = ("--path", "M0 20H40", "--duration"), ("--path", "M 40 0 V 40", "--speed", "40")
+        methods = {
+            "rough": ('waveform = "square"\nam = "30:0.5"\nenvelope = "linear"\nattack_s = 0.01\nphase = "burst"\nlevel_dbfs = -20\nsoa = 0.06\n',
+                      (*motion, "0.7", *"--waveform square --am 30:0.5 --envelope linear --attack 0.01 --phase burst --level-dbfs -20 --soa 0.06".split())),
+            "grain": ('waveform = "grain.wav"\ntexture = "time"\nsl_db = 10\nduration = 1.2\n',
+                      (*motion, "1.2", *"--waveform grain.wav --texture time --sl 10".split())),
+            "moved": ('compensate = "low-speed"\nsigma_mm = 4\ncarrier_hz = 200\n',
+                      (*motion, "0.7", *"--compensate low-speed --sigma-mm 4 --carrier 200 --sl 7".split())),
+            "other": ('path = "M 40 0 V 40"\nspeed = 40\nramp = 0.01\n', (*again, *"--ramp 0.01 --sl 7".split()))}
+        text = ('[experiment]\nname = "any"\n[[motion]]\nname = "east"\npath = "M0 20H40"\nduration = 0.7\n' +
+                "".join(f'[[method]]\nname = "{name}"\n{keys}' for name, (keys, _) in methods.items()) +
+                '[[run]]\nname = "how"\ntask = "rate"\nattribute = "similarity"\ntrials = 4\n')
+        told, _ = self.dry(self.small(text), "--array", felt)
+        plans = {s["method"]: s["sha256"] for s in told["stimuli"]}
+        self.simulate("01", "--array", felt, definition="small.toml")
+        for name, (_, args) in methods.items():
+            plan = self.ok("plan", *args, "--array", felt, "--format", "json").stdout
+            self.assertEqual(hashlib.sha256(plan.encode()).hexdigest(), plans[name], name)
+            self.ok("render", *args, "--array", felt, "-o", "stroke.wav")
+            self.ok("render", f"study/sourcedata/sub-01/plans/{plans[name]}.json", "-o", "stimulus.wav")
+            self.assertEqual((self.dir / "stroke.wav").read_bytes(), (self.dir / "stimulus.wav").read_bytes(), name)
+        levels = {s["method"]: s.get("level") for s in told["stimuli"]}
+        self.assertEqual(levels, {"rough": {"sl_db": None, "dbfs": -20}, "grain": {"sl_db": 10, "dbfs": None}, "moved": None, "other": None})
+        self.assertEqual(self.session()["stimuli"], told["stimuli"])
+        said = self.ok("experiment", "small.toml", "--dry-run", "--array", felt).stdout
+        self.assertIn("level 7 dB SL\nmethod rough: level -20 dBFS\nmethod grain: level 10 dB SL\n\nrun 1", said)
+        report = self.ok("report", "study").stdout
+        self.assertIn("(7 dB SL); by rough -20 dBFS; by grain 10 dB SL.", report)
+        self.assertIn("waveform square, am 30:0.5, phase burst, envelope linear, attack 0.01, level", report)
+
+    def test_thresholds_are_needed_where_a_method_s_level_is_above_them(self):
+        small = self.small(SMALL.replace("gap_s = 0.25", "level = { dbfs = -20 }"))
+        self.assertFalse(self.dry(small)[0]["thresholds_assumed"])
+        self.small(SMALL.replace("gap_s = 0.25", "level = { dbfs = -20 }").replace('algorithm = "park2016"', "sl_db = 5"))
+        self.assertTrue(self.dry(small)[0]["thresholds_assumed"])
+        self.refused(2, "experiment", small, "--participant", "01", "-o", "study", "-D", "null", says=["levels in dBFS"])
 
     def test_of_thresholds_at_several_carriers_that_of_the_trial_counts(self):
         felt = self.felt("felt.toml", ["[[100, -20], [250, -40]]"] * 9)

@@ -29,7 +29,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-check/1": {"walk"}}
+            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
@@ -58,7 +58,7 @@ def list_paths(value, at=""):
             yield from list_paths(v, at + "[]")
 
 
-# An experiment at a level in dBFS, without an attribute and without noise.
+# An experiment at levels in dBFS, without an attribute and without noise.
 FELT = """[experiment]
 name = "felt"
 level = { dbfs = -18 }
@@ -70,6 +70,7 @@ name = "back"
 path = "M40 20H0"
 [[method]]
 name = "park"
+level_dbfs = -20
 [[run]]
 name = "which"
 task = "identify"

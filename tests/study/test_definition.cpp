@@ -45,7 +45,7 @@ TEST_CASE("the shipped experiment is the paper's")
     }
     CHECK(d.runs[2].outline.task == task_kind::rate);
     CHECK(d.runs[2].outline.scale == 5);
-    CHECK(d.methods[0].options.algorithm == algorithm_kind::tactile_brush);
+    CHECK(d.methods[0].options.plan.algorithm == algorithm_kind::tactile_brush);
     CHECK(d.text == park2016_text());
     CHECK(d.masking.noise->color == noise_color::white);
 }
@@ -102,13 +102,61 @@ TEST_CASE("a method takes the options of a plan")
              "[[method]]\nname = \"b\"\nsoa = 0.06\nslope = 0.3\nintercept = 0.04\ndrop-points = true\nsnap "
              "= true\nfaces = \"nearest\"\n" +
              run);
-    CHECK(d.methods[0].options.phantom == phantom_kind::gaussian);
-    CHECK(d.methods[0].options.carrier_hz == 200.0);
-    CHECK(d.methods[1].options.soa_s == 0.06);
-    CHECK(d.methods[1].options.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
-    CHECK(d.methods[1].options.drop_points);
-    CHECK(d.methods[1].options.snap);
-    CHECK(d.methods[1].options.faces == faces_kind::nearest);
+    CHECK(d.methods[0].options.plan.phantom == phantom_kind::gaussian);
+    CHECK(d.methods[0].options.plan.carrier_hz == 200.0);
+    const plan_options& b = d.methods[1].options.plan;
+    CHECK(b.soa_s == 0.06);
+    CHECK(b.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
+    CHECK(b.drop_points);
+    CHECK(b.snap);
+    CHECK(b.faces == faces_kind::nearest);
+}
+
+TEST_CASE("a method takes the sound, the level, the pace and the stroke of a stroke")
+{
+    const std::string level = "level = { dbfs = -18 }\n";
+    const experiment_definition d =
+        read(head + level + motion +
+             "[[method]]\nname = \"a\"\nwaveform = \"square\"\nam = \"30:0.5\"\nenvelope = \"tukey:0.3\"\n"
+             "phase = \"burst\"\ncompensate = \"low-speed\"\nsigma_mm = 4\nlevel_dbfs = -20\nduration_s = 2\n"
+             "[[method]]\nname = \"b\"\nintensity_scale = \"sl\"\nsl_db = 10\nattack_s = 0.01\n"
+             "path = \"M0 0H30\"\nspeed = 20\n" +
+             run);
+    const method_definition& a = d.methods[0];
+    CHECK(a.options.plan.wave.kind == waveform_kind::square);
+    CHECK(a.options.plan.am == modulation{30.0, 0.5});
+    CHECK(a.options.render.envelope == burst_envelope{.kind = envelope_kind::tukey, .tukey_part = 0.3});
+    CHECK(a.options.render.phase == phase_kind::burst);
+    CHECK(a.options.compensate);
+    CHECK(a.options.low_speed.sigma_mm == 4.0);
+    CHECK(a.options.render.level_dbfs == -20.0);
+    CHECK(!a.options.render.sl_db);
+    CHECK(a.options.duration_s == 2.0);
+    CHECK(!a.drawn);
+    const method_definition& b = d.methods[1];
+    CHECK(b.options.render.sl_db == 10.0);
+    CHECK(b.options.plan.scale.sl_db == 10.0);
+    CHECK(b.options.render.envelope.attack_s == 0.01);
+    REQUIRE(b.drawn);
+    CHECK(b.drawn->motion.duration_s() == doctest::Approx(1.5));
+    CHECK(a.has_level());
+    CHECK(uses_thresholds(d));
+    const experiment_definition plain = read(head + level + motion + methods + run);
+    CHECK(!plain.methods[0].has_level());
+    CHECK(!uses_thresholds(plain));
+    CHECK(uses_thresholds(read(head + motion + methods + run)));
+}
+
+TEST_CASE("a session's text is read without the files of its methods")
+{
+    const std::string named = head + motion +
+                              "[[method]]\nname = \"a\"\nwaveform = \"gone.wav\"\ntexture = \"time\"\n"
+                              "[[method]]\nname = \"b\"\nfile = \"gone.csv\"\n" +
+                              run;
+    const experiment_definition d = read_design(named, "session.json");
+    CHECK(d.methods[0].options.plan.wave.recorded->file == "gone.wav");
+    CHECK(!d.methods[1].drawn);
+    has(refusal(named), "gone.wav");
 }
 
 TEST_CASE("an attribute is any words, and says what an observer judges where it is a known one")
@@ -187,8 +235,31 @@ TEST_CASE("faults have their line")
     // A present key in its other spelling is not reported as unknown.
     says(head + motion + "[[method]]\nname = \"a\"\ndrop-points = true\nsoa_s = 0.06\nburts = 0.05\n" + run,
          "e.toml", "unknown key 'burts' in [[method]] (did you mean 'burst'?)");
-    says(head + motion + "[[method]]\nname = \"a\"\nalgorithm = \"brush\"\n" + run,
-         "e.toml:8:", "tactile-brush");
+    struct bad_method {
+        const char* keys;
+        const char* where;
+        const char* what;
+    };
+    for (const bad_method& m : {
+             bad_method{"algorithm = \"brush\"", "e.toml:8:", "tactile-brush"},
+             bad_method{"mirror = true", "e.toml:8:", "unknown key 'mirror' in [[method]]"},
+             bad_method{"carrier_hz = 0", "e.toml:8:", "carrier_hz: 0 is out of range"},
+             bad_method{"sl_db = 200", "e.toml:8:", "sl_db: 200 is out of range"},
+             bad_method{"level_dbfs = -20\nsl_db = 7", "e.toml:9:", "sl_db: there is also level_dbfs"},
+             bad_method{"duration = 1\nspeed = 9", "e.toml:9:", "speed: there is also duration"},
+             bad_method{"carrier = 100\ncarrier_hz = 100", "e.toml:9:", "says carrier twice"},
+             bad_method{"snap = true\nnoise_seed = 2",
+                        "e.toml:9:", "nothing here uses it (add waveform = \"noise:LO-HI\")"},
+             bad_method{"sigma_mm = 3", "e.toml:8:", "(add compensate = \"low-speed\")"},
+             bad_method{"envelope = \"tukey\"\nattack = 0.01", "e.toml:9:", "has its own ramps"},
+             bad_method{"intensity_scale = \"sl\"\nlevel_dbfs = -20", "e.toml:8:", "such as sl = 7)"},
+             bad_method{"waveform = \"none.wav\"", "e.toml:8:", "waveform: none.wav"},
+             bad_method{"am = \"fast\"", "e.toml:8:", "am: \"fast\" is not HZ"},
+             bad_method{"file = \"none.csv\"", "e.toml:8:", "none.csv"},
+             bad_method{"preset = \"park2016-1\"\npath = \"M0 0H9\"", "e.toml:9:", "both preset and path"},
+             bad_method{"intensity_max = 2", "e.toml:8:", "[[method]] has no file"},
+         })
+        says(head + motion + "[[method]]\nname = \"a\"\n" + m.keys + "\n" + run, m.where, m.what);
     says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml", "1 methods to choose from");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"guess\"\ntrials = 4\n",
          "e.toml:14:", "guess");

@@ -9,6 +9,7 @@
 #include "caught.hpp"
 #include "files/json/json_value.hpp"
 #include "has.hpp"
+#include "options/settle.hpp"
 #include "study/report/report.hpp"
 
 namespace tactor::study::test_report {
@@ -88,14 +89,23 @@ TEST_CASE("any value has words")
 
 TEST_CASE("options of a method are reported by their names, where they are used")
 {
-    plan_options o;
+    options::wishes o;
     CHECK(method_options(o) ==
           "outside error, algorithm park2016, phantom inverse-distance, faces delaunay, soa 0.07, "
           "slope 0.32, intercept 0.0473, timing fixed, overlap energy, carrier 250");
-    o.burst_s = 0.05;
-    o.snap = true;
+    o.plan.burst_s = 0.05;
+    o.plan.snap = true;
     CHECK(has(method_options(o), "soa 0.07, burst 0.05, slope"));
     CHECK(has(method_options(o), ", snap"));
+    const auto give = [&o](const char* name, const options::value& v) {
+        options::give(o, *options::find(name), v);
+    };
+    give("waveform", std::string("noise:50-500"));
+    give("noise_seed", 3.0);
+    give("envelope", std::string("linear"));
+    give("level_dbfs", -20.0);
+    CHECK(has(method_options(o),
+              "carrier 250, waveform noise:50-500, noise_seed 3, envelope linear, level_dbfs -20"));
 }
 
 TEST_CASE("the template has a section for each algorithm and phantom model")

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -13,8 +15,11 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <tactor/tactor.hpp>
+
 #include "caught.hpp"
 #include "core/sha256.hpp"
+#include "folder.hpp"
 #include "has.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
@@ -449,10 +454,11 @@ TEST_CASE("impossible simulations are refused")
 
 TEST_CASE("a stimulus that cannot be planned or played is refused with its motion and method")
 {
-    const auto refusal = [](const std::string& motion, const std::string& level) {
+    const auto refusal = [](const std::string& motion, const std::string& level,
+                            const std::string& more = "") {
         const std::string text =
             "[experiment]\nname = \"x\"\nlevel = " + level + "\n[[motion]]\nname = \"m\"\n" + motion +
-            "\n[[method]]\nname = \"brush\"\nalgorithm = \"tactile-brush\"\n"
+            "\n[[method]]\nname = \"brush\"\nalgorithm = \"tactile-brush\"\n" + more +
             "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\ntrials = 2\n";
         const experiment_definition d = read_definition(text, "x.toml", {});
         render_options o{.level_dbfs = d.level_dbfs.value_or(-12.0)};
@@ -466,7 +472,92 @@ TEST_CASE("a stimulus that cannot be planned or played is refused with its motio
     CHECK_MESSAGE(has(off, "motion \"m\" by method \"brush\" (line 7)"), off);
     has(refusal("path = \"M0 0H40\"\nduration = 0.01", "{ dbfs = -12 }"), "method \"brush\"");
     const std::string loud = refusal("path = \"M0 0H40\"", "{ sl_db = 60 }");
-    CHECK_MESSAGE(has(loud, "full scale"), loud);
+    CHECK_MESSAGE(has(loud, "lower level.sl_db by"), loud);
+    const std::string own = refusal("path = \"M0 0H40\"", "{ dbfs = -12 }", "sl_db = 60\n");
+    CHECK_MESSAGE(has(own, "method \"brush\" (line 7)"), own);
+    CHECK_MESSAGE(has(own, "lower sl_db by"), own);
+}
+
+std::vector<std::byte> samples(const score& s)
+{
+    std::vector<std::byte> all(s.frames() * s.channels() * sample_bytes(format_kind::s32));
+    renderer(s, format_kind::s32).process(all);
+    return all;
+}
+
+experiment_definition with_methods(const std::string& motion, const std::string& methods,
+                                   const std::filesystem::path& in = {})
+{
+    return read_definition("[experiment]\nname = \"x\"\ngap_s = 0.01\n[[motion]]\nname = \"m\"\n" + motion +
+                               methods +
+                               "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n"
+                               "trials = 2\n",
+                           "x.toml", in);
+}
+
+TEST_CASE("each stimulus of a pair sounds as its stroke with the options of its method alone")
+{
+    const folder f;
+    const auto file = f.write("s.toml", "[stroke]\npath = \"M0 20H40\"\nduration_s = 0.7\n"
+                                        "carrier_hz = 100.0\nwaveform = \"triangle\"\n");
+    const experiment_definition d =
+        with_methods("file = \"s.toml\"\n",
+                     "[[method]]\nname = \"rough\"\nwaveform = \"square\"\nam = \"30:0.5\"\ncarrier = 200\n"
+                     "envelope = \"linear\"\nattack = 0.005\nphase = \"burst\"\nlevel_dbfs = -30\n"
+                     "[[method]]\nname = \"smooth\"\nalgorithm = \"continuous\"\nsl_db = 10\n",
+                     f.path());
+    array a = felt_array();
+    for (tactor_spec& t : a.tactors)
+        t.rise_s = 0.01; // bursts have a boost, which depends on the level
+    const stimulus_set all(d, a, {.sl_db = 7.0});
+
+    stroke drawn = load_strokes(file).front();
+    const score smooth(a, make_plan(a, drawn, {.algorithm = algorithm_kind::continuous}), {.sl_db = 10.0});
+    drawn.sound = {};
+    plan_options o;
+    o.carrier_hz = 200.0;
+    o.wave.kind = waveform_kind::square;
+    o.am = {30.0, 0.5};
+    const score rough(a, make_plan(a, drawn, o),
+                      {.phase = phase_kind::burst,
+                       .level_dbfs = -30.0,
+                       .envelope = {.kind = envelope_kind::linear, .attack_s = 0.005}});
+
+    CHECK(samples(all.make_score({0, 0})) == samples(rough));
+    const std::size_t frame = samples(smooth).size() / smooth.frames();
+    std::vector<std::byte> both = samples(rough);
+    both.resize(both.size() + 480 * frame); // the gap
+    const std::vector<std::byte> second = samples(smooth);
+    both.insert(both.end(), second.begin(), second.end());
+    const score pair = all.make_score({0, 0, 1});
+    CHECK(pair.frames() == all.frames({0, 0, 1}));
+    CHECK(pair.starts() == std::vector<std::uint64_t>{0, all.second({0, 0, 1})});
+    CHECK(samples(pair) == both);
+}
+
+TEST_CASE("a stimulus is compared with its motion in the time of the stroke that is played")
+{
+    const experiment_definition d = with_methods("path = \"M0 20H40\"\nduration = 0.7\n",
+                                                 "[[method]]\nname = \"slow\"\nduration = 1.4\n"
+                                                 "[[method]]\nname = \"beside\"\npath = \"M0 0H40\"\n"
+                                                 "duration = 1.4\n");
+    const stimulus_set all(d, felt_array(), {});
+    CHECK(all.at(0, 0).plan.stroke_duration_s == 1.4);
+    CHECK(*all.at(0, 0).felt.rms_error_mm < 8.0);
+    CHECK(*all.at(0, 1).felt.rms_error_mm > 12.0);
+    for (const std::size_t method : {0, 1})
+        CHECK(all.at(0, method).felt_path.back().x_mm > 25.0); // not where it is after half the time
+}
+
+TEST_CASE("methods that make the same stimulus are named")
+{
+    const experiment_definition d = with_methods("path = \"M0 20H40\"\nduration = 0.7\n",
+                                                 "[[method]]\nname = \"a\"\n"
+                                                 "[[method]]\nname = \"b\"\noutside = \"clamp\"\n"
+                                                 "[[method]]\nname = \"c\"\nramp = 0.01\n");
+    std::vector<std::string> named = stimulus_set(d, felt_array(), {}).warnings();
+    std::erase_if(named, [](const std::string& w) { return w.find("same stimulus") == w.npos; });
+    CHECK(named == std::vector<std::string>{"motion \"m\": methods \"a\" and \"b\" make the same stimulus"});
 }
 
 struct power_rig {

@@ -42,6 +42,8 @@ name = "a"
 algorithm = "tactile-brush"
 [[method]]
 name = "b"
+waveform = "triangle"
+level_dbfs = -26
 [[run]]
 name = "r"
 task = "choose"
@@ -140,7 +142,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
             return part(all, from * frame, n * frame);
         };
         const auto alone = [&](const study::stimulus& x) {
-            return rendered(score(palm(), x.plan, o), format_kind::s32);
+            return rendered(score(palm(), x.plan, x.render), format_kind::s32);
         };
         CHECK(piece(*g.first_frame, first.frames) == alone(first));
         CHECK_FALSE(sounds(piece(*g.first_frame + first.frames, gap)));

@@ -166,7 +166,7 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
         show(on ? "noise\n" : "silence\n");
     };
     const auto play = [&] {
-        const score s(p.where.tactors, stimuli[next].plan, p.render);
+        const score s(p.where.tactors, stimuli[next].plan, stimuli[next].render);
         next = (next + 1) % stimuli.size();
         const study::given_stimulus g = there.give(s, 0.0, [](std::uint64_t) {});
         show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),

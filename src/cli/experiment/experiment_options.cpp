@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tactor/error.hpp>
+#include <tactor/render.hpp>
 
 #include "cli/say.hpp"
 #include "cli/session/page_options.hpp"
@@ -77,6 +78,11 @@ std::string time_text(const study::run_time& t)
     if (t.waits != 0)
         text += fmt::format(", of which {:.0f} s are waits before {}", t.waits_s, counted(t.waits, "trial"));
     return text;
+}
+
+std::string level_text(const render_options& o)
+{
+    return o.sl_db ? fmt::format("{} dB SL", *o.sl_db) : fmt::format("{} dBFS", o.level_dbfs);
 }
 
 constexpr detail::bounds allowed_studies{1, 1000000};
@@ -271,7 +277,7 @@ void print_dry_run_json(const study::prepared_experiment& p)
     j["participant"] = p.participant;
     j["seed"] = p.seed;
     j["array"] = p.where.tactors.name;
-    j["level"] = study::level_facts(d);
+    j["level"] = study::level_facts(p.render);
     j["thresholds_assumed"] = p.assumed;
     j["rate"] = p.render.rate;
     j["gap_s"] = d.gap_s;
@@ -290,8 +296,10 @@ void print_dry_run_text(const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
     say(stdout, "{}: {}\nparticipant {}, seed {}, array {}, level {}\n", d.name, d.title, p.participant,
-        p.seed, p.where.tactors.name,
-        d.level_dbfs ? fmt::format("{} dBFS", *d.level_dbfs) : fmt::format("{} dB SL", d.sl_db));
+        p.seed, p.where.tactors.name, level_text(p.render));
+    for (const study::method_definition& m : d.methods)
+        if (m.has_level())
+            say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
         const study::trial_row r = study::planned_row(p, t, {});
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
+#include <tactor/waveform.hpp>
 
 #include "core/suggest.hpp"
 #include "core/words.hpp"
@@ -33,7 +37,9 @@ std::string_view spelled(const toml_table& t, std::string_view plain, std::strin
 
 std::string write_key(const options::option& o, std::string_view value)
 {
-    return value.empty() ? std::string(o.name) : fmt::format("{} = \"{}\"", o.name, value);
+    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
+    const char* quote = is_text ? "\"" : "";
+    return value.empty() ? std::string(o.name) : fmt::format("{} = {}{}{}", o.name, quote, value, quote);
 }
 
 // Adds the place in the definition to what the library refuses.
@@ -44,8 +50,9 @@ auto at_key(const toml_table& t, std::string_view key, F make)
         return make();
     } catch (const error& e) {
         const error worded = options::spell(e, {write_key});
-        throw error(e.kind(), t.where(key), fmt::format("{}: {}", worded.subject(), worded.why()),
-                    worded.hint());
+        const bool is_key = e.subject() == e.field(); // then as it stands there, with its unit or without
+        throw error(e.kind(), t.where(key),
+                    fmt::format("{}: {}", is_key ? key : worded.subject(), worded.why()), worded.hint());
     }
 }
 
@@ -59,6 +66,9 @@ stroke read_file_stroke(const toml_table& t, const std::filesystem::path& folder
     return std::move(all.front());
 }
 
+// Keys of a stroke: one of them, and the scale of a recording's intensities.
+constexpr std::array<std::string_view, 4> stroke_keys{"preset", "path", "file", "intensity_max"};
+
 stroke along_path(const toml_table& t, std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
     return at_key(t, "path", [&] {
@@ -66,6 +76,25 @@ stroke along_path(const toml_table& t, std::optional<double> duration_s, std::op
         const double usual_s = way.length_mm() / speed_mm_s.value_or(default_speed_mm_s);
         return stroke{"path", trajectory::along(way, duration_s.value_or(usual_s)), {}, {}, {}};
     });
+}
+
+// Reads the stroke of a motion or of a method, which has at most one of the keys.
+std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::path& folder,
+                                  std::optional<double> duration_s, std::optional<double> speed_mm_s)
+{
+    if (!t.has("file") && t.has("intensity_max"))
+        t.fail("intensity_max", fmt::format("{} has no file", t.title()),
+               "it is the scale of a recording's intensities");
+    const std::vector<std::string_view> kinds(stroke_keys.begin(), stroke_keys.begin() + 3);
+    if (std::none_of(kinds.begin(), kinds.end(), [&t](std::string_view key) { return t.has(key); }))
+        return {};
+    const std::string_view kind = t.one_of(kinds);
+    stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
+                   : kind == "path" ? along_path(t, duration_s, speed_mm_s)
+                                    : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
+    drawn.start_s.reset();                                // it is played alone
+    drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
+    return drawn;
 }
 
 // Finds the option of a method that a key stands for, with its unit or without.
@@ -76,12 +105,32 @@ const options::option& find_method_option(const toml_table::said_key& k)
         return *o;
     const std::vector<std::string> names = options::dashed_names(options::in_method);
     std::vector<std::string_view> known(names.begin(), names.end());
+    known.insert(known.begin(), stroke_keys.begin(), stroke_keys.end());
     known.insert(known.begin(), "name");
     throw detail::unknown_key(k.key_at, k.key, "[[method]]", known);
 }
 
-constexpr std::array own_words{options::own_word{"level_dbfs", "level.dbfs"},
-                               options::own_word{"sl_db", "level.sl_db"}, options::own_word{"fit=true", ""}};
+// Sets an option of a method. Names of files are relative to the folder; without one a file may be gone, and
+// its name is enough.
+void give_option(options::wishes& w, const options::option& o, options::value v,
+                 const std::filesystem::path* folder)
+{
+    auto* text = std::get_if<std::string>(&v);
+    if (text != nullptr && o.name == "waveform" && waveform_names_file(*text)) {
+        if (folder == nullptr) {
+            w.plan.wave.kind = waveform_kind::recording;
+            w.plan.wave.recorded = std::make_shared<const recording>(recording{.file = *text});
+            w.given.set(options::index(o));
+            return;
+        }
+        *text = (*folder / *text).string();
+    }
+    options::give(w, o, v);
+}
+
+constexpr std::array own_words{options::own_word{"fit=true", ""},
+                               options::own_word{"level_dbfs", "level.dbfs"},
+                               options::own_word{"sl_db", "level.sl_db"}};
 
 std::string write_choice(const options::option& o, std::string_view value)
 {
@@ -284,10 +333,7 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
 {
     t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
             "intensity_max", "mirror"});
-    const std::string_view kind = t.one_of({"preset", "path", "file"});
-    if (kind != "file" && t.has("intensity_max"))
-        t.fail("intensity_max", fmt::format("{} has no file", t.title()),
-               "it is the scale of a recording's intensities");
+    static_cast<void>(t.one_of({"preset", "path", "file"})); // there is a stroke
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
     const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
@@ -295,32 +341,40 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
     if (duration && speed)
         t.fail(speed_key, fmt::format("{} has both {} and {}", t.title(), duration_key, speed_key),
                "keep one of them");
-    stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
-                   : kind == "path" ? along_path(t, duration, speed)
-                                    : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
+    stroke drawn = *read_stroke(t, folder, duration, speed);
     if (duration)
         drawn.motion = at_key(t, duration_key, [&] { return drawn.motion.with_duration(*duration); });
     else if (speed && drawn.motion.length_mm() > 0.0)
         drawn.motion = at_key(t, speed_key, [&] { return drawn.motion.with_speed(*speed); });
-    drawn.start_s.reset();                                // it is played alone
-    drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
     return {name_in(t, "name"), std::move(drawn), is_mirrored(t), t.where()};
 }
 
-method_definition read_method(const toml_table& t)
+// Reads a method of an experiment whose level is known. `folder`: of its files; null: leaves them out.
+method_definition read_method(const toml_table& t, const experiment_definition& d, const fs::path* folder)
 {
     options::wishes w;
     w.place = options::in_method;
+    if (!d.level_dbfs)
+        w.render.sl_db = d.sl_db;                 // until the method gives its own
+    std::map<std::size_t, std::string_view> keys; // by row
     for (const toml_table::said_key& k : t.entries()) {
-        if (k.key == "name")
+        if (k.key == "name" || std::find(stroke_keys.begin(), stroke_keys.end(), k.key) != stroke_keys.end())
             continue;
         const options::option& o = find_method_option(k);
-        if (w.gives(o))
+        if (!keys.emplace(options::index(o), k.key).second)
             t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
-        at_key(t, k.key, [&] { options::give(w, o, options::read_value(o, t.plain(*k.value, k.key))); });
+        at_key(t, k.key,
+               [&] { give_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder); });
     }
-    at_key(t, "name", [&] { options::settle(w); });
-    return {name_in(t, "name"), w.plan, t.where()};
+    try {
+        options::settle(w);
+    } catch (const error& e) {
+        at_key(t, keys.at(options::index(*options::find(e.field()))), [&e] { throw error(e); });
+    }
+    std::optional<stroke> drawn;
+    if (folder != nullptr)
+        drawn = read_stroke(t, *folder, w.duration_s, w.speed_mm_s);
+    return {name_in(t, "name"), std::move(w), std::move(drawn), t.where()};
 }
 
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
@@ -439,7 +493,8 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
                                    : motion_definition{name_in(t, "name"), {}, is_mirrored(t), t.where()};
     });
     d.methods = read_all<method_definition>(root, "method", [&](const toml_table& t) {
-        return e.outline_only ? method_definition{name_in(t, "name"), {}, t.where()} : read_method(t);
+        return e.outline_only ? method_definition{name_in(t, "name"), {}, {}, t.where()}
+                              : read_method(t, d, e.folder);
     });
     for (const toml_table& t : need_tables(root, "run"))
         d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d));
@@ -495,9 +550,16 @@ constexpr std::array english{
 
 } // namespace
 
-std::string in_definition_words(std::string_view hint)
+std::string in_definition_words(std::string_view hint, bool own_level)
 {
-    return options::spell(hint, {write_choice, options::in_method, own_words});
+    const std::span<const options::own_word> own(own_words);
+    return options::spell(hint, {write_choice, options::in_method, own_level ? own.first(1) : own});
+}
+
+bool uses_thresholds(const experiment_definition& d)
+{
+    return !d.level_dbfs || std::any_of(d.methods.begin(), d.methods.end(),
+                                        [](const method_definition& m) { return m.options.gives("sl"); });
 }
 
 experiment_definition read_definition(std::string_view toml, const std::string& name, const fs::path& folder)

@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include <tactor/plan.hpp>
 #include <tactor/stroke.hpp>
 
+#include "options/option.hpp"
 #include "study/data/dataset.hpp"
 #include "study/masking/masking.hpp"
 
@@ -62,11 +62,15 @@ struct motion_definition {
     source_place where = {};
 };
 
-/// [[method]]: how a motion is planned.
+/// [[method]]: how a motion is planned, and how it sounds.
 struct method_definition {
     std::string name;
-    plan_options options = {};
+    options::wishes options = {};     ///< options that it gives, and defaults
+    std::optional<stroke> drawn = {}; ///< stroke in place of the motion's
     source_place where = {};
+
+    /// Returns true if its level, in options.render, replaces the experiment's.
+    bool has_level() const { return options.gives("level_dbfs") || options.gives("sl"); }
 };
 
 /// [[run]]. Motions and methods are places in those of the definition.
@@ -127,6 +131,9 @@ experiment_definition read_design(std::string_view toml, const std::string& name
 /// write differently. \throws error (bad_input).
 experiment_outline read_outline(std::string_view toml, const std::string& name);
 
+/// Returns true if a level, the experiment's or a method's, is above the thresholds.
+bool uses_thresholds(const experiment_definition& d);
+
 /// Returns what the analysis needs of a definition.
 experiment_outline make_outline(const experiment_definition& d);
 
@@ -143,7 +150,7 @@ experiment_definition load_definition(const std::string& name_or_file);
 std::string missing_words(const experiment_definition& d);
 
 /// Returns a hint of the library with a definition's keys in place of fields, without options that a
-/// definition cannot set.
-std::string in_definition_words(std::string_view hint);
+/// definition cannot set. `own_level`: the level is the method's.
+std::string in_definition_words(std::string_view hint, bool own_level = false);
 
 } // namespace tactor::study

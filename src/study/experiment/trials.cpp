@@ -14,7 +14,11 @@
 #include "core/marks.hpp"
 #include "core/sha256.hpp"
 #include "files/plan/plan_json.hpp"
+#include "options/option.hpp"
+#include "options/settle.hpp"
+#include "session/piece.hpp"
 #include "study/random/random.hpp"
+#include "synth/score/joined.hpp"
 
 namespace tactor::study {
 namespace {
@@ -100,6 +104,43 @@ std::vector<point> sample_path(const std::vector<percept_sample>& samples)
     for (std::size_t i = 0; i <= path_parts; ++i)
         parts.push_back(felt[i * (felt.size() - 1) / path_parts]);
     return parts;
+}
+
+// Returns the stroke that a method plays for a motion: its own, or the motion's. A sound that the method
+// gives replaces that of the stroke's file.
+stroke choose_stroke(const motion_definition& motion, const method_definition& method)
+{
+    stroke s = method.drawn.value_or(motion.drawn);
+    if (method.options.gives("carrier")) {
+        s.sound.carrier_hz.reset();
+        s.sound.carrier_profile.clear();
+    }
+    if (method.options.gives("waveform"))
+        s.sound.wave.reset();
+    if (method.options.gives("am"))
+        s.sound.am.reset();
+    return s;
+}
+
+// Returns the options of a session's scores, replaced by those that a method gives.
+render_options choose_render(const render_options& common, const options::wishes& method)
+{
+    options::wishes all;
+    all.render = common;
+    for (const options::option& o : options::all())
+        if (o.is_sound() && method.gives(o))
+            options::give(all, o, o.to.get(method));
+    return all.render;
+}
+
+// Returns the target of a stimulus: its motion, in the time that the stroke takes which is played.
+stroke find_target(const motion_definition& motion, const method_definition& method, const stroke& played)
+{
+    if (!method.drawn)
+        return played;
+    stroke target = motion.drawn;
+    target.motion = target.motion.with_duration(played.motion.duration_s());
+    return target;
 }
 
 } // namespace
@@ -267,25 +308,39 @@ stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const
                     all_.push_back(make(d.motions[motion], d.methods[method], faces));
                     all_.back().motion = motion;
                     all_.back().method = method;
+                    warn_of_same(d);
                 }
+}
+
+void stimulus_set::warn_of_same(const experiment_definition& d)
+{
+    const stimulus& last = all_.back();
+    for (const stimulus& s : all_)
+        if (s.motion == last.motion && s.method != last.method && s.hash == last.hash)
+            warnings_.push_back(fmt::format("motion \"{}\": methods \"{}\" and \"{}\" make the same stimulus",
+                                            d.motions[s.motion].name, d.methods[s.method].name,
+                                            d.methods[last.method].name));
 }
 
 stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method,
                             const layout& faces)
 {
     try {
-        if (motion.drawn.motion.duration_s() > longest_stimulus_s)
+        session::piece one{.strokes = {choose_stroke(motion, method)}};
+        session::place_strokes(one, faces, method.options);
+        const stroke& played = one.strokes.front();
+        if (played.motion.duration_s() > longest_stimulus_s)
             throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
-        const stroke& drawn = motion.drawn;
-        const files::piece one{.strokes = {drawn},
-                               .plans = {{make_plan(array_, faces, drawn, method.options), std::nullopt}}};
-        const score sounds(array_, one.plans, options_);
+        session::plan_stroke(one, 0, array_, faces, method.options);
         stimulus s;
         s.plan = one.plans.front().plan;
+        s.render = choose_render(options_, method.options);
+        const score sounds(array_, one.plans, s.render);
         s.frames = sounds.frames();
-        s.text = files::plans_text({one, array_, sounds, options_});
+        s.text = files::plans_text({one, array_, sounds, s.render});
         s.hash = detail::sha256_text(s.text);
-        const std::vector<percept_sample> samples = predict_percept(array_, drawn, s.plan);
+        const std::vector<percept_sample> samples =
+            predict_percept(array_, find_target(motion, method, played), s.plan);
         s.felt = summarise(samples);
         s.felt_path = sample_path(samples);
         for (const std::string& w : s.plan.warnings) {
@@ -301,7 +356,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         throw error(e.kind(), motion.where,
                     fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
                                 method.where.line, detail::plain(e.subject()), e.why()),
-                    in_definition_words(e.hint()));
+                    in_definition_words(e.hint(), method.has_level()));
     }
 }
 
@@ -330,12 +385,15 @@ std::uint64_t stimulus_set::frames(const planned_trial& t) const
 
 score stimulus_set::make_score(const planned_trial& t, const std::optional<drive_limits>& limits) const
 {
-    std::vector<placed_plan> plans{{at(t.motion, t.method_1).plan, 0.0}};
-    if (t.method_2)
-        plans.push_back({at(t.motion, *t.method_2).plan, static_cast<double>(second(t)) / options_.rate});
-    render_options o = options_;
-    o.limits = limits;
-    return score(array_, std::move(plans), o);
+    const auto alone = [&](std::size_t method) {
+        const stimulus& s = at(t.motion, method);
+        render_options o = s.render;
+        o.limits = limits;
+        return score(array_, s.plan, o);
+    };
+    if (!t.method_2)
+        return alone(t.method_1);
+    return synth::join_scores({{alone(t.method_1), 0}, {alone(*t.method_2), second(t)}});
 }
 
 } // namespace tactor::study

@@ -188,6 +188,7 @@ struct stimulus {
     std::size_t motion = 0; ///< places in the definition
     std::size_t method = 0;
     tactor::plan plan = {};
+    render_options render = {};        ///< the session's, with those that the method gives
     std::uint64_t frames = 0;          ///< from its first frame to its last sound's end
     std::string text = {};             ///< the plan as tactor-plan/1
     std::string hash = {};             ///< its SHA-256
@@ -203,7 +204,8 @@ std::vector<point> target_path(const stroke& s);
 
 class stimulus_set {
 public:
-    /// Plans, predicts and checks all stimuli; keeps each warning of the planner once.
+    /// Plans, predicts and checks all stimuli; keeps each warning of the planner once, and warns of methods
+    /// that make one stimulus of a motion. `o`: the session's, for what a method does not give.
     /// \throws error (bad_input) with the motion's or method's line: it cannot be planned, or a level is too
     ///         high.
     stimulus_set(const experiment_definition& d, const array& a, const render_options& o);
@@ -217,12 +219,14 @@ public:
     /// Return the frames of a trial, the gap included, and the frame at which the second stimulus begins.
     std::uint64_t frames(const planned_trial& t) const;
     std::uint64_t second(const planned_trial& t) const;
-    /// Returns both stimuli in one score, exact to the frame. A renderer applies the limits, if any.
+    /// Returns both stimuli in one score, exact to the frame, each with its own sound. A renderer applies the
+    /// limits, if any.
     score make_score(const planned_trial& t, const std::optional<drive_limits>& limits = {}) const;
 
 private:
     const stimulus* find(std::size_t motion, std::size_t method) const noexcept;
     stimulus make(const motion_definition& motion, const method_definition& method, const layout& faces);
+    void warn_of_same(const experiment_definition& d);
 
     array array_;
     render_options options_;

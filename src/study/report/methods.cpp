@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/render.hpp>
 #include <tactor/version.hpp>
 
 #include "core/split.hpp"
@@ -167,23 +168,31 @@ std::string acceleration_text(const session_facts& s)
     return join(parts);
 }
 
+// Describes the experiment's level, and then those of the methods that have their own.
 std::string describe_level(const session_facts& s)
 {
     const json_value level = s.facts()["level"];
+    std::string text;
     if (const auto sl = level["sl_db"].number())
-        return fmt::format("{0} dB above each tactor's detection threshold ({0} dB SL)", plain_number(*sl));
-    const auto dbfs = level["dbfs"].number();
-    return dbfs ? fmt::format("{} dBFS, the same for all tactors but for their gains", plain_number(*dbfs))
-                : "";
+        text = fmt::format("{0} dB above each tactor's detection threshold ({0} dB SL)", plain_number(*sl));
+    else if (const auto dbfs = level["dbfs"].number())
+        text = fmt::format("{} dBFS, the same for all tactors but for their gains", plain_number(*dbfs));
+    if (s.design)
+        for (const method_definition& m : s.design->methods)
+            if (const render_options& o = m.options.render; m.has_level())
+                text += fmt::format("; by {} {} {}", m.name, plain_number(o.sl_db.value_or(o.level_dbfs)),
+                                    o.sl_db ? "dB SL" : "dBFS");
+    return text;
 }
 
 std::string assumed_text(const session_facts& s)
 {
     const auto assumed = s.facts()["thresholds_assumed"].truth();
-    return !assumed                             ? ""
-           : s.facts()["level"]["dbfs"].there() ? "not used: the level is in dBFS"
-           : *assumed                           ? "assumed, not measured, for tactors without one"
-                                                : "from the array file, none assumed";
+    const bool used = s.design ? uses_thresholds(*s.design) : !s.facts()["level"]["dbfs"].there();
+    return !assumed   ? ""
+           : !used    ? "not used: the level is in dBFS"
+           : *assumed ? "assumed, not measured, for tactors without one"
+                      : "from the array file, none assumed";
 }
 
 // Returns a threshold, or those at several frequencies.
@@ -305,8 +314,8 @@ std::string law_text(const session_facts& s)
     if (s.design)
         for (const method_definition& m : s.design->methods)
             laws.insert(fmt::format("$\\mathrm{{SOA}} = {}\\,d + {}\\,\\mathrm{{s}}$ with burst duration $d$",
-                                    plain_number(m.options.profile.slope),
-                                    plain_number(m.options.profile.intercept_s)));
+                                    plain_number(m.options.plan.profile.slope),
+                                    plain_number(m.options.plan.profile.intercept_s)));
     return join(laws, " and ");
 }
 
@@ -627,15 +636,14 @@ std::string range_text(const std::vector<double>& values)
     return from == to ? from : fmt::format("{} to {}", from, to);
 }
 
-std::string method_options(const plan_options& o)
+std::string method_options(const options::wishes& o)
 {
-    options::wishes all;
-    all.plan = o;
     std::vector<std::string> parts;
     for (const options::option& row : options::all()) {
-        if ((row.where & options::in_method) == 0 || (row.used != nullptr && !row.used(all)))
+        if ((row.where & options::in_method) == 0 || (row.used != nullptr && !row.used(o)) ||
+            ((row.where & options::unstated) != 0 && !o.gives(row)))
             continue;
-        const options::value v = row.to.get(all);
+        const options::value v = row.to.get(o);
         if (const auto* number = std::get_if<double>(&v))
             parts.push_back(fmt::format("{} {}", row.name, plain_number(*number)));
         else if (const auto* text = std::get_if<std::string>(&v))

@@ -14,9 +14,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tactor/plan.hpp>
-
 #include "files/json/json_value.hpp"
+#include "options/option.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
 
@@ -98,7 +97,8 @@ std::string join_texts(const study_facts& f, const std::function<std::string(con
 /// Returns the least and the largest value, or the only one; "not recorded" for none.
 std::string range_text(const std::vector<double>& values);
 
-/// Returns the settings of a method by the names of their options: "algorithm park2016, soa 0.07".
-std::string method_options(const plan_options& o);
+/// Returns the options of a method by name, those with defaults of the plan too: "algorithm park2016, soa
+/// 0.07".
+std::string method_options(const options::wishes& o);
 
 } // namespace tactor::study

@@ -51,7 +51,7 @@ bool assume_thresholds(array& a, bool nobody_feels)
         if (!nobody_feels)
             throw error(error_kind::bad_input, "--array",
                         fmt::format("tactor {} has no threshold, and the level is above the threshold", i),
-                        "--array FILE that tactor calibrate made");
+                        "--array FILE that tactor calibrate made, or levels in dBFS");
         t.threshold_dbfs = assumed_threshold_dbfs;
         assumed = true;
     }
@@ -76,10 +76,16 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
         std::ranges::minmax_element(a.tactors, {}, [](const tactor_spec& t) { return t.position.x_mm; });
     const double middle_mm = 0.5 * (least->position.x_mm + most->position.x_mm);
     const detail::affine exchanged{-1.0, 0.0, 0.0, 1.0, middle_mm, 0.0};
+    const auto exchange = [&](stroke& s, std::string_view kind, const std::string& name) {
+        s.motion =
+            detail::moved(s.motion, {middle_mm, 0.0}, exchanged, {}, fmt::format("{} \"{}\"", kind, name));
+    };
     for (motion_definition& m : d.motions)
         if (m.mirror)
-            m.drawn.motion = detail::moved(m.drawn.motion, {middle_mm, 0.0}, exchanged, {},
-                                           fmt::format("motion \"{}\"", m.name));
+            exchange(m.drawn, "motion", m.name);
+    for (method_definition& m : d.methods)
+        if (m.drawn)
+            exchange(*m.drawn, "method", m.name);
 }
 
 // Checks that no limit changes a trial on an array that has rested: it would always be void.
@@ -130,7 +136,8 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
             fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
     std::vector<const plan*> plans;
     for (const stimulus& s : stimuli.all())
-        plans.push_back(&s.plan);
+        if (s.render.sl_db)
+            plans.push_back(&s.plan);
     if (std::string other = session::other_carrier(e, plans); !other.empty())
         doubts.push_back(std::move(other));
     return doubts;
@@ -294,7 +301,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         s.array_name = d.array;
     session::environment e = session::read_environment(s);
     mirror_for_hand(d, e.tactors, r);
-    const bool assumed = !d.level_dbfs && assume_thresholds(e.tactors, r.who != audience::person);
+    const bool above_thresholds = uses_thresholds(d);
+    const bool assumed = above_thresholds && assume_thresholds(e.tactors, r.who != audience::person);
     render_options render = session::settle_render(s, e);
     if (d.level_dbfs)
         render.level_dbfs = *d.level_dbfs;
@@ -310,7 +318,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             static_cast<void>(walk_score(d, e.tactors, render, i));
     check_limits(d, runs, stimuli, session::settle_limits({}, e), render.rate);
     std::vector<std::string> doubts;
-    if (!d.level_dbfs)
+    if (above_thresholds)
         doubts = calibration_doubts(r.participant, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
@@ -343,7 +351,7 @@ std::string_view to_string(hand_kind h) noexcept
 
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor)
 {
-    const double carrier_hz = d.methods.front().options.carrier_hz;
+    const double carrier_hz = d.methods.front().options.plan.carrier_hz;
     try {
         return score(a, session::walk_plan(a, tactor, carrier_hz), o);
     } catch (const error& e) {
@@ -388,9 +396,9 @@ std::vector<run_time> session_times(const prepared_experiment& p)
     return all;
 }
 
-json level_facts(const experiment_definition& d)
+json level_facts(const render_options& o)
 {
-    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", or_null(d.level_dbfs)}};
+    return {{"sl_db", or_null(o.sl_db)}, {"dbfs", o.sl_db ? json(nullptr) : json(o.level_dbfs)}};
 }
 
 json masking_facts(const masking_definition& m)
@@ -406,10 +414,13 @@ json masking_facts(const masking_definition& m)
 json stimulus_facts(const prepared_experiment& p)
 {
     json all = json::array();
-    for (const stimulus& s : p.stimuli.all())
-        all.push_back({{"sha256", s.hash},
-                       {"motion", p.definition.motions[s.motion].name},
-                       {"method", p.definition.methods[s.method].name}});
+    for (const stimulus& s : p.stimuli.all()) {
+        const method_definition& m = p.definition.methods[s.method];
+        all.push_back(
+            {{"sha256", s.hash}, {"motion", p.definition.motions[s.motion].name}, {"method", m.name}});
+        if (m.has_level())
+            all.back()["level"] = level_facts(s.render);
+    }
     return all;
 }
 
@@ -428,7 +439,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
     j["seed"] = p.seed;
     j["order"] = order;
-    j["level"] = level_facts(d);
+    j["level"] = level_facts(p.render);
     // These are absent where they say nothing: sessions of older versions go on.
     if (p.hand)
         j["hand"] = std::string(to_string(*p.hand));

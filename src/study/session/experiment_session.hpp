@@ -91,9 +91,9 @@ std::vector<run_time> session_times(const prepared_experiment& p);
 nlohmann::ordered_json describe_session(const prepared_experiment& p,
                                         const std::optional<simulation>& simulate, const std::string& masker);
 
-/// Return parts of these facts: the level; the definition's noise, null for none; each stimulus with its
-/// hash.
-nlohmann::ordered_json level_facts(const experiment_definition& d);
+/// Return parts of these facts: a level; the definition's noise, null for none; each stimulus with its hash,
+/// and its level if that is its method's.
+nlohmann::ordered_json level_facts(const render_options& o);
 nlohmann::ordered_json masking_facts(const masking_definition& m);
 nlohmann::ordered_json stimulus_facts(const prepared_experiment& p);
 
