@@ -102,8 +102,9 @@ on_change(() => {
 
 // The definition of a study of both, for `tactor experiment`.
 
-// Options of a method, see tactor-experiment(5).
-const OF_METHOD = "algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap carrier".split(" ");
+// Options of a method, see tactor-experiment(5), without the level in dBFS, which is the experiment's.
+const OF_METHOD = ("algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap compensate sigma_mm " +
+  "sigma_v_mm_s carrier waveform am noise_seed phase ramp envelope attack release intensity_scale stevens_exponent sl").split(" ");
 const form = by_id("study"), study_name = () => file_name({name: form.elements.name.value});
 
 const table = (head, values) => `${head}\n${Object.entries(values).map(([k, v]) => `${k} = ${typeof v === "string" ? quoted(v) : v}\n`).join("")}`;
