@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "study/analysis/analysis.hpp"
+#include "study/statistics/bradley_terry.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study::test_statistics {
@@ -187,6 +188,64 @@ TEST_CASE("the interval of a share is that of Clopper and Pearson")
     CHECK(binomial_interval(8, 10).second == doctest::Approx(0.9747893).epsilon(1e-6));
     CHECK(binomial_interval(10, 10).first == doctest::Approx(0.6915029).epsilon(1e-6));
     CHECK(binomial_interval(10, 10).second == 1.0);
+}
+
+TEST_CASE("worths are those of R's glm")
+{
+    struct known {
+        double log_worth;
+        double se;
+    };
+    const auto check = [](const std::vector<std::vector<double>>& wins, const std::vector<known>& all) {
+        const std::vector<worth> found = bradley_terry(wins);
+        REQUIRE(found.size() == all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            CHECK(std::abs(*found[i].log_worth - all[i].log_worth) < 1e-6);
+            CHECK(std::abs(*found[i].se - all[i].se) < 1e-6);
+        }
+    };
+    // Citations among four journals (Stigler 1994); the diagonal is not used.
+    check({{714, 730, 498, 221}, {33, 425, 68, 17}, {320, 813, 1072, 142}, {284, 276, 325, 188}},
+          {{0.0, 0.0}, {-2.94907250, 0.10254534}, {-0.47956977, 0.06058873}, {0.26895406, 0.07082997}});
+    // Baseball at home and away (Agresti 2002, p. 438).
+    check({{0, 1, 7, 4, 2, 3, 1},
+           {12, 0, 7, 2, 6, 7, 6},
+           {6, 6, 0, 4, 4, 6, 5},
+           {9, 11, 9, 0, 6, 5, 7},
+           {11, 7, 9, 7, 0, 7, 9},
+           {10, 6, 7, 8, 6, 0, 6},
+           {12, 7, 8, 6, 4, 7, 0}},
+          {{0.0, 0.0},
+           {1.10769771, 0.33387821},
+           {0.68385277, 0.33187667},
+           {1.43640843, 0.33956851},
+           {1.58135588, 0.34325598},
+           {1.24761785, 0.33586092},
+           {1.29448512, 0.33666940}});
+    // Newton's own steps lead away from the maximum.
+    check({{0, 1, 0}, {1, 0, 100001}, {1, 5, 0}},
+          {{0.0, 0.0}, {5.21079821, 6.81759660}, {-4.51217877, 6.81763007}});
+}
+
+TEST_CASE("a worth without preferences both ways is missing, and does not move the others")
+{
+    const auto known = [](const std::vector<std::vector<double>>& wins) {
+        std::string text;
+        for (const worth& w : bradley_terry(wins))
+            text += !w.log_worth && !w.se ? '-' : std::isfinite(*w.log_worth) && *w.se < 10.0 ? '+' : '?';
+        return text;
+    };
+    CHECK(known({{0, 0, 3}, {5, 0, 4}, {2, 0, 0}}) == "+-+");                         // wins all
+    CHECK(known({{0, 5, 3}, {0, 0, 0}, {2, 4, 0}}) == "+-+");                         // loses all
+    CHECK(known({{0, 0, 0}, {5, 0, 4}, {5, 1, 0}}) == "+--");                         // so does the first
+    CHECK(known({{0, 3, 0, 0}, {2, 0, 0, 0}, {0, 0, 0, 5}, {0, 0, 1, 0}}) == "++--"); // never compared
+    CHECK(known({{0, 5, 0}, {0, 0, 5}, {5, 0, 0}}) == "+++");                         // a circle
+    CHECK(known({{0}}) == "+");
+    const std::vector<worth> pair = bradley_terry({{0, 3}, {6, 0}});
+    const std::vector<worth> more = bradley_terry({{0, 3, 9}, {6, 0, 9}, {0, 0, 0}});
+    CHECK(*pair[1].log_worth == doctest::Approx(std::log(2.0)));
+    CHECK(*pair[1].se == doctest::Approx(std::sqrt(1.0 / 2.0)));
+    CHECK(*more[1].log_worth == doctest::Approx(*pair[1].log_worth));
 }
 
 bool warns(const analysis& a, const std::string& text)
