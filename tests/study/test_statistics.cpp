@@ -294,6 +294,52 @@ TEST_CASE("missing trials are reported with their participants")
     CHECK_FALSE(warns(analyse(d), "pairs: sub-2 has 3 trials that count, of 0"));
 }
 
+// Adds four trials of two methods, in which the first of them was chosen so often.
+void compare(run_data& r, std::size_t a, std::size_t b, unsigned times)
+{
+    for (unsigned i = 0; i < 4; ++i) // b begins every other trial
+        r.trials.push_back({.place = static_cast<unsigned>(r.trials.size() + 1),
+                            .method_1 = i % 2 == 0 ? a : b,
+                            .method_2 = i % 2 == 0 ? b : a,
+                            .response = (i < times) == (i % 2 == 0) ? 1U : 2U});
+}
+
+TEST_CASE("each of three methods has the per cent of its trials, and a worth or a warning")
+{
+    run_data r;
+    compare(r, 0, 1, 1);
+    compare(r, 2, 1, 3);
+    compare(r, 2, 0, 3);
+    dataset d;
+    d.experiment.runs = {run("pairs", task_kind::choose, 12)};
+    d.experiment.runs[0].methods.emplace_back("c");
+    d.participants = {"1", "2"};
+    d.data = {{r}, {r}};
+    const analysis a = analyse(d);
+    const run_analysis& found = a.runs[0];
+    REQUIRE(found.cells.size() == 3);
+    for (std::size_t m = 0; m < 3; ++m)
+        CHECK(*found.cells[m].all.mean == doctest::Approx(25.0 * static_cast<double>(m + 1)));
+    CHECK(*compared_value(found.run, *compute_cells(found.run, r.trials)) == doctest::Approx(75.0));
+    CHECK(*found.first_interval.mean == doctest::Approx(75.0));
+    const std::vector<worth> worths = bradley_terry({{0, 2, 2}, {6, 0, 2}, {6, 6, 0}});
+    for (std::size_t m = 0; m < 3; ++m)
+        CHECK(*found.worths[m].log_worth == *worths[m].log_worth);
+    CHECK(found.pairs.empty());
+    CHECK(!found.effects.second.f);
+    const std::string text = "pairs: worth of c: the choices between it and a, also by way of others, go one "
+                             "way or are missing, so it is not finite";
+    CHECK_FALSE(warns(a, text));
+    d.data[1][0].trials.clear();
+    run_data& always = d.data[0][0] = {};
+    compare(always, 0, 1, 1);
+    compare(always, 2, 1, 4);
+    compare(always, 2, 0, 4);
+    const analysis without = analyse(d);
+    CHECK(warns(without, text));
+    CHECK(without.runs[0].worths[1].log_worth);
+}
+
 // The first method is always rated 1, the second 5, except for some fours.
 run_data rated(unsigned trials, unsigned fours)
 {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -88,14 +89,36 @@ json pairs_json(const std::vector<study::comparison>& pairs, const std::vector<s
     return j;
 }
 
+json first_interval_json(const study::t_test& t)
+{
+    return {{"mean", or_null(t.mean)}, {"t", or_null(t.t)}, {"p", or_null(t.p)}};
+}
+
+void add_worths(json& j, const study::run_analysis& r)
+{
+    j["chosen"] = json::object();
+    json log_worth = json::object();
+    json se = json::object();
+    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
+        const std::string& method = r.run.methods[m];
+        j["chosen"][method] = cells_json(r.cells[m], r.run.motions, true);
+        log_worth[method] = or_null(r.worths[m].log_worth);
+        se[method] = or_null(r.worths[m].se);
+    }
+    j["first_interval"] = first_interval_json(r.first_interval);
+    j["bradley_terry"] = {{"log_worth", log_worth}, {"se", se}, {"reference", r.run.methods.front()}};
+}
+
 void add_choose(json& j, const study::run_analysis& r)
 {
+    if (has_worths(r.run)) {
+        add_worths(j, r);
+        return;
+    }
     const std::vector<std::string>& motions = r.run.motions;
     j["method"] = r.run.methods.back();
     j["preference"] = cells_json(r.cells[0], motions, true);
-    j["first_interval"] = {{"mean", or_null(r.first_interval.mean)},
-                           {"t", or_null(r.first_interval.t)},
-                           {"p", or_null(r.first_interval.p)}};
+    j["first_interval"] = first_interval_json(r.first_interval);
     j["anova"] = {{"motion", effect_json(r.effects.second, motions.size())}};
     j["tukey"] = pairs_json(r.pairs[0], motions);
 }
@@ -264,15 +287,34 @@ void print_pairs(const std::vector<study::comparison>& pairs, const std::vector<
             value_text(c.difference), value_text(c.q), p_clause(c.p));
 }
 
+void print_worths(const study::run_analysis& r)
+{
+    for (std::size_t m = 0; m < r.cells.size(); ++m) {
+        say(stdout, "  per cent of the trials with {} in which it was chosen, against 50\n",
+            r.run.methods[m]);
+        print_tests(r.cells[m], r.run.motions);
+    }
+    const std::size_t w = widest(r.run.methods);
+    say(stdout, "  Bradley-Terry: log worth (se) relative to {}\n", r.run.methods.front());
+    for (std::size_t m = 1; m < r.worths.size(); ++m)
+        say(stdout, "    {:<{}} {:>6} ({})\n", r.run.methods[m], w, value_text(r.worths[m].log_worth),
+            value_text(r.worths[m].se));
+}
+
 void print_choose(const study::run_analysis& r)
 {
-    say(stdout, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
-    print_tests(r.cells[0], r.run.motions);
+    if (has_worths(r.run))
+        print_worths(r);
+    else {
+        say(stdout, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
+        print_tests(r.cells[0], r.run.motions);
+    }
     const study::t_test& first = r.first_interval;
     if (first.mean)
         fmt::print("  first interval chosen: {:.1f} %{}\n", *first.mean, first.t ? ", " + t_text(first) : "");
     print_effect("motion", r.effects.second);
-    print_pairs(r.pairs[0], r.run.motions, "");
+    for (const std::vector<study::comparison>& pairs : r.pairs)
+        print_pairs(pairs, r.run.motions, "");
 }
 
 std::string paired_text(const study::t_test& t)
@@ -372,6 +414,19 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
 }
 
+// Writes the model of Bradley and Terry: a column for each method but the first, 1 where it was felt first,
+// -1 where it was felt second. The intercept is the preference for the first interval.
+std::string write_worth_model(const study::run_outline& r)
+{
+    std::string others;
+    for (std::size_t m = 1; m < r.methods.size(); ++m)
+        others += (m > 1 ? ", " : "") + json(r.methods[m]).dump();
+    return fmt::format("glmer(chosen ~ worth{} + (1 + worth | participant), family = binomial, "
+                       "data = within(subset(d, run == {}), "
+                       "worth <- sapply(c({}), function(m) (method == m) - (other == m))))",
+                       r.motions.size() > 1 ? " + worth:motion" : "", json(r.name).dump(), others);
+}
+
 // The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
 // difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
 std::string write_model(const study::run_outline& r)
@@ -384,6 +439,8 @@ std::string write_model(const study::run_outline& r)
     const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
     switch (r.task) {
     case task_kind::choose:
+        if (has_worths(r))
+            return write_worth_model(r);
         return fmt::format("glmer(chosen ~ {} + order + {}, family = binomial, {})", motion, people, data);
     case task_kind::rate:
         return fmt::format("lmer(rating ~ {}{} + {}, {})", r.methods.size() > 1 ? "method * " : "", motion,
@@ -399,7 +456,14 @@ std::string write_model(const study::run_outline& r)
 struct trial_column {
     const char* name;
     std::string (*cell)(const study::trial& t, const study::run_outline& r);
+    bool for_worths = false; ///< only in studies with a choice among three methods or more
 };
+
+// Returns the method that a trial of choose asks about: the last of two; of three or more the one felt first.
+std::size_t asked_method(const study::trial& t, const study::run_outline& r)
+{
+    return has_worths(r) ? t.method_1 : r.methods.size() - 1;
+}
 
 constexpr trial_column trial_columns[] = {
     {"run", [](const auto&, const auto& r) { return r.name; }},
@@ -407,14 +471,20 @@ constexpr trial_column trial_columns[] = {
     {"trial", [](const auto& t, const auto&) { return fmt::format("{}", t.place); }},
     {"attempt", [](const auto& t, const auto&) { return fmt::format("{}", t.attempt); }},
     {"motion", [](const auto& t, const auto& r) { return r.motions[t.motion]; }},
-    // The method that may be chosen, in runs that choose.
     {"method",
      [](const auto& t, const auto& r) {
-         return r.task == task_kind::choose ? r.methods.back() : r.methods[t.method_1];
+         return r.methods[r.task == task_kind::choose ? asked_method(t, r) : t.method_1];
      }},
+    {"other",
+     [](const auto& t, const auto& r) -> std::string {
+         return r.task != task_kind::choose
+                    ? "n/a"
+                    : r.methods[t.method_1 == asked_method(t, r) ? t.method_2 : t.method_1];
+     },
+     true},
     {"order",
      [](const auto& t, const auto& r) -> std::string {
-         return r.task != task_kind::choose ? "n/a" : t.method_1 + 1 == r.methods.size() ? "0.5" : "-0.5";
+         return r.task != task_kind::choose ? "n/a" : t.method_1 == asked_method(t, r) ? "0.5" : "-0.5";
      }},
     {"response",
      [](const auto& t, const auto& r) {
@@ -422,7 +492,7 @@ constexpr trial_column trial_columns[] = {
      }},
     {"chosen",
      [](const auto& t, const auto& r) -> std::string {
-         return r.task != task_kind::choose ? "n/a" : study::last_chosen(t, r) ? "1" : "0";
+         return r.task != task_kind::choose ? "n/a" : chosen_method(t) == asked_method(t, r) ? "1" : "0";
      }},
     {"rating",
      [](const auto& t, const auto& r) {
@@ -501,15 +571,18 @@ void print_trials(const study::dataset& d)
                         notes);
     for (const study::run_outline& r : d.experiment.runs)
         text += fmt::format("# {}\n", write_model(r));
+    std::vector<trial_column> columns(std::begin(trial_columns), std::end(trial_columns));
+    if (std::ranges::none_of(d.experiment.runs, study::has_worths))
+        std::erase_if(columns, [](const trial_column& c) { return c.for_worths; });
     text += "participant";
-    for (const trial_column& c : trial_columns)
+    for (const trial_column& c : columns)
         text += fmt::format("\t{}", c.name);
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i)
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k)
             for (const study::trial& t : d.data[i][k].trials) {
                 text += d.participants[i];
-                for (const trial_column& c : trial_columns)
+                for (const trial_column& c : columns)
                     text += "\t" + c.cell(t, d.experiment.runs[k]);
                 text += '\n';
             }

@@ -93,10 +93,14 @@ plot::bar_panel make_panel(const study::run_analysis& r)
     p.groups.emplace_back("all");
     switch (r.run.task) {
     case study::task_kind::choose:
-        p.y_title = fmt::format("{} chosen (%)", r.run.methods.back());
-        p.series.push_back(make_bars("", r.cells[0]));
         p.level = 50.0;
         p.y_to = 100.0;
+        if (has_worths(r.run)) {
+            p.y_title = "chosen (% of its trials)";
+            break;
+        }
+        p.y_title = fmt::format("{} chosen (%)", r.run.methods.back());
+        p.series.push_back(make_bars("", r.cells[0]));
         return p;
     case study::task_kind::rate:
         p.y_title = "mean rating";

@@ -104,7 +104,8 @@ std::string comparison_text(const study::run_outline& r)
 {
     switch (r.task) {
     case study::task_kind::choose:
-        return fmt::format("{} chosen, t against 50 %", r.methods.back());
+        return fmt::format("{} chosen{}, t against 50 %", r.methods.back(),
+                           has_worths(r) ? " in its trials" : "");
     case study::task_kind::rate:
         return r.methods.size() < 2
                    ? std::string("one method: nothing to compare")

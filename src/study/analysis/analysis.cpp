@@ -60,13 +60,20 @@ std::vector<comparison> compare_motions(const by_motion& b, const effect& e)
     return tukey(means, b.all.n, e.ms_error, e.df2);
 }
 
+// Returns the number of rows of a run's cells.
+std::size_t count_rows(const run_outline& run)
+{
+    return run.task == task_kind::choose && !has_worths(run) ? 1 : run.methods.size();
+}
+
 void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
 {
     const std::size_t motions = r.run.motions.size();
-    const std::size_t rows = r.run.task == task_kind::choose ? 1 : r.run.methods.size();
+    const std::size_t rows = count_rows(r.run);
     for (std::size_t row = 0; row < rows; ++row)
         r.cells.push_back(test_row(all, row, motions, chance(r.run)));
-    if (r.run.task == task_kind::identify)
+    // Rows of methods to choose from are not independent: what one gains another loses.
+    if (r.run.task == task_kind::identify || has_worths(r.run))
         return;
     r.effects = repeated_measures(lay_out_cells(all, 0, rows, motions));
     for (std::size_t row = 0; row < rows; ++row)
@@ -88,6 +95,15 @@ void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
     for (const run_data* d : data)
         for (const trial& t : d->trials)
             ++r.confusion[t.method_1][t.motion][t.response];
+}
+
+std::vector<worth> estimate_worths(const run_outline& run, const std::vector<const run_data*>& data)
+{
+    std::vector<std::vector<double>> wins(run.methods.size(), std::vector<double>(run.methods.size()));
+    for (const run_data* d : data)
+        for (const trial& t : d->trials)
+            ++wins[chosen_method(t)][t.response == 1 ? t.method_2 : t.method_1];
+    return bradley_terry(wins);
 }
 
 run_analysis analyse_run(const dataset& d, std::size_t which)
@@ -118,6 +134,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
     analyse_values(r, all);
     if (r.run.task == task_kind::choose)
         r.first_interval = test_mean(first, 50.0);
+    if (has_worths(r.run))
+        r.worths = estimate_worths(r.run, data);
     if (r.run.task == task_kind::identify)
         count_answers(r, data);
     return r;
@@ -158,13 +176,19 @@ void warn_of_figures(analysis& a, const run_analysis& r)
             warn(figure, "no variance over participants, so no interval");
     };
     for (std::size_t row = 0; row < r.cells.size(); ++row) {
-        const std::string method = r.run.task == task_kind::choose ? "" : r.run.methods[row] + ", ";
+        const std::string method = r.cells.size() < r.run.methods.size() ? "" : r.run.methods[row] + ", ";
         warn_of_cell(method + "all", r.cells[row].all);
         for (std::size_t m = 0; m < r.cells[row].motion.size(); ++m)
             warn_of_cell(method + r.run.motions[m], r.cells[row].motion[m]);
     }
     warn_of_test("first interval", r.first_interval);
     warn_of_test("methods", r.paired);
+    for (std::size_t i = 0; i < r.worths.size(); ++i)
+        if (r.n != 0 && !r.worths[i].log_worth)
+            warn("worth of " + r.run.methods[i],
+                 fmt::format("the choices between it and {}, also by way of others, go one way or are "
+                             "missing, so it is not finite",
+                             r.run.methods[0]));
     for (const auto& [name, e] : {std::pair<const char*, const effect&>{"method", r.effects.first},
                                   {"motion", r.effects.second},
                                   {"method:motion", r.effects.interaction}})
@@ -185,7 +209,8 @@ double score_trial(const trial& t, const run_outline& run)
 {
     if (run.task == task_kind::rate)
         return t.response;
-    const bool hit = run.task == task_kind::choose ? last_chosen(t, run) : t.response == t.motion;
+    const bool hit =
+        run.task == task_kind::choose ? chosen_method(t) + 1 == run.methods.size() : t.response == t.motion;
     return hit ? 100.0 : 0.0;
 }
 
@@ -214,21 +239,31 @@ analysis analyse(const dataset& d)
     return a;
 }
 
-bool last_chosen(const trial& t, const run_outline& run) noexcept
+bool has_worths(const run_outline& run) noexcept
 {
-    return (t.response == 1 ? t.method_1 : t.method_2) + 1 == run.methods.size();
+    return run.task == task_kind::choose && run.methods.size() > 2;
+}
+
+std::size_t chosen_method(const trial& t) noexcept
+{
+    return t.response == 1 ? t.method_1 : t.method_2;
 }
 
 std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials)
 {
-    const std::size_t rows = run.task == task_kind::choose ? 1 : run.methods.size();
+    const std::size_t rows = count_rows(run);
     cell_values sums(rows, std::vector<double>(run.motions.size(), 0.0));
     std::vector<std::vector<std::size_t>> counts(rows, std::vector<std::size_t>(run.motions.size(), 0));
-    for (const trial& t : trials) {
-        const std::size_t row = run.task == task_kind::choose ? 0 : t.method_1;
-        sums[row][t.motion] += score_trial(t, run);
-        ++counts[row][t.motion];
-    }
+    const auto add = [&](std::size_t row, std::size_t motion, double value) {
+        sums[row][motion] += value;
+        ++counts[row][motion];
+    };
+    for (const trial& t : trials)
+        if (has_worths(run))
+            for (const std::size_t method : {t.method_1, t.method_2})
+                add(method, t.motion, method == chosen_method(t) ? 100.0 : 0.0);
+        else
+            add(run.task == task_kind::choose ? 0 : t.method_1, t.motion, score_trial(t, run));
     for (std::size_t i = 0; i < rows; ++i)
         for (std::size_t j = 0; j < run.motions.size(); ++j) {
             if (counts[i][j] == 0)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "study/data/dataset.hpp"
+#include "study/statistics/bradley_terry.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
@@ -30,17 +31,20 @@ struct run_analysis {
     std::size_t voids = 0;              ///< of everybody who was selected
     std::size_t early = 0;              ///< answers marked early, of the same; they count
 
-    /// choose: per cent of trials in which the last method was chosen, against 50.
+    /// choose: per cent of trials in which the last method was chosen, against 50; of three methods or more
+    /// by method: per cent of the trials with the method in which it was chosen, against 50.
     /// rate: mean ratings by method, not tested. identify: per cent correct by method, against chance.
     std::vector<by_motion> cells = {};
     /// choose: per cent of trials in which the first interval was chosen, against 50.
     t_test first_interval = {};
+    /// choose among three methods or more: by method, from the trials of all n.
+    std::vector<worth> worths = {};
     /// rate, two methods or more: the last less the first, over all motions, against 0.
     t_test paired = {};
-    /// choose: `second` is of motions. rate: `first` of methods, `second` of motions.
+    /// choose between two methods: `second` is of motions. rate: `first` of methods, `second` of motions.
     anova effects = {};
-    /// Pairs of motions: choose: one list. rate: one for each method, from that method's own one-way
-    /// analysis.
+    /// Pairs of motions: choose between two methods: one list. rate: one for each method, from that method's
+    /// own one-way analysis.
     std::vector<std::vector<comparison>> pairs = {};
     /// identify: answers by method, motion and motion answered, all participants.
     std::vector<std::vector<std::vector<std::size_t>>> confusion = {};
@@ -59,25 +63,30 @@ struct analysis {
 /// Returns the per cent that guessing gives.
 double chance(const run_outline& run) noexcept;
 
+/// Tests whether a run chooses among three methods or more: each has a row of cells and a worth.
+bool has_worths(const run_outline& run) noexcept;
+
 analysis analyse(const dataset& d);
 
-/// Values by row (method; one row for choose) and motion.
+/// Values by row (method; one row for choose between two) and motion.
 using cell_values = std::vector<std::vector<double>>;
 
-/// Returns a participant's values in a run: choose: per cent in which the last method was chosen; rate: the
-/// mean rating; identify: per cent correct. Nothing if a cell has no trial.
+/// Returns a participant's values in a run: choose: per cent in which the last method was chosen, or each of
+/// three methods or more in its trials; rate: the mean rating; identify: per cent correct. Nothing if a cell
+/// has no trial.
 std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials);
 
 /// Returns the largest difference of a run's values that rounding may leave of 0.
 double rounding_in(const run_outline& run) noexcept;
 
 /// Returns a participant's value in the main comparison of a run. choose: per cent in which the last method
-/// was chosen, against 50; rate: the last method's mean less the first's, against 0, nothing for one method;
-/// identify: per cent correct by the last method, against chance. Sets to 0 what rounding leaves of 0.
+/// was chosen (in its trials), against 50; rate: the last method's mean less the first's, against 0, nothing
+/// for one method; identify: per cent correct by the last method, against chance. Sets to 0 what rounding
+/// leaves of 0.
 std::optional<double> compared_value(const run_outline& run, const cell_values& cells);
 
-/// Returns true if a trial of choose was answered with the last method.
-bool last_chosen(const trial& t, const run_outline& run) noexcept;
+/// Returns the method with which a trial of choose was answered: its place in the run's.
+std::size_t chosen_method(const trial& t) noexcept;
 
 /// Limits of a mean of per cents, and of a run's values: per cents or ratings.
 inline constexpr interval per_cents{0.0, 100.0};

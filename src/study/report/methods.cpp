@@ -400,6 +400,9 @@ std::set<std::string> list_notes(const study_facts& f)
 std::string describe_task(const run_outline& r)
 {
     const std::string methods = join(r.methods);
+    if (has_worths(r))
+        return fmt::format("two stimuli of one motion, by two of {}, one after the other; one was chosen",
+                           methods);
     if (r.task == task_kind::choose)
         return fmt::format("two stimuli of one motion, by {} and by {}, one after the other; one was chosen",
                            r.methods[0], r.methods[1]);
@@ -510,19 +513,31 @@ void cut_intervals(json& results, double low, double high)
             cut_intervals(inner, low, high);
 }
 
+// Adds the rows of a table of worths.
+void add_rows(json& bradley_terry)
+{
+    json rows = json::array();
+    for (const auto& [method, log_worth] : bradley_terry.at("log_worth").items())
+        rows.push_back(
+            {{"name", method}, {"log_worth", log_worth}, {"se", bradley_terry.at("se").at(method)}});
+    bradley_terry["rows"] = std::move(rows);
+}
+
 // Adds to each run what its tables need: names of motions, and lists of pairs.
 json describe_results(json runs, const dataset& d)
 {
     for (const run_outline& o : d.experiment.runs) {
         json& run = runs.at(o.name);
         if (run.at("n") == 0) // nobody answered all of it
-            for (const char* key : {"preference", "first_interval", "means", "paired", "anova", "tukey",
-                                    "correct", "confusion"})
+            for (const char* key : {"preference", "chosen", "first_interval", "bradley_terry", "means",
+                                    "paired", "anova", "tukey", "correct", "confusion"})
                 run.erase(key);
         const interval possible = possible_values(o);
-        for (const char* key : {"preference", "means", "correct"})
+        for (const char* key : {"preference", "chosen", "means", "correct"})
             if (run.contains(key))
                 cut_intervals(run[key], possible.first, possible.second);
+        if (run.contains("bradley_terry"))
+            add_rows(run["bradley_terry"]);
         run["motions"] = o.motions;
         run["pairs"] = json::array();
         const auto add = [&run](const json& within, const json& rows) {
@@ -594,6 +609,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
         all["runs"].push_back(describe_run(f, d.experiment.runs[i], i));
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
+    all["worths"] = std::ranges::any_of(d.experiment.runs, has_worths);
     all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
     all["sessions"] = json::array();
     for (const session_facts& s : f.sessions)
