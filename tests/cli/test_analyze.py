@@ -27,7 +27,7 @@ class AnalyzeTest(ToolTest):
 
 class Figures(AnalyzeTest):
     def test_every_figure_matches_r_and_nothing_else_is_printed(self):
-        known = {"method", "task", "trials", "early", "left_out", "a", "b", "participant", "why"}
+        known = {"method", "reference", "task", "trials", "early", "left_out", "a", "b", "participant", "why"}
         for name in studies.STUDIES:
             golden = check_r.read((check_r.GOLDEN / f"{name}.tsv").read_text(encoding="utf-8"))
             self.assertGreater(len(golden), 100)
@@ -135,6 +135,34 @@ class Forms(AnalyzeTest):
         self.assertAlmostEqual(sum(rated) / len(rated),
                                told["uniformity-rating"]["means"]["tactile-brush"]["all"]["mean"], 9)
         self.assertTrue(any(r["attempt"] == "2" for r in rows))
+        self.assertNotIn("other", rows[0])
+
+    def test_three_methods_to_choose_from_have_rows_worths_and_a_model(self):
+        text = self.ok("analyze", self.study("among"), "--format", "tsv").stdout
+        self.assertIn('# glmer(chosen ~ worth + worth:motion + (1 + worth | participant), family = binomial, '
+                      'data = within(subset(d, run == "all three"), worth <- sapply(c("park2016", "continuous"), '
+                      'function(m) (method == m) - (other == m))))', text)
+        rows = list(csv.DictReader([line for line in text.splitlines() if line[0] != "#"], delimiter="\t"))
+        self.assertEqual({(r["method"], r["other"]) for r in rows if r["run"] == "last two"}, {("continuous", "park2016")})
+        told = self.analysis("among")["runs"]["all three"]
+        for name, cells in told["chosen"].items():
+            own = [r["chosen"] == str(int(r["method"] == name)) for r in rows if r["run"] == "all three" and r["motion"] == "motion-2"
+                   and name in (r["method"], r["other"])]
+            self.assertAlmostEqual(100 * sum(own) / len(own), cells["motion"]["motion-2"]["mean"], 9)
+        shown = self.ok("analyze", "among").stdout
+        self.assertLessEqual(max(map(len, shown.splitlines())), 80)
+        worths = told["bradley_terry"]
+        for name in ("park2016", "continuous"):
+            self.assertRegex(shown, rf"(?m)^    {name} +{worths['log_worth'][name]:.2f} \({worths['se'][name]:.2f}\)$")
+        self.ok("analyze", "among", "-o", "a.svg")
+        panel = Svg(self.dir / "a.svg").all("bars")[0]
+        y0, ky = number(panel, "data-y0"), number(panel, "data-y-scale")
+        bars = [e for e in panel.iter() if e.get("class") == "bar"]
+        self.assertEqual(len(bars), 3 * 4)
+        for bar in bars:
+            cells, group = told["chosen"][bar.get("data-series")], bar.get("data-group")
+            cell = cells["all"] if group == "all" else cells["motion"][group]
+            self.assertAlmostEqual((number(bar, "y") - y0) / ky, cell["mean"], delta=0.02)
 
     def test_r_reads_names_of_any_letters(self):
         name = '"x" # \\\\'

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tactor experiment: the definition, the dry run, simulated sessions, the folder that they write, and --power."""
+import collections
 import fcntl
 import hashlib
 import json
@@ -302,6 +303,23 @@ class Simulated(ExperimentTest):
                 self.assertAlmostEqual(float(row["onset"]), (int(row["frame_1"]) - int(rows[0]["frame_1"])) / rate, 5)
             ends = [float(r["onset"]) + float(r["duration"]) + float(r["response_time"]) for r in rows]
             self.assertTrue(all(float(r["onset"]) > e for r, e in zip(rows[1:], ends)))
+
+    def test_three_methods_are_compared_in_pairs_from_definition_to_report(self):
+        third = '[[method]]\nname = "third"\nalgorithm = "continuous"\nphantom = "gaussian"\n[[run]]'
+        small = self.small(SMALL.replace("[[run]]", third, 1).replace("trials = 4", "trials = 12"))
+        for code in ("01", "02", "03"):
+            self.simulate(code, definition=small, spec="seed=1,sigma=2")
+        seen = collections.Counter((r["motion"], r["method_1"], r["method_2"]) for r in self.rows("02", "whichone"))
+        self.assertEqual((len(seen), set(seen.values())), (2 * 6, {1}))
+        run = self.analysis()["runs"]["which-one"]
+        self.assertEqual((run["bradley_terry"]["reference"], list(run["bradley_terry"]["se"])), ("brush", ["brush", "park", "third"]))
+        self.assertAlmostEqual(sum(m["all"]["mean"] for m in run["chosen"].values()), 150)
+        text = self.ok("report", "study").stdout
+        self.assertIn("two stimuli of one motion, by two of brush, park, third,", text)
+        self.assertEqual(re.findall(r"Per cent of the trials with (\w+) in which it was chosen", text), ["brush", "park", "third"])
+        self.assertRegex(text, r"relative to brush, which has 0:\n\n\| method .*\n\| --- .*\n\| brush \| 0 \| 0 \|\n\| park \| \S+ \| \S+ \|\n")
+        told = json.loads(self.ok("experiment", small, "--power", "3", "--studies", "4", "--simulate", "sigma=1", "--format", "json").stdout)
+        self.assertEqual(told["runs"][0]["comparison"], "third chosen in its trials, t against 50 %")
 
     def test_the_session_file_is_complete(self):
         self.simulate("01", "--seed", "12")

@@ -39,7 +39,8 @@ BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10
 
 
 # Objects whose keys are names given by users.
-MAPS = {"runs", "void", "runs{}.preference.motion", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
+MAPS = {"runs", "void", "runs{}.preference.motion", "runs{}.chosen", "runs{}.chosen{}.motion",
+        "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion"}
 
 
@@ -158,7 +159,7 @@ class Schemas(ToolTest):
         walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
         self.write("o.toml", PAIR.partition("[sync]")[0])
         self.write("felt.toml", FELT)
-        for study in ("missing", "three-by-three"):
+        for study in ("missing", "three-by-three", "among"):
             studies.STUDIES[study](self.dir / study)
         texts = [self.ok(*args, "--format", "json").stdout for args in (
             ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"),
@@ -174,7 +175,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

@@ -151,16 +151,28 @@ pairs <- function(place, values, motions) {
     i <- i + 1
   }
 }
+# The model of Bradley and Terry: 1 where a method was felt first, -1 where it was felt second, no intercept.
+worths <- function(place, d, methods) {
+  x <- sapply(methods[-1], function(m) (d$method_1 == m) - (d$method_2 == m))
+  fit <- glm(d$response == "1" ~ 0 + x, family = binomial, control = list(epsilon = 1e-14, maxit = 100))
+  figures <- rbind(0, coef(summary(fit))[, c("Estimate", "Std. Error")])
+  for (i in seq_along(methods)) {
+    say(paste0(place, ".log_worth.", methods[i]), figures[i, 1])
+    say(paste0(place, ".se.", methods[i]), figures[i, 2])
+  }
+}
 
 for (k in seq_len(nrow(runs))) {
   run <- runs$name[k]
   task <- runs$task[k]
   motions <- strsplit(runs$motions[k], ",")[[1]]
   methods <- strsplit(runs$methods[k], ",")[[1]]
-  rows <- if (task == "choose") "all" else methods
+  several <- task == "choose" && length(methods) > 2
+  rows <- if (task == "choose" && !several) "all" else methods
   values <- lapply(rows, function(r) NULL)
   names(values) <- rows
   first <- c()
+  compared <- NULL
   confusion <- array(0, c(length(methods), length(motions), length(motions)), list(methods, motions, motions))
   for (code in people) {
     d <- trials_of(run, code)
@@ -170,8 +182,16 @@ for (k in seq_len(nrow(runs))) {
       rate = as.numeric(d$rating),
       identify = 100 * (d$response == d$motion))
     row <- if (task == "choose") rep("all", nrow(d)) else d$method_1
-    cells <- tapply(d$score, list(factor(row, rows), factor(d$motion, motions)), mean)
+    scores <- d$score
+    motion <- d$motion
+    if (several) { # each trial is in the row of both methods
+      row <- c(d$method_1, d$method_2)
+      scores <- 100 * c(d$response == "1", d$response == "2")
+      motion <- c(motion, motion)
+    }
+    cells <- tapply(scores, list(factor(row, rows), factor(motion, motions)), mean)
     if (anyNA(cells)) next
+    compared <- rbind(compared, d)
     for (r in rows) values[[r]] <- rbind(values[[r]], cells[r, ])
     first <- c(first, 100 * mean(d$response == "1"))
     if (task == "identify") for (i in seq_len(nrow(d))) {
@@ -183,11 +203,15 @@ for (k in seq_len(nrow(runs))) {
   say(paste0(place, ".n"), nrow(values[[1]]))
   within <- factor(motions, motions)
   if (task == "choose") {
-    tests(paste0(place, ".preference"), values[[1]], motions, 50)
+    if (several) {
+      for (m in methods) tests(paste0(place, ".chosen.", m), values[[m]], motions, 50)
+      worths(paste0(place, ".bradley_terry"), compared, methods)
+    } else tests(paste0(place, ".preference"), values[[1]], motions, 50)
     t <- if (constant(first)) list(statistic = NA, p.value = NA) else t.test(first, mu = 50)
     say(paste0(place, ".first_interval.mean"), mean(first))
     say(paste0(place, ".first_interval.t"), unname(t$statistic))
     say(paste0(place, ".first_interval.p"), t$p.value)
+    if (several) next
     effects(paste0(place, ".anova"), values[[1]], data.frame(motion = within))
     pairs(paste0(place, ".tukey"), values[[1]], motions)
   } else if (task == "rate") {

@@ -4,7 +4,9 @@
 Usage: studies.py FOLDER [--R]   writes FOLDER/NAME for each; with --R also FOLDER/NAME.runs, what analyze.R reads of
 the definition: a line for each run, its name, task, motions, methods, with tabs between and "," in lists.
 """
+import itertools
 import json
+import math
 import pathlib
 import re
 import sys
@@ -61,7 +63,7 @@ def names_in(text):
 def cells(r, motions, methods):
     """Returns the cells of a run, each equally often."""
     ms, ns = r.get("motions", motions), [m for m in methods if m in r.get("methods", methods)]
-    pairs = [(ns[0], ns[1]), (ns[1], ns[0])] if r["task"] == "choose" else [(n, "n/a") for n in ns]
+    pairs = list(itertools.permutations(ns, 2)) if r["task"] == "choose" else [(n, "n/a") for n in ns]
     return [(m, *p) for m in ms for p in pairs]
 
 
@@ -215,8 +217,23 @@ def three_by_three(folder):
     write_study(folder, text, [f"s{i}" for i in range(1, 11)], answers)
 
 
+def among(folder):
+    """Makes choices among three methods, whose worths differ between people and between motions, and between two."""
+    methods = [*TWO, "continuous"]
+    text = definition("among", FOUR[:3], methods, [run("all three", "choose", 36),
+                                                   run("last two", "choose", 12, methods=methods[1:])])
+    numbers = Numbers(1952)
+    own = {f"q{i}": {m: worth + 0.5 * numbers.normal() for m, worth in zip(methods, (0, 1.1, 0.4))} for i in range(1, 8)}
+
+    def answers(code, r, cell, n):
+        first, second = (own[code][m] for m in cell[1:])
+        lift = 0.3 * FOUR.index(cell[0]) * (cell[1] == "continuous")
+        return 1 if numbers.unit() < 1 / (1 + math.exp(second - first - lift)) else 2
+    write_study(folder, text, list(own), answers, void=17)
+
+
 STUDIES = {"simulated": simulated, "ties": ties, "missing": missing, "constant": constant, "two-levels": two_levels,
-           "few": few, "three-by-three": three_by_three}
+           "few": few, "three-by-three": three_by_three, "among": among}
 
 
 def for_r(folder, file):

@@ -260,7 +260,7 @@ TEST_CASE("faults have their line")
              bad_method{"intensity_max = 2", "e.toml:8:", "[[method]] has no file"},
          })
         says(head + motion + "[[method]]\nname = \"a\"\n" + m.keys + "\n" + run, m.where, m.what);
-    says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml", "1 methods to choose from");
+    says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml", "r has one method to choose from");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"guess\"\ntrials = 4\n",
          "e.toml:14:", "guess");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
@@ -320,7 +320,8 @@ TEST_CASE("faults have their line")
     };
     CHECK(with("task = \"rate\"\n").find("[[run]] has no name") != std::string::npos);
     CHECK(with("name = \"-\"\ntask = \"rate\"\n").find("no letter or digit") != std::string::npos);
-    has(with("name = \"r\"\ntask = \"choose\"\n"), "r has 3 methods to choose from");
+    has(with("name = \"r\"\ntask = \"choose\"\nmethods = [\"new\"]\n"), "r has one method to choose from");
+    CHECK(with("name = \"r\"\ntask = \"choose\"\n").empty()); // of three
     has(with("name = \"r\"\ntask = \"rate\"\nmotions = [\"c\"]\n"),
         "motions has what is not defined (one of a, b)");
     for (const char* beyond : {"scale = 1", "scale = 10", "trials = 0", "trials = 10001"})

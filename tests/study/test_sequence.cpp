@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <ranges>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,21 +22,25 @@
 #include "core/sha256.hpp"
 #include "folder.hpp"
 #include "has.hpp"
+#include "study/analysis/analysis.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
+#include "study/statistics/bradley_terry.hpp"
 
 namespace tactor::study::test_sequence {
 namespace {
 
 constexpr std::uint64_t seeds = 10000;
 
-experiment_definition with_run(const std::string& run, unsigned motions = 4)
+experiment_definition with_run(const std::string& run, unsigned motions = 4, unsigned methods = 2)
 {
     std::string text = "[experiment]\nname = \"e\"\n";
     for (unsigned i = 1; i <= motions; ++i)
         text += fmt::format("[[motion]]\nname = \"m{}\"\npath = \"M0 0H{}\"\n", i, 10 * i);
     text += "[[method]]\nname = \"a\"\nalgorithm = \"tactile-brush\"\n[[method]]\nname = \"b\"\n";
+    for (unsigned i = 3; i <= methods; ++i)
+        text += fmt::format("[[method]]\nname = \"{}\"\n", i);
     return read_definition(text + "[[run]]\nname = \"r\"\n" + run, "e.toml", {});
 }
 
@@ -147,6 +152,38 @@ TEST_CASE("a number that does not divide gives counts that differ by one at most
     }
 }
 
+// Returns the difference between the largest and the smallest count of so many keys.
+int spread(const std::map<std::array<std::size_t, 3>, int>& counts, std::size_t keys)
+{
+    const auto [least, most] = std::ranges::minmax(std::views::values(counts));
+    return most - (counts.size() < keys ? 0 : least);
+}
+
+TEST_CASE("pairs come equally often, in each motion and order too, as far as the number allows")
+{
+    for (const std::size_t methods : {3U, 4U, 5U})
+        for (const unsigned n : {1U, 5U, 12U, 31U, 60U}) {
+            const experiment_definition d =
+                with_run(fmt::format("task = \"choose\"\nattribute = \"similarity\"\ntrials = {}\n", n), 2,
+                         static_cast<unsigned>(methods));
+            const std::size_t pairs = methods * (methods - 1) / 2;
+            for (std::uint64_t seed = 0; seed < 20; ++seed) {
+                std::array<std::map<std::array<std::size_t, 3>, int>, 5> counts;
+                for (const planned_trial& t : make_run(d, 0, "01", seed).trials) {
+                    const auto [low, high] = std::minmax(t.method_1, *t.method_2);
+                    ++counts[0][{t.motion}];
+                    ++counts[1][{low, high}];
+                    ++counts[2][{t.method_1, *t.method_2}];
+                    ++counts[3][{low, high, t.motion}];
+                    ++counts[4][{t.method_1, *t.method_2, t.motion}];
+                }
+                for (std::size_t i = 0; i < 5; ++i)
+                    CHECK(spread(counts[i],
+                                 std::array{std::size_t{2}, pairs, 2 * pairs, 2 * pairs, 4 * pairs}[i]) <= 1);
+            }
+        }
+}
+
 TEST_CASE("over 10,000 seeds no motion, order or position is favoured")
 {
     const experiment_definition d = load_definition("park2016");
@@ -183,6 +220,17 @@ TEST_CASE("the remainder is drawn fairly, too")
         for (const planned_trial& t : make_run(d, 0, "01", seed).trials)
             ++cells[t.motion * 2 + t.method_1];
     CHECK(p_of_equal(cells) > 1e-4);
+    const experiment_definition pairs =
+        with_run("task = \"choose\"\nattribute = \"uniformity\"\ntrials = 5\n", 2, 3);
+    std::map<std::array<std::size_t, 3>, double> kinds;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed)
+        for (const planned_trial& t : make_run(pairs, 0, "01", seed).trials)
+            ++kinds[{t.motion, t.method_1, *t.method_2}];
+    cells.clear();
+    for (const auto& [kind, count] : kinds)
+        cells.push_back(count);
+    CHECK(cells.size() == 12);
+    CHECK(p_of_equal(cells) > 1e-4);
 }
 
 TEST_CASE("seed, experiment, code and run each change the order, and the same ones give the same")
@@ -201,9 +249,14 @@ TEST_CASE("seed, experiment, code and run each change the order, and the same on
 TEST_CASE("orders are the same on every machine")
 {
     std::string text;
-    for (const run_sequence& s : make_sequence(load_definition("park2016"), "P07", 2016))
+    std::string practice;
+    for (const run_sequence& s : make_sequence(load_definition("park2016"), "P07", 2016)) {
         for (const planned_trial& t : s.trials)
             text += fmt::format("{}{}{} ", t.motion, t.method_1, t.method_2.value_or(9));
+        for (const planned_trial& t : s.practice)
+            practice += fmt::format("{}{}{} ", t.motion, t.method_1, t.method_2.value_or(9));
+    }
+    CHECK(practice == "109 019 319 209 009 109 219 319 010 110 201 301 010 101 301 210 ");
     CHECK(detail::sha256_text(text) == "866bef5c522d737ae0444c7727c23b761f1c856c82d5569e5061dbc08b59e25e");
     CHECK(default_seed("abc") == 0xba7816bf);
 }
@@ -586,6 +639,51 @@ constexpr const char* choose = "[[run]]\nname = \"pick\"\ntask = \"choose\"\natt
                                "trials = 12\n";
 constexpr const char* rate = "[[run]]\nname = \"mark\"\ntask = \"rate\"\nattribute = \"uniformity\"\n"
                              "trials = 12\n";
+
+// A better method after the second, for power_rig.
+constexpr const char* third = "park2016\"\n[[method]]\nname = \"c\"\nalgorithm = \"continuous\"\n"
+                              "phantom = \"gaussian";
+
+TEST_CASE("choices among three methods have the worths that their costs imply")
+{
+    const power_rig r(third, choose);
+    const simulation s{.seed = 2, .sigma = 1.0};
+    const boost::math::normal noise(0.0, std::sqrt(2.0) * s.sigma);
+    dataset all;
+    all.experiment = make_outline(r.d);
+    std::vector<std::vector<double>> expected(3, std::vector<double>(3, 0.0));
+    for (unsigned i = 1; i <= 40; ++i) {
+        all.participants.push_back(fmt::format("{:02}", i));
+        const simulated_observer who(s, r.d, r.d.runs[0], r.stimuli, all.participants.back());
+        run_data data;
+        for (const planned_trial& t : make_run(r.d, 0, all.participants.back(), 7).trials) {
+            const auto place = static_cast<unsigned>(data.trials.size() + 1);
+            const auto cost = [&](std::size_t method) {
+                return *r.stimuli.at(t.motion, method).felt.rms_error_mm;
+            };
+            const double p = boost::math::cdf(noise, std::log(cost(*t.method_2) / cost(t.method_1)));
+            expected[t.method_1][*t.method_2] += p;
+            expected[*t.method_2][t.method_1] += 1.0 - p;
+            data.trials.push_back({.place = place,
+                                   .motion = t.motion,
+                                   .method_1 = t.method_1,
+                                   .method_2 = *t.method_2,
+                                   .response = who.answer(t, place, 1, false).response});
+        }
+        all.data.push_back({data});
+    }
+    const run_analysis found = analyse(all).runs[0];
+    const std::vector<worth> truth = bradley_terry(expected);
+    REQUIRE(found.worths.size() == 3);
+    for (const std::size_t m : {1U, 2U}) {
+        CHECK(*truth[m].log_worth > *truth[m - 1].log_worth + 0.5);
+        CHECK(*found.worths[m].log_worth > *found.worths[m - 1].log_worth);
+        CHECK(std::abs(*found.worths[m].log_worth - *truth[m].log_worth) < 4.0 * *found.worths[m].se);
+    }
+    const power_at at = r.tell({s, {6}, 40})[0].at[0];
+    CHECK(at.for_last == at.significant);
+    CHECK(at.power > 0.8);
+}
 
 TEST_CASE("where both methods are equal, one study in twenty is significant")
 {

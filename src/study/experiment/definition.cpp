@@ -406,9 +406,8 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
         o.motions.push_back(d.motions[i].name);
     for (const std::size_t i : r.methods)
         o.methods.push_back(d.methods[i].name);
-    if (o.task == task_kind::choose && r.methods.size() != 2)
-        t.fail(fmt::format("{} has {} methods to choose from", o.name, r.methods.size()),
-               "choose compares two: name them in methods");
+    if (o.task == task_kind::choose && r.methods.size() < 2)
+        t.fail(fmt::format("{} has one method to choose from", o.name), "name two or more in methods");
     if (o.task == task_kind::identify && r.motions.size() < 2)
         t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
     return r;

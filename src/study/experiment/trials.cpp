@@ -23,24 +23,46 @@
 namespace tactor::study {
 namespace {
 
-// Lists the cells of a run: each motion by each method, or by each order of the two.
+// Lists the conditions of a motion: each method, or each pair of methods in one order. The pairs are a cyclic
+// design: of the first n pairs, and of the next n, each of the n methods comes first once.
+std::vector<planned_trial> list_conditions(task_kind task, std::size_t motion,
+                                           const std::vector<std::size_t>& methods)
+{
+    const std::size_t n = methods.size();
+    std::vector<planned_trial> all;
+    if (task != task_kind::choose)
+        for (const std::size_t method : methods)
+            all.push_back({motion, method});
+    else
+        for (std::size_t i = 0; i < n * (n - 1) / 2; ++i)
+            all.push_back({motion, methods[i % n], methods[(i % n + i / n + 1) % n]});
+    return all;
+}
+
+// Exchanges the methods of a pair if `swapped`.
+planned_trial with_order(planned_trial t, bool swapped)
+{
+    if (t.method_2 && swapped)
+        std::swap(t.method_1, *t.method_2);
+    return t;
+}
+
+// Lists the cells of a run: each motion by each method, or by each pair in each order.
 std::vector<planned_trial> list_cells(const run_definition& r)
 {
     std::vector<planned_trial> cells;
-    for (const std::size_t motion : r.motions) {
-        if (r.outline.task == task_kind::choose) {
-            cells.push_back({motion, r.methods[0], r.methods[1]});
-            cells.push_back({motion, r.methods[1], r.methods[0]});
-            continue;
+    for (const std::size_t motion : r.motions)
+        for (const planned_trial& t : list_conditions(r.outline.task, motion, r.methods)) {
+            cells.push_back(t);
+            if (t.method_2)
+                cells.push_back(with_order(t, true));
         }
-        for (const std::size_t method : r.methods)
-            cells.push_back({motion, method});
-    }
     return cells;
 }
 
-// Draws n trials: each cell equally often, and of the rest, which are different cells, each motion and each
-// method or order equally often as far as n allows. The cells of one motion stand together.
+// Draws n trials: each cell equally often, and of the rest, which are different cells, each motion, each
+// method or pair, each of them in a motion, and each order of a pair equally often as far as n allows. The
+// cells of one motion stand together.
 std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
 {
     const std::vector<planned_trial> cells = list_cells(run);
@@ -50,16 +72,22 @@ std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t 
         all.push_back(cells[i % cells.size()]);
     if (whole == n)
         return all;
-    const std::size_t motions = run.motions.size();
-    const std::size_t kinds = cells.size() / motions;
-    std::vector<std::size_t> first(motions);
-    std::vector<std::size_t> second(kinds);
-    std::iota(first.begin(), first.end(), 0);
-    std::iota(second.begin(), second.end(), 0);
-    shuffle(std::span(first), r);
-    shuffle(std::span(second), r);
-    for (std::size_t i = 0; whole + i < n; ++i)
-        all.push_back(cells[first[i % motions] * kinds + second[(i % motions + i / motions) % kinds]]);
+    std::vector<std::size_t> motions = run.motions;
+    std::vector<std::size_t> methods = run.methods;
+    shuffle(std::span(motions), r);
+    shuffle(std::span(methods), r);
+    // Each motion meets each condition once: both lists go on by one at a time, and the conditions by one
+    // more before the same meet again. Then the same with each pair in its other order.
+    const std::vector<planned_trial> conditions = list_conditions(run.outline.task, 0, methods);
+    const std::size_t kinds = conditions.size();
+    const std::size_t half = motions.size() * kinds;
+    for (std::size_t i = 0; whole + i < n; ++i) {
+        const std::size_t at = i % half;
+        planned_trial t = with_order(conditions[(at + at / std::lcm(motions.size(), kinds)) % kinds],
+                                     (at / kinds + i / half) % 2 == 1);
+        t.motion = motions[at % motions.size()];
+        all.push_back(t);
+    }
     return all;
 }
 

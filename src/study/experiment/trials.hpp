@@ -58,7 +58,8 @@ std::uint64_t default_seed(std::string_view code);
 /// default_seed(), modulo the number of rows.
 std::vector<std::size_t> run_order(std::size_t n, std::string_view code);
 
-/// Draws the trials of one run, from the generator that "seed/experiment/code/run" seeds.
+/// Draws the trials of one run from the generator that "seed/experiment/code/run" seeds: each motion with
+/// each method, or with each pair of methods in each order, equally often as far as their number allows.
 /// \throws error (bad_input) if every order drawn has a motion four times in a row.
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
                       std::uint64_t seed);
