@@ -154,7 +154,8 @@ class Numbers(ReportTest):
                     self.assertEqual([row["mean"] for row in table],
                                      [four(t["mean"]) for t in (means["all"], *means["motion"].values())])
             effects = next(t for t in found if "effect" in t[0])
-            self.assertEqual([(r["effect"], r["F"]) for r in effects], [(n, four(e["F"])) for n, e in run["anova"].items()])
+            self.assertEqual([(r["effect"], r["F"], r["epsilon (HF)"]) for r in effects],
+                             [(n, four(e["F"]), four(e["epsilon_hf"])) for n, e in run["anova"].items()])
             tukey = run["tukey"] if run["task"] == "choose" else [p for pairs in run["tukey"].values() for p in pairs]
             self.assertEqual([(r["pair"], r["difference"]) for t in found if "pair" in t[0] for r in t],
                              [(f"{p['a']} - {p['b']}", four(p["difference"])) for p in tukey])

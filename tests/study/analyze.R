@@ -87,12 +87,14 @@ spherical <- function(values, factors, name) {
   X <- as.formula(terms[[1]]); M <- as.formula(terms[[2]])
   rank <- function(f) qr(model.matrix(f, factors))$rank
   p <- rank(M) - rank(X)
-  out <- c(epsilon = NA, w = NA, p = NA)
+  out <- c(epsilon = NA, hf = NA, w = NA, p = NA)
   if (p < 2) return(out)
   project <- function(f) { m <- model.matrix(f, factors); m %*% solve(crossprod(m)) %*% t(m) }
   T <- svd(project(M) - project(X))$u[, 1:p]
   lambda <- eigen(t(T) %*% crossprod(residuals(fit)) %*% T, symmetric = TRUE)$values
   out["epsilon"] <- sum(lambda)^2 / p / sum(lambda^2)
+  rest <- fit$df.residual - p * out["epsilon"]
+  if (rest > 1e-9) out["hf"] <- ((fit$df.residual + 1) * p * out["epsilon"] - 2) / (p * rest)
   if (fit$df.residual >= p && min(lambda) > 1e-12 * max(lambda)) {
     m <- mauchly.test(fit, X = X, M = M, idata = factors)
     out[c("w", "p")] <- c(m$statistic, m$p.value)
@@ -120,9 +122,13 @@ effects <- function(place, values, factors) {
     say(at("df2"), e["df2"])
     p <- pf(f, e["df1"], e["df2"], lower.tail = FALSE)
     p_gg <- pf(f, sph["epsilon"] * e["df1"], sph["epsilon"] * e["df2"], lower.tail = FALSE)
+    hf <- min(1, sph["hf"])
+    p_hf <- pf(f, hf * e["df1"], hf * e["df2"], lower.tail = FALSE)
     say(at("p"), p)
     say(at("epsilon_gg"), sph["epsilon"])
     say(at("p_gg"), p_gg)
+    say(at("epsilon_hf"), sph["hf"])
+    say(at("p_hf"), p_hf)
     say(at("mauchly_w"), sph["w"])
     say(at("mauchly_p"), sph["p"])
     say(at("eta2_partial"), e["ss"] / (e["ss"] + e["error"]))
@@ -136,6 +142,8 @@ effects <- function(place, values, factors) {
     agree(car$sphericity.tests[name, "p-value"], sph["p"], "car: Mauchly's p")
     agree(car$pval.adjustments[name, "GG eps"], sph["epsilon"], "car: epsilon")
     agree(car$pval.adjustments[name, "Pr(>F[GG])"], p_gg, "car: p of Greenhouse and Geisser")
+    agree(car$pval.adjustments[name, "HF eps"], sph["hf"], "car: epsilon of Huynh and Feldt")
+    agree(car$pval.adjustments[name, "Pr(>F[HF])"], p_hf, "car: p of Huynh and Feldt")
   }
 }
 pairs <- function(place, values, motions) {

@@ -123,6 +123,43 @@ TEST_CASE("epsilon is 1 where all differences vary alike and 1 / (k - 1) where o
     CHECK(!mauchly({{2.0, 0.0}, {0.0, 2.0}}, 1, 3)); // two people, three levels
 }
 
+// Reaction times of ten people, ms, as Maxwell and Delaney print them: at 0, 4 and 8 degrees without noise,
+// then with noise.
+const std::vector<std::vector<double>> reactions{
+    {420, 420, 480, 480, 600, 780}, {420, 480, 480, 360, 480, 600}, {480, 480, 540, 660, 780, 780},
+    {420, 540, 540, 480, 780, 900}, {540, 660, 540, 480, 660, 720}, {360, 420, 360, 360, 480, 540},
+    {480, 480, 600, 540, 720, 840}, {480, 600, 660, 540, 720, 900}, {540, 600, 540, 480, 720, 780},
+    {480, 420, 540, 540, 660, 780}};
+
+TEST_CASE("epsilons of Greenhouse and Geisser and of Huynh and Feldt are those of R")
+{
+    struct known {
+        effect e;
+        double f;
+        double gg;
+        double p_gg;
+        double hf;
+        double p_hf;
+    };
+    const anova both = repeated_measures({reactions, 2, 3});
+    // anova(mlm, test = "Spherical") and sphericity(), R 4.2.2
+    for (const known& k :
+         {known{repeated_measures({reactions, 1, 6}).second, 38.02793296, 0.485491764776, 2.531991886e-8,
+                0.67780749156, 7.393013564e-11},
+          known{both.second, 40.71910112, 0.961636518148, 3.401704843e-7, 1.2175636033, 2.0867632e-7},
+          known{both.interaction, 45.31034483, 0.903977069153, 3.453930861e-7, 1.11786977532,
+                9.424092558e-8}}) {
+        CHECK(*k.e.f == doctest::Approx(k.f).epsilon(1e-9));
+        CHECK(*k.e.epsilon_gg == doctest::Approx(k.gg).epsilon(1e-9));
+        CHECK(*k.e.p_gg / k.p_gg == doctest::Approx(1.0).epsilon(1e-8));
+        CHECK(*k.e.epsilon_hf == doctest::Approx(k.hf).epsilon(1e-9));
+        CHECK(*k.e.p_hf / k.p_hf == doctest::Approx(1.0).epsilon(1e-8));
+    }
+    CHECK(*both.second.p_hf == *both.second.p); // of an epsilon above 1
+    CHECK(!both.first.epsilon_hf);              // two levels
+    CHECK(!huynh_feldt(0.5, 2.0, 1.0));         // two people
+}
+
 TEST_CASE("without an error there is no F, and with one participant nothing")
 {
     const cell_table same{{{1, 2, 3}, {2, 3, 4}, {5, 6, 7}}, 1, 3};

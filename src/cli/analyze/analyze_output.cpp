@@ -71,6 +71,8 @@ json effect_json(const study::effect& e, std::size_t levels)
             {"p", or_null(e.p)},
             {"epsilon_gg", or_null(e.epsilon_gg)},
             {"p_gg", or_null(e.p_gg)},
+            {"epsilon_hf", or_null(e.epsilon_hf)},
+            {"p_hf", or_null(e.p_hf)},
             {"mauchly_w", or_null(e.mauchly_w)},
             {"mauchly_p", or_null(e.mauchly_p)},
             {"eta2_partial", or_null(e.eta2_partial)},
@@ -233,6 +235,8 @@ std::string effect_text(const study::effect& e)
                     e.df2, *e.f, p_clause(e.p), *e.eta2_partial, *e.eta2_generalised);
     if (e.epsilon_gg)
         text += fmt::format("; Greenhouse-Geisser {:.3f}, {}", *e.epsilon_gg, p_clause(e.p_gg));
+    if (e.epsilon_hf)
+        text += fmt::format("; Huynh-Feldt {:.3f}, {}", *e.epsilon_hf, p_clause(e.p_hf));
     if (e.mauchly_w)
         text += fmt::format("; Mauchly W = {:.3f}, {}", *e.mauchly_w, p_clause(e.mauchly_p));
     return text;

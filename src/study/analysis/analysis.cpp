@@ -191,11 +191,14 @@ void warn_of_figures(analysis& a, const run_analysis& r)
                              r.run.methods[0]));
     for (const auto& [name, e] : {std::pair<const char*, const effect&>{"method", r.effects.first},
                                   {"motion", r.effects.second},
-                                  {"method:motion", r.effects.interaction}})
+                                  {"method:motion", r.effects.interaction}}) {
         if (e.ms_error && !e.f)
             warn(name, "the error has no variance, so no F");
-        else if (e.epsilon_gg && !e.mauchly_w)
+        if (e.epsilon_gg && !e.epsilon_hf)
+            warn(name, "too few participants for the epsilon of Huynh and Feldt");
+        if (e.epsilon_gg && !e.mauchly_w)
             warn(name, "too few participants, or too little variance, for Mauchly's test");
+    }
     for (std::size_t row = 0; row < r.pairs.size(); ++row)
         if (!r.pairs[row].empty() && !r.pairs[row][0].q && r.n > 1)
             warn(r.run.task == task_kind::choose ? "motion" : r.run.methods[row],

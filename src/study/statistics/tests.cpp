@@ -195,6 +195,11 @@ effect judge(const parts& s, const cell_table& t, double all_error)
         return e;
     e.epsilon_gg = greenhouse_geisser(s.cross);
     e.p_gg = p_of_f(*e.f, *e.epsilon_gg * e.df1, *e.epsilon_gg * e.df2);
+    e.epsilon_hf = huynh_feldt(*e.epsilon_gg, e.df1, static_cast<double>(n - 1));
+    if (e.epsilon_hf) {
+        const double epsilon = std::min(1.0, *e.epsilon_hf);
+        e.p_hf = p_of_f(*e.f, epsilon * e.df1, epsilon * e.df2);
+    }
     if (const auto m = mauchly(s.cross, n - 1, t.first_levels * t.second_levels)) {
         e.mauchly_w = m->w;
         e.mauchly_p = m->p;
@@ -453,6 +458,14 @@ double greenhouse_geisser(const matrix& cross)
             squares += v * v;
     const double sum = trace(cross);
     return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // but for rounding
+}
+
+std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df)
+{
+    const double rest = df - df1 * epsilon_gg;
+    if (rest <= 1e-9 * df) // rounding of 0
+        return {};
+    return ((df + 1.0) * df1 * epsilon_gg - 2.0) / (df1 * rest);
 }
 
 std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::size_t cells)

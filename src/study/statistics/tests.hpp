@@ -84,9 +84,11 @@ struct effect {
     double df2 = 0.0;
     std::optional<double> f = {};
     std::optional<double> p = {};
-    std::optional<double> epsilon_gg = {}; ///< Greenhouse and Geisser 1959; where df1 >= 2, as the next three
+    std::optional<double> epsilon_gg = {}; ///< Greenhouse and Geisser 1959; where df1 >= 2, as the next five
     std::optional<double> p_gg = {};
-    std::optional<double> mauchly_w = {}; ///< also where n - 1 >= df1 only, and not singular
+    std::optional<double> epsilon_hf = {}; ///< Huynh and Feldt 1976: may be above 1
+    std::optional<double> p_hf = {};       ///< with 1 where that is above 1
+    std::optional<double> mauchly_w = {};  ///< also where n - 1 >= df1 only, and not singular
     std::optional<double> mauchly_p = {};
     std::optional<double> eta2_partial = {};
     std::optional<double> eta2_generalised = {}; ///< SS / (SS + SS of participants + SS of all errors)
@@ -105,6 +107,11 @@ anova repeated_measures(const cell_table& t);
 /// Returns epsilon of Greenhouse and Geisser (1959), 1 / rows ... 1, from the cross products of orthonormal
 /// contrasts (at least two; not all 0).
 double greenhouse_geisser(const std::vector<std::vector<double>>& cross);
+
+/// Returns epsilon of Huynh and Feldt (1976) as R does, from that of Greenhouse and Geisser for an effect
+/// with `df1`: ((df + 1) df1 epsilon - 2) / (df1 (df - df1 epsilon)), `df`: participants - 1, all of one
+/// group. It may be above 1. Nothing where the divisor is 0, as with two participants.
+std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df);
 
 struct mauchly_test {
     double w;
