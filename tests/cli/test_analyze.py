@@ -183,6 +183,10 @@ class Forms(AnalyzeTest):
         every = " ".join(text.split())
         self.assertIn("13.23^2 is 175.0, not 40.66", every)
         told = self.analysis("simulated")["runs"]
+        times = told["similarity"]["response_time"]
+        low, high = min(times["by"].values()), max(times["by"].values())
+        self.assertIn(f"response time: median {times['median_s']:.2f} s, from {low:.2f} s (", every)
+        self.assertIn(f" to {high:.2f} s (", every)
         self.assertIn(f"{told['similarity']['preference']['all']['mean']:.2f}", text)
         for run in told.values():
             for effect, found in run.get("anova", {}).items():

@@ -170,6 +170,17 @@ worths <- function(place, d, methods) {
   }
 }
 
+times <- function(place, people, task, motions, methods) { # people: the trials of each participant in the figures
+  median_of <- function(keep) {
+    median(sapply(people, function(d) median(as.numeric(d$response_time[keep(d)]), na.rm = TRUE)), na.rm = TRUE)
+  }
+  say(paste0(place, ".median_s"), median_of(function(d) TRUE))
+  for (method in if (task == "choose") NA else methods) for (motion in motions) {
+    name <- if (is.na(method)) motion else paste0(method, ":", motion)
+    say(paste0(place, ".by.", name), median_of(function(d) d$motion == motion & (is.na(method) | d$method_1 == method)))
+  }
+}
+
 for (k in seq_len(nrow(runs))) {
   run <- runs$name[k]
   task <- runs$task[k]
@@ -181,6 +192,7 @@ for (k in seq_len(nrow(runs))) {
   names(values) <- rows
   first <- c()
   compared <- NULL
+  answered <- list()
   confusion <- array(0, c(length(methods), length(motions), length(motions)), list(methods, motions, motions))
   for (code in people) {
     d <- trials_of(run, code)
@@ -202,6 +214,7 @@ for (k in seq_len(nrow(runs))) {
     compared <- rbind(compared, d)
     for (r in rows) values[[r]] <- rbind(values[[r]], cells[r, ])
     first <- c(first, 100 * mean(d$response == "1"))
+    answered <- c(answered, list(d))
     if (task == "identify") for (i in seq_len(nrow(d))) {
       at <- cbind(d$method_1[i], d$motion[i], d$response[i])
       confusion[at] <- confusion[at] + 1
@@ -209,6 +222,7 @@ for (k in seq_len(nrow(runs))) {
   }
   place <- paste0("runs.", run)
   say(paste0(place, ".n"), nrow(values[[1]]))
+  times(paste0(place, ".response_time"), answered, task, motions, methods)
   within <- factor(motions, motions)
   if (task == "choose") {
     if (several) {

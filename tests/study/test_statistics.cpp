@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -375,6 +377,41 @@ TEST_CASE("each of three methods has the per cent of its trials, and a worth or 
     const analysis without = analyse(d);
     CHECK(warns(without, text));
     CHECK(without.runs[0].worths[1].log_worth);
+}
+
+TEST_CASE("response times are medians of the participants' medians, and missing ones are left out")
+{
+    CHECK(!median({}));
+    CHECK(*median({3.0, 1.0, 2.0}) == 2.0);
+    CHECK(*median({4.0, 1.0, 2.0, 30.0}) == 3.0);
+    dataset d;
+    d.experiment.runs = {run("pairs", task_kind::choose, 4), run("marks", task_kind::rate, 4)};
+    d.participants = {"1", "2", "3"};
+    run_data slow = chosen(4);
+    run_data quick = chosen(4);
+    run_data untimed = chosen(4);
+    for (std::size_t i = 0; i < 3; ++i) { // the fourth time is missing
+        slow.trials[i].response_time_s = i == 0 ? 9.0 : 2.0;
+        quick.trials[i].response_time_s = 0.5;
+    }
+    run_data marks = chosen(4); // method a in the second and fourth trial
+    for (std::size_t i = 0; i < 4; ++i) {
+        marks.trials[i].response_time_s = i % 2 == 1 ? 1.0 : 3.0;
+        marks.trials[i].method_1 = 1 - i % 2;
+    }
+    d.data = {{slow, marks}, {quick, {}}, {untimed, {}}};
+    const analysis a = analyse(d);
+    const response_times& pairs = a.runs[0].times;
+    CHECK(*pairs.median_s == 1.25); // of 2 and 0.5
+    CHECK(pairs.by.size() == 1);
+    CHECK(pairs.by[0].first == "m");
+    CHECK(*pairs.by[0].second == 1.25);
+    const response_times& ratings = a.runs[1].times;
+    CHECK(*ratings.median_s == 2.0); // only the first participant is in the figures
+    CHECK(ratings.by[0] == std::pair<std::string, std::optional<double>>("a:m", 1.0));
+    CHECK(ratings.by[1] == std::pair<std::string, std::optional<double>>("b:m", 3.0));
+    d.data = {{untimed, {}}, {untimed, {}}, {untimed, {}}};
+    CHECK(!analyse(d).runs[0].times.median_s);
 }
 
 // The first method is always rated 1, the second 5, except for some fours.

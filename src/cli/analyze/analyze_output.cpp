@@ -168,6 +168,14 @@ void add_identify(json& j, const study::run_analysis& r)
     }
 }
 
+json times_json(const study::response_times& t)
+{
+    json j{{"median_s", or_null(t.median_s)}, {"by", json::object()}};
+    for (const auto& [condition, median_s] : t.by)
+        j["by"][condition] = or_null(median_s);
+    return j;
+}
+
 json run_json(const study::run_analysis& r)
 {
     json j{{"task", to_string(r.run.task)}, {"n", r.n}};
@@ -184,6 +192,7 @@ json run_json(const study::run_analysis& r)
     }
     j["trials"] = r.trials;
     j["early"] = r.early;
+    j["response_time"] = times_json(r.times);
     j["left_out"] = json::array();
     for (const study::left_out& l : r.missing)
         j["left_out"].push_back({{"participant", l.participant}, {"why", l.why}});
@@ -373,6 +382,20 @@ void print_identify(const study::run_analysis& r)
     }
 }
 
+// Prints the median response time, and the conditions with the shortest and the longest.
+void print_times(const study::response_times& t)
+{
+    if (!t.median_s)
+        return;
+    std::string text = fmt::format("median {:.2f} s", *t.median_s);
+    using condition = std::pair<std::string, std::optional<double>>;
+    const auto [low, high] = std::ranges::minmax_element(t.by, {}, &condition::second);
+    if (t.by.size() > 1 && low->second)
+        text += fmt::format(", from {:.2f} s ({}) to {:.2f} s ({})", *low->second, low->first, *high->second,
+                            high->first);
+    say(stdout, "{}", wrapped("  response time: ", text));
+}
+
 // Returns what Park et al. (2016) report of a run of theirs, or nothing.
 std::string_view in_the_paper(std::string_view experiment, std::string_view run)
 {
@@ -403,6 +426,7 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
                    counted(r.early, "answer"));
     if (r.n == 0)
         return;
+    print_times(r.times);
     switch (r.run.task) {
     case task_kind::choose:
         print_choose(r);

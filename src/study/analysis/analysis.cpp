@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -106,6 +107,31 @@ std::vector<worth> estimate_worths(const run_outline& run, const std::vector<con
     return bradley_terry(wins);
 }
 
+response_times summarise_times(const run_outline& run, const std::vector<const run_data*>& data)
+{
+    const auto find_median = [&](const auto& counts) {
+        std::vector<double> medians;
+        for (const run_data* d : data) {
+            std::vector<double> times;
+            for (const trial& t : d->trials)
+                if (t.response_time_s && counts(t))
+                    times.push_back(*t.response_time_s);
+            if (const auto own = median(std::move(times)))
+                medians.push_back(*own);
+        }
+        return median(std::move(medians));
+    };
+    response_times all{find_median([](const trial&) { return true; })};
+    const bool has_method = run.task != task_kind::choose;
+    for (std::size_t row = 0; row < (has_method ? run.methods.size() : 1); ++row)
+        for (std::size_t m = 0; m < run.motions.size(); ++m)
+            all.by.emplace_back((has_method ? run.methods[row] + ":" : "") + run.motions[m],
+                                find_median([&](const trial& t) {
+                                    return t.motion == m && (!has_method || t.method_1 == row);
+                                }));
+    return all;
+}
+
 run_analysis analyse_run(const dataset& d, std::size_t which)
 {
     run_analysis r;
@@ -131,6 +157,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
         first.push_back(100.0 * static_cast<double>(first_chosen) / static_cast<double>(own.trials.size()));
     }
     r.n = all.size();
+    r.times = summarise_times(r.run, data);
     analyse_values(r, all);
     if (r.run.task == task_kind::choose)
         r.first_interval = test_mean(first, 50.0);

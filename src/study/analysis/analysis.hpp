@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "study/data/dataset.hpp"
@@ -23,6 +24,14 @@ struct by_motion {
     std::vector<std::optional<double>> p_holm = {};      ///< of the motions' p
 };
 
+/// Response times: the median of the participants' medians, each of the times that were recorded. Nothing
+/// where there is none.
+struct response_times {
+    std::optional<double> median_s = {}; ///< of all trials
+    /// The same for each condition: MOTION, or METHOD:MOTION where a trial has one stimulus.
+    std::vector<std::pair<std::string, std::optional<double>>> by = {};
+};
+
 struct run_analysis {
     run_outline run;
     std::size_t n = 0;                  ///< participants with a trial that counts in each cell
@@ -30,6 +39,7 @@ struct run_analysis {
     std::size_t trials = 0;             ///< that count, of the n
     std::size_t voids = 0;              ///< of everybody who was selected
     std::size_t early = 0;              ///< answers marked early, of the same; they count
+    response_times times = {};          ///< of the n
 
     /// choose: per cent of trials in which the last method was chosen, against 50; of three methods or more
     /// by method: per cent of the trials with the method in which it was chosen, against 50.

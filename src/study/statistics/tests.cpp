@@ -311,6 +311,14 @@ double deviation(std::span<const double> values, double mean)
     return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
+std::optional<double> median(std::vector<double> values)
+{
+    if (values.empty())
+        return {};
+    std::sort(values.begin(), values.end());
+    return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2.0;
+}
+
 bool varies(std::span<const double> values, double rounding)
 {
     if (values.empty())

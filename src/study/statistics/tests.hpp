@@ -21,6 +21,9 @@ double mean(std::span<const double> values);
 /// Returns the standard deviation (n - 1) of two values or more with this mean.
 double deviation(std::span<const double> values, double mean);
 
+/// Returns the median, of an even number the mean of both in the middle; nothing for no values.
+std::optional<double> median(std::vector<double> values);
+
 /// A one-sample t test; a paired test is that of the differences against 0. Figures that n = 0, n = 1 or no
 /// variance leaves undefined are missing.
 struct t_test {
