@@ -31,6 +31,16 @@ signs <- function(x) { # all of them, one by one
   mean(abs(grid %*% x) >= abs(sum(x)) - 1e-9 * sum(abs(x)))
 }
 constant <- function(x) length(x) < 2 || diff(range(x)) <= 1e-12 * max(abs(x))
+# Intervals within participants (Cousineau 2005, Morey 2008): a row for each participant, a column for each condition.
+within <- function(values) {
+  n <- nrow(values)
+  k <- ncol(values)
+  apply(values - rowMeans(values) + mean(values), 2, function(x) {
+    if (n < 2 || k < 2 || constant(x)) return(c(NA, NA))
+    mean(x) + c(-1, 1) * qt(0.975, n - 1) * sd(x) / sqrt(n) * sqrt(k / (k - 1))
+  })
+}
+say_ends <- function(place, ends) for (i in 1:2) say(paste0(place, ".", i - 1), ends[i])
 test <- function(place, x, mu, paired = FALSE) {
   n <- length(x)
   one <- n > 1 && !constant(x)
@@ -50,9 +60,11 @@ test <- function(place, x, mu, paired = FALSE) {
   for (i in 1:2) say(paste0(place, ".", names[3], ".", i - 1), ends[i])
   p
 }
-tests <- function(place, values, motions, mu) { # values: a row for each participant
+tests <- function(place, values, motions, mu, within_all, within_motions) { # values: a row for each participant
   test(paste0(place, ".all"), rowMeans(values), mu)
+  say_ends(paste0(place, ".all.ci_within"), within_all)
   p <- sapply(motions, function(m) test(paste0(place, ".motion.", m), values[, m], mu))
+  for (i in seq_along(motions)) say_ends(paste0(place, ".motion.", motions[i], ".ci_within"), within_motions[, i])
   holm <- p.adjust(p, "holm")
   for (m in motions) say(paste0(place, ".motion.", m, ".p_holm"), holm[m])
 }
@@ -223,18 +235,21 @@ for (k in seq_len(nrow(runs))) {
   place <- paste0("runs.", run)
   say(paste0(place, ".n"), nrow(values[[1]]))
   times(paste0(place, ".response_time"), answered, task, motions, methods)
-  within <- factor(motions, motions)
+  by_motion <- factor(motions, motions)
+  cells <- within(do.call(cbind, values)) # by row, then motion
+  all <- within(matrix(sapply(values, rowMeans), ncol = length(rows)))
+  cells_of <- function(i) cells[, (i - 1) * length(motions) + seq_along(motions), drop = FALSE]
   if (task == "choose") {
     if (several) {
-      for (m in methods) tests(paste0(place, ".chosen.", m), values[[m]], motions, 50)
+      for (i in seq_along(methods)) tests(paste0(place, ".chosen.", methods[i]), values[[methods[i]]], motions, 50, all[, i], cells_of(i))
       worths(paste0(place, ".bradley_terry"), compared, methods)
-    } else tests(paste0(place, ".preference"), values[[1]], motions, 50)
+    } else tests(paste0(place, ".preference"), values[[1]], motions, 50, all[, 1], cells_of(1))
     t <- if (constant(first)) list(statistic = NA, p.value = NA) else t.test(first, mu = 50)
     say(paste0(place, ".first_interval.mean"), mean(first))
     say(paste0(place, ".first_interval.t"), unname(t$statistic))
     say(paste0(place, ".first_interval.p"), t$p.value)
     if (several) next
-    effects(paste0(place, ".anova"), values[[1]], data.frame(motion = within))
+    effects(paste0(place, ".anova"), values[[1]], data.frame(motion = by_motion))
     pairs(paste0(place, ".tukey"), values[[1]], motions)
   } else if (task == "rate") {
     for (m in methods) for (what in c("all", motions)) {
@@ -243,16 +258,19 @@ for (k in seq_len(nrow(runs))) {
       say(paste0(at, ".mean"), mean(x))
       say(paste0(at, ".se"), sd(x) / sqrt(length(x)))
       for (i in 1:2) say(paste0(at, ".ci.", i - 1), if (constant(x)) NA else t.test(x)$conf.int[i])
+      k <- match(m, methods)
+      say_ends(paste0(at, ".ci_within"), if (what == "all") all[, k] else cells_of(k)[, match(what, motions)])
     }
     test(paste0(place, ".paired"), rowMeans(values[[length(methods)]]) - rowMeans(values[[1]]), 0, paired = TRUE)
     wide <- do.call(cbind, values)
     effects(paste0(place, ".anova"), wide,
-            data.frame(method = factor(rep(methods, each = length(motions)), methods), motion = rep(within, length(methods))))
+            data.frame(method = factor(rep(methods, each = length(motions)), methods), motion = rep(by_motion, length(methods))))
     for (m in methods) pairs(paste0(place, ".tukey.", m), values[[m]], motions)
   } else {
     say(paste0(place, ".chance"), 100 / length(motions))
     for (m in methods) {
-      tests(paste0(place, ".correct.", m), values[[m]], motions, 100 / length(motions))
+      k <- match(m, methods)
+      tests(paste0(place, ".correct.", m), values[[m]], motions, 100 / length(motions), all[, k], cells_of(k))
       for (i in motions) for (j in motions) say(paste0(place, ".confusion.", m, ".", i, ".", j), confusion[m, i, j])
     }
   }

@@ -162,6 +162,27 @@ TEST_CASE("epsilons of Greenhouse and Geisser and of Huynh and Feldt are those o
     CHECK(!huynh_feldt(0.5, 2.0, 1.0));         // two people
 }
 
+TEST_CASE("intervals within participants are those of Cousineau with the correction of Morey")
+{
+    // Loftus and Masson 1994, table 2; R 4.2.2: qt(0.975, 9) sd / sqrt(10) sqrt(3 / 2) of the values less
+    // each person's mean
+    const std::vector<std::vector<double>> recalled{{10, 13, 13}, {6, 8, 8},    {11, 14, 14}, {22, 23, 25},
+                                                    {16, 18, 20}, {15, 17, 17}, {1, 1, 4},    {12, 15, 17},
+                                                    {9, 12, 12},  {8, 9, 12}};
+    const std::vector<double> means{11.0, 13.0, 14.2};
+    const std::vector<double> halves{0.43097684, 0.64279004, 0.58732243};
+    const auto all = within_intervals(recalled);
+    CHECK(all.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK((all[i]->first + all[i]->second) / 2.0 == doctest::Approx(means[i]));
+        CHECK((all[i]->second - all[i]->first) / 2.0 == doctest::Approx(halves[i]).epsilon(1e-8));
+    }
+    CHECK(within_intervals({}).empty());
+    CHECK(!within_intervals({{1.0, 2.0}})[0]);                   // one person
+    CHECK(!within_intervals({{1.0}, {2.0}})[0]);                 // one condition
+    CHECK(!within_intervals({{1.1, 2.1}, {3.3, 4.3}}, 1e-9)[1]); // people alike in all differences
+}
+
 TEST_CASE("without an error there is no F, and with one participant nothing")
 {
     const cell_table same{{{1, 2, 3}, {2, 3, 4}, {5, 6, 7}}, 1, 3};

@@ -30,20 +30,19 @@ json ends(const std::optional<study::interval>& i)
 
 json test_json(const study::t_test& t)
 {
-    return {{"mean", or_null(t.mean)},
-            {"se", or_null(t.se)},
-            {"ci", ends(t.ci)},
-            {"t", or_null(t.t)},
-            {"df", or_null(t.df)},
-            {"p", or_null(t.p)},
-            {"p_signflip", or_null(t.p_signflip)},
-            {"d", or_null(t.d)},
-            {"d_ci", ends(t.d_ci)}};
+    return {{"mean", or_null(t.mean)}, {"se", or_null(t.se)},
+            {"ci", ends(t.ci)},        {"ci_within", ends(t.ci_within)},
+            {"t", or_null(t.t)},       {"df", or_null(t.df)},
+            {"p", or_null(t.p)},       {"p_signflip", or_null(t.p_signflip)},
+            {"d", or_null(t.d)},       {"d_ci", ends(t.d_ci)}};
 }
 
 json mean_json(const study::t_test& t)
 {
-    return {{"mean", or_null(t.mean)}, {"se", or_null(t.se)}, {"ci", ends(t.ci)}};
+    return {{"mean", or_null(t.mean)},
+            {"se", or_null(t.se)},
+            {"ci", ends(t.ci)},
+            {"ci_within", ends(t.ci_within)}};
 }
 
 // Returns a measure over all motions and for each, with its tests or without.

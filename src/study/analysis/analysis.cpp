@@ -50,6 +50,26 @@ cell_table lay_out_cells(const std::vector<cell_values>& all, std::size_t from_r
     return t;
 }
 
+// Adds the intervals within participants: of all cells together, and of the rows' means.
+void add_within_intervals(run_analysis& r, const std::vector<cell_values>& all)
+{
+    const std::size_t motions = r.run.motions.size();
+    const auto cells =
+        within_intervals(lay_out_cells(all, 0, r.cells.size(), motions).values, rounding_in(r.run));
+    std::vector<std::vector<double>> means;
+    for (const cell_values& v : all) {
+        means.emplace_back();
+        for (const std::vector<double>& row : v)
+            means.back().push_back(mean(row));
+    }
+    const auto rows = within_intervals(means, rounding_in(r.run));
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        r.cells[row].all.ci_within = rows[row];
+        for (std::size_t m = 0; m < motions; ++m)
+            r.cells[row].motion[m].ci_within = cells[row * motions + m];
+    }
+}
+
 std::vector<comparison> compare_motions(const by_motion& b, const effect& e)
 {
     std::vector<double> means;
@@ -73,6 +93,7 @@ void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
     const std::size_t rows = count_rows(r.run);
     for (std::size_t row = 0; row < rows; ++row)
         r.cells.push_back(test_row(all, row, motions, chance(r.run)));
+    add_within_intervals(r, all);
     // Rows of methods to choose from are not independent: what one gains another loses.
     if (r.run.task == task_kind::identify || has_worths(r.run))
         return;
@@ -196,17 +217,20 @@ void warn_of_figures(analysis& a, const run_analysis& r)
         if (!t.p_signflip)
             warn(figure, "too many participants for the exact test");
     };
-    const auto warn_of_cell = [&](const std::string& figure, const t_test& t) {
+    const auto warn_of_cell = [&](const std::string& figure, const t_test& t, std::size_t conditions) {
         if (r.run.task != task_kind::rate)
             warn_of_test(figure, t);
         else if (t.n > 1 && !t.ci)
             warn(figure, "no variance over participants, so no interval");
+        if (t.n > 1 && conditions > 1 && !t.ci_within)
+            warn(figure, "no variance within participants, so no interval within participants");
     };
     for (std::size_t row = 0; row < r.cells.size(); ++row) {
         const std::string method = r.cells.size() < r.run.methods.size() ? "" : r.run.methods[row] + ", ";
-        warn_of_cell(method + "all", r.cells[row].all);
+        warn_of_cell(method + "all", r.cells[row].all, r.cells.size());
         for (std::size_t m = 0; m < r.cells[row].motion.size(); ++m)
-            warn_of_cell(method + r.run.motions[m], r.cells[row].motion[m]);
+            warn_of_cell(method + r.run.motions[m], r.cells[row].motion[m],
+                         r.cells.size() * r.run.motions.size());
     }
     warn_of_test("first interval", r.first_interval);
     warn_of_test("methods", r.paired);

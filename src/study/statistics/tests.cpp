@@ -166,6 +166,12 @@ double nothing(const cell_table& t)
     return static_cast<double>(count) * std::pow(few_digits * largest, 2.0);
 }
 
+// Returns the 97.5 % quantile of Student's t.
+double t_quantile(double df)
+{
+    return boost::math::quantile(boost::math::students_t_distribution<double, in_double>(df), 0.975);
+}
+
 // Returns the upper tail of F.
 double p_of_f(double f, double df1, double df2)
 {
@@ -379,13 +385,38 @@ t_test test_mean(std::span<const double> values, double against, double rounding
         return r;
     const double root_n = std::sqrt(static_cast<double>(r.n));
     const double sd = deviation(values, *r.mean);
-    const double wide =
-        boost::math::quantile(boost::math::students_t_distribution<double, in_double>(*r.df), 0.975) * *r.se;
+    const double wide = t_quantile(*r.df) * *r.se;
     r.ci = interval{*r.mean - wide, *r.mean + wide};
     r.d = (*r.mean - against) / sd;
     if (const auto delta = noncentrality_interval(*r.t, *r.df))
         r.d_ci = interval{delta->first / root_n, delta->second / root_n};
     return r;
+}
+
+std::vector<std::optional<interval>> within_intervals(const std::vector<std::vector<double>>& values,
+                                                      double rounding)
+{
+    std::vector<std::optional<interval>> all(values.empty() ? 0 : values[0].size());
+    if (values.size() < 2 || all.size() < 2)
+        return all;
+    std::vector<double> own;
+    for (const auto& row : values)
+        own.push_back(mean(row));
+    const double grand = mean(own);
+    const auto n = static_cast<double>(values.size());
+    const auto conditions = static_cast<double>(all.size());
+    const double width = t_quantile(n - 1.0) * std::sqrt(conditions / (conditions - 1.0) / n);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        std::vector<double> normalised;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            normalised.push_back(values[i][k] - own[i] + grand);
+        if (!varies(normalised, rounding))
+            continue;
+        const double middle = mean(normalised);
+        const double half = width * deviation(normalised, middle);
+        all[k] = interval{middle - half, middle + half};
+    }
+    return all;
 }
 
 std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p)

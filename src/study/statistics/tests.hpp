@@ -29,14 +29,15 @@ std::optional<double> median(std::vector<double> values);
 struct t_test {
     std::size_t n = 0;
     std::optional<double> mean = {};
-    std::optional<double> se = {};         ///< sd / sqrt n
-    std::optional<interval> ci = {};       ///< of the mean
-    std::optional<double> t = {};          ///< of the mean against what it was tested against
-    std::optional<double> df = {};         ///< n - 1
-    std::optional<double> p = {};          ///< two-sided
-    std::optional<double> p_signflip = {}; ///< exact, two-sided; needs no variance (sign_flip_p())
-    std::optional<double> d = {};          ///< (mean - against) / sd
-    std::optional<interval> d_ci = {};     ///< from the noncentral t distribution
+    std::optional<double> se = {};          ///< sd / sqrt n
+    std::optional<interval> ci = {};        ///< of the mean
+    std::optional<interval> ci_within = {}; ///< of the mean among other conditions: within_intervals()
+    std::optional<double> t = {};           ///< of the mean against what it was tested against
+    std::optional<double> df = {};          ///< n - 1
+    std::optional<double> p = {};           ///< two-sided
+    std::optional<double> p_signflip = {};  ///< exact, two-sided; needs no variance (sign_flip_p())
+    std::optional<double> d = {};           ///< (mean - against) / sd
+    std::optional<interval> d_ci = {};      ///< from the noncentral t distribution
 };
 
 /// Part of the largest of some numbers that rounding may leave of 0 in their sum.
@@ -58,6 +59,13 @@ double p_of_t(double t, double df);
 /// Returns the noncentralities with which 2.5 % and 97.5 % of noncentral t lie above t: the 95 % interval of
 /// (mean - against) / se. Nothing where t is beyond what can be computed (some 1e4).
 std::optional<interval> noncentrality_interval(double t, double df);
+
+/// Returns the 95 % interval of each condition's mean for comparisons between the conditions, without the
+/// differences between participants: that of Cousineau (2005) with the correction of Morey (2008). `values`:
+/// a row of all conditions for each participant. Nothing with less than two participants or conditions, and
+/// of a condition that does not vary; `rounding` as in varies().
+std::vector<std::optional<interval>> within_intervals(const std::vector<std::vector<double>>& values,
+                                                      double rounding = 0.0);
 
 /// Returns p values adjusted by Holm (1979), in the order given; missing ones do not count and stay missing.
 std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p);
