@@ -64,12 +64,16 @@ class Figures(AnalyzeTest):
         self.assertIsNone(told["runs"]["taste"]["preference"]["motion"]["motion-3"]["p_holm"])
         self.assertIn("taste: motion-3: no variance over participants, so no t test", told["warnings"])
         self.assertIn("marks: park2016, motion-1: no variance over participants, so no interval", told["warnings"])
-        text = studies.definition("same", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 8)])
-        studies.write_study(self.dir / "same", text, ["1", "2"], lambda *_: 3)
+        text = studies.definition("same", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 8), studies.run("which", "identify", 8)])
+        studies.write_study(self.dir / "same", text, ["1", "2"], lambda _, r, cell, __: 3 if r["task"] == "rate" else cell[0])
         told = self.analysis("same")
-        self.assertEqual({told["runs"]["marks"]["anova"]["motion"][k] for k in ("F", "p", "epsilon_gg", "mauchly_w", "eta2_partial")}, {None})
+        self.assertEqual({told["runs"]["marks"]["anova"]["motion"][k] for k in ("F", "p", "epsilon_gg", "epsilon_hf", "mauchly_w", "eta2_partial")}, {None})
         self.assertEqual({p["p"] for p in told["runs"]["marks"]["tukey"]["park2016"]}, {None})
         self.assertIn("marks: methods: no variance over participants, so no t test", told["warnings"])
+        self.assertIsNone(told["runs"]["marks"]["means"]["park2016"]["all"]["ci_within"])
+        self.assertIn("marks: park2016, all: no variance within participants, so no interval within participants", told["warnings"])
+        self.assertEqual({(p["difference"], p["t"], p["p_holm"]) for p in told["runs"]["which"]["pairs"]["park2016"]}, {(0, None, None)})
+        self.assertIn("which: park2016, motion-1 - motion-2: no variance over participants, so no t test", told["warnings"])
         said = self.ok("analyze", "same")
         self.assertEqual(said.stderr, f"tactor: warning: {told['warnings'][0]} ({len(told['warnings']) - 1} more warnings: --format json)\n")
         self.assertIn("park2016 - tactile-brush: 0.00, signs 1.000", said.stdout)
@@ -196,6 +200,10 @@ class Forms(AnalyzeTest):
             self.assertEqual(*(self.ok("analyze", "simulated", "--format", form, env={"LC_ALL": locale}).stdout
                                for locale in ("C", "de_DE.UTF-8")))
         self.assertNotIn("Park et al.", self.ok("analyze", self.study("ties")).stdout)
+        text = self.ok("analyze", self.study("three-by-three")).stdout
+        pair = self.analysis("three-by-three")["runs"]["which"]["pairs"]["tactile-brush"][1]
+        self.assertIn(f"    motion-1 - motion-3 {pair['difference']:>7.2f} t = {pair['t']:>5.2f}, p = {pair['p']:.3f}, "
+                      f"Holm {pair['p_holm']:.3f}\n", text)
 
     def test_bars_are_as_high_as_means_with_their_standard_errors(self):
         self.ok("analyze", self.study("simulated"), "-o", "a.svg")

@@ -41,7 +41,7 @@ BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10
 # Objects whose keys are names given by users.
 MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "runs{}.chosen", "runs{}.chosen{}.motion",
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
-        "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion"}
+        "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs"}
 
 
 def list_paths(value, at=""):

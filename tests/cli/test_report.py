@@ -396,6 +396,11 @@ class OtherStudies(ReportTest):
         counted = next(t for t in answers if "motion-1" in t[0])
         self.assertEqual({row["motion"]: {k: int(row[k]) for k in ("motion-1", "motion-2", "motion-3")} for row in counted},
                          told["tactile-brush"])
+        pairs = json.loads(self.ok("analyze", "three-by-three", "--format", "json").stdout)["runs"]["which"]["pairs"]
+        shown = [r for t in answers if "pair" in t[0] for r in t]
+        self.assertEqual([r["pair"] for r in shown], [f"{p['a']} - {p['b']}" for of_one in pairs.values() for p in of_one])
+        for row, pair in zip(shown, (p for of_one in pairs.values() for p in of_one)):
+            self.assertAlmostEqual(float(row["p (Holm)"]), pair["p_holm"], 3)
 
 
 class Refusals(ReportTest):

@@ -182,6 +182,21 @@ worths <- function(place, d, methods) {
   }
 }
 
+paired <- function(place, values, motions) {
+  tests <- list()
+  for (a in seq_along(motions)) for (b in seq_along(motions)) if (a < b) {
+    x <- values[, a] - values[, b]
+    tests <- c(tests, list(c(difference = mean(x), t = NA, df = length(x) - 1, p = NA)))
+    if (constant(x)) next
+    r <- t.test(values[, a], values[, b], paired = TRUE)
+    tests[[length(tests)]][c("t", "p")] <- c(r$statistic, r$p.value)
+  }
+  holm <- p.adjust(sapply(tests, function(t) t["p"]), "holm")
+  for (i in seq_along(tests)) {
+    for (k in names(tests[[i]])) say(paste0(place, ".", i - 1, ".", k), tests[[i]][k])
+    say(paste0(place, ".", i - 1, ".p_holm"), holm[i])
+  }
+}
 times <- function(place, people, task, motions, methods) { # people: the trials of each participant in the figures
   median_of <- function(keep) {
     median(sapply(people, function(d) median(as.numeric(d$response_time[keep(d)]), na.rm = TRUE)), na.rm = TRUE)
@@ -271,6 +286,7 @@ for (k in seq_len(nrow(runs))) {
     for (m in methods) {
       k <- match(m, methods)
       tests(paste0(place, ".correct.", m), values[[m]], motions, 100 / length(motions), all[, k], cells_of(k))
+      paired(paste0(place, ".pairs.", m), values[[m]], motions)
       for (i in motions) for (j in motions) say(paste0(place, ".confusion.", m, ".", i, ".", j), confusion[m, i, j])
     }
   }

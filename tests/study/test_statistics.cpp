@@ -197,6 +197,24 @@ TEST_CASE("without an error there is no F, and with one participant nothing")
     CHECK(!none.f);
 }
 
+TEST_CASE("pairs of levels are compared by paired t tests, adjusted for their number")
+{
+    // Student's sleep data, whose first drug is 0.7 ... 2.0: t.test(), R
+    const std::vector<double> second{1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+    const auto all = compare_pairs({sleep, second, sleep}, 1e-10);
+    CHECK(all.size() == 3);
+    CHECK(all[0].a == 0);
+    CHECK(all[0].b == 1);
+    CHECK(*all[0].test.mean == doctest::Approx(-1.58));
+    CHECK(*all[0].test.t == doctest::Approx(-4.0621277).epsilon(1e-7));
+    CHECK(*all[0].test.p == doctest::Approx(0.00283289019738).epsilon(1e-12));
+    CHECK(*all[0].p_holm == doctest::Approx(2.0 * 0.00283289019738).epsilon(1e-12)); // of two that have a t
+    CHECK(!all[1].test.t);                                                           // equal levels
+    CHECK(!all[1].p_holm);
+    CHECK(*all[2].test.t == doctest::Approx(4.0621277).epsilon(1e-7));
+    CHECK(compare_pairs({{}, {}}, 0.0).empty());
+}
+
 TEST_CASE("the studentized range matches its definition, integrated by R")
 {
     struct known {

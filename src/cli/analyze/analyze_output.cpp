@@ -110,6 +110,20 @@ void add_worths(json& j, const study::run_analysis& r)
     j["bradley_terry"] = {{"log_worth", log_worth}, {"se", se}, {"reference", r.run.methods.front()}};
 }
 
+json paired_json(const std::vector<study::paired_comparison>& pairs, const std::vector<std::string>& motions)
+{
+    json j = json::array();
+    for (const study::paired_comparison& c : pairs)
+        j.push_back({{"a", motions[c.a]},
+                     {"b", motions[c.b]},
+                     {"difference", or_null(c.test.mean)},
+                     {"t", or_null(c.test.t)},
+                     {"df", or_null(c.test.df)},
+                     {"p", or_null(c.test.p)},
+                     {"p_holm", or_null(c.p_holm)}});
+    return j;
+}
+
 void add_choose(json& j, const study::run_analysis& r)
 {
     if (has_worths(r.run)) {
@@ -154,6 +168,7 @@ void add_identify(json& j, const study::run_analysis& r)
     j["chance"] = study::chance(r.run);
     j["confusion"] = json::object();
     j["correct"] = json::object();
+    j["pairs"] = json::object();
     for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
         json matrix = json::object();
         for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
@@ -164,6 +179,7 @@ void add_identify(json& j, const study::run_analysis& r)
         }
         j["confusion"][r.run.methods[m]] = std::move(matrix);
         j["correct"][r.run.methods[m]] = cells_json(r.cells[m], r.run.motions, true);
+        j["pairs"][r.run.methods[m]] = paired_json(r.paired_motions[m], r.run.motions);
     }
 }
 
@@ -313,6 +329,17 @@ void print_worths(const study::run_analysis& r)
             value_text(r.worths[m].se));
 }
 
+void print_paired(const std::vector<study::paired_comparison>& pairs, const std::vector<std::string>& motions)
+{
+    if (pairs.empty() || pairs[0].test.n < 2)
+        return;
+    fmt::print("  pairs of motions, paired t; Holm is p adjusted for the number of pairs:\n");
+    const std::size_t w = widest(motions);
+    for (const study::paired_comparison& c : pairs)
+        say(stdout, "    {:<{}} - {:<{}} {:>7} t = {:>5}, {}, Holm {}\n", motions[c.a], w, motions[c.b], w,
+            value_text(c.test.mean), value_text(c.test.t), p_clause(c.test.p), p_text(c.p_holm));
+}
+
 void print_choose(const study::run_analysis& r)
 {
     if (has_worths(r.run))
@@ -371,6 +398,7 @@ void print_identify(const study::run_analysis& r)
     for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
         say(stdout, "  {}: per cent correct, against {:.2f}\n", r.run.methods[m], study::chance(r.run));
         print_tests(r.cells[m], r.run.motions);
+        print_paired(r.paired_motions[m], r.run.motions);
         say(stdout, "  answers, from left to right in the order of the rows:\n");
         for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
             std::string row;

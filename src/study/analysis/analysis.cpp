@@ -94,6 +94,9 @@ void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
     for (std::size_t row = 0; row < rows; ++row)
         r.cells.push_back(test_row(all, row, motions, chance(r.run)));
     add_within_intervals(r, all);
+    if (r.run.task == task_kind::identify)
+        for (const by_motion& b : r.cells)
+            r.paired_motions.push_back(compare_pairs(b.motion_values, rounding_in(r.run)));
     // Rows of methods to choose from are not independent: what one gains another loses.
     if (r.run.task == task_kind::identify || has_worths(r.run))
         return;
@@ -254,6 +257,11 @@ void warn_of_figures(analysis& a, const run_analysis& r)
         if (!r.pairs[row].empty() && !r.pairs[row][0].q && r.n > 1)
             warn(r.run.task == task_kind::choose ? "motion" : r.run.methods[row],
                  "the error has no variance, so no Tukey");
+    for (std::size_t row = 0; row < r.paired_motions.size(); ++row)
+        for (const paired_comparison& c : r.paired_motions[row])
+            if (c.test.n > 1 && !c.test.t)
+                warn(fmt::format("{}, {} - {}", r.run.methods[row], r.run.motions[c.a], r.run.motions[c.b]),
+                     "no variance over participants, so no t test");
     if (r.n == 1)
         a.no_figures.push_back(r.run.name + ": one participant: tests need two");
 }

@@ -56,6 +56,8 @@ struct run_analysis {
     /// Pairs of motions: choose between two methods: one list. rate: one for each method, from that method's
     /// own one-way analysis.
     std::vector<std::vector<comparison>> pairs = {};
+    /// identify: pairs of motions by method, participants' per cents correct against each other.
+    std::vector<std::vector<paired_comparison>> paired_motions = {};
     /// identify: answers by method, motion and motion answered, all participants.
     std::vector<std::vector<std::vector<std::size_t>>> confusion = {};
 };

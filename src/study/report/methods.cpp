@@ -523,14 +523,14 @@ void add_rows(json& bradley_terry)
     bradley_terry["rows"] = std::move(rows);
 }
 
-// Adds to each run what its tables need: names of motions, and lists of pairs.
+// Adds to each run what its tables need: names of motions, and lists of Tukey's comparisons.
 json describe_results(json runs, const dataset& d)
 {
     for (const run_outline& o : d.experiment.runs) {
         json& run = runs.at(o.name);
         if (run.at("n") == 0) // nobody answered all of it
             for (const char* key : {"preference", "chosen", "first_interval", "bradley_terry", "means",
-                                    "paired", "anova", "tukey", "correct", "confusion"})
+                                    "paired", "anova", "tukey", "correct", "confusion", "pairs"})
                 run.erase(key);
         const interval possible = possible_values(o);
         for (const char* key : {"preference", "chosen", "means", "correct"})
@@ -539,10 +539,10 @@ json describe_results(json runs, const dataset& d)
         if (run.contains("bradley_terry"))
             add_rows(run["bradley_terry"]);
         run["motions"] = o.motions;
-        run["pairs"] = json::array();
+        run["compared"] = json::array();
         const auto add = [&run](const json& within, const json& rows) {
             if (!rows.empty() && !rows[0].at("q").is_null())
-                run["pairs"].push_back({{"within", within}, {"rows", rows}});
+                run["compared"].push_back({{"within", within}, {"rows", rows}});
         };
         const json tukey = run.value("tukey", json::array());
         if (tukey.is_array())

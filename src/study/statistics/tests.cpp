@@ -572,4 +572,22 @@ std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, s
     return all;
 }
 
+std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding)
+{
+    std::vector<paired_comparison> all;
+    std::vector<std::optional<double>> p;
+    for (std::size_t a = 0; a < levels.size(); ++a)
+        for (std::size_t b = a + 1; b < levels.size() && !levels[a].empty(); ++b) {
+            std::vector<double> differences;
+            for (std::size_t i = 0; i < levels[a].size(); ++i)
+                differences.push_back(levels[a][i] - levels[b][i]);
+            all.push_back({a, b, quick_test_mean(differences, 0.0, rounding)});
+            p.push_back(all.back().test.p);
+        }
+    const std::vector<std::optional<double>> adjusted = holm(p);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i].p_holm = adjusted[i];
+    return all;
+}
+
 } // namespace tactor::study

@@ -156,4 +156,16 @@ struct comparison {
 std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, std::optional<double> ms_error,
                               double df);
 
+/// A comparison of two levels by a paired t test.
+struct paired_comparison {
+    std::size_t a;
+    std::size_t b;                     ///< after a
+    t_test test = {};                  ///< of a less b, against 0: quick_test_mean()
+    std::optional<double> p_holm = {}; ///< adjusted for all pairs
+};
+
+/// Compares all pairs of levels, in order: nothing without participants. `levels`: of each level the
+/// participants' values; `rounding` as in varies().
+std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding);
+
 } // namespace tactor::study
