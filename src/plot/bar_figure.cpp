@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -30,21 +33,34 @@ colour fill_colour(std::size_t i, std::size_t count)
 
 void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
 {
-    const double top = y(b.height + *b.error);
-    const double low = y(b.height - *b.error);
+    const double top = y(b.error->second);
+    const double low = y(b.error->first);
     const style s{.stroke = ink, .width = 0.7};
     c.line({x, low}, {x, top}, s, {.kind = "error"});
     c.line({x - cap, top}, {x + cap, top}, s);
     c.line({x - cap, low}, {x + cap, low}, s);
 }
 
-// Draws values side by side in their order, so that equal ones are seen.
+// Returns the distance of the values of a bar along the page.
+double value_step(const bar& b, double width)
+{
+    return 0.7 * width / static_cast<double>(b.values.size());
+}
+
+// Returns the places of values side by side in their order, so that equal ones are seen.
+std::vector<spot> place_values(const bar& b, const scale& y, double x, double width)
+{
+    std::vector<spot> places;
+    for (const double v : b.values)
+        places.push_back(
+            {x + 0.15 * width + value_step(b, width) * (static_cast<double>(places.size()) + 0.5), y(v)});
+    return places;
+}
+
 void draw_values(canvas& c, const bar& b, const scale& y, double x, double width)
 {
-    const double step = 0.7 * width / static_cast<double>(b.values.size());
-    for (std::size_t i = 0; i < b.values.size(); ++i)
-        c.circle({x + 0.15 * width + step * (static_cast<double>(i) + 0.5), y(b.values[i])},
-                 std::min(1.1, 0.45 * step + 0.3),
+    for (const spot& at : place_values(b, y, x, width))
+        c.circle(at, std::min(1.1, 0.45 * value_step(b, width) + 0.3),
                  {.fill = with_alpha(white, 0.7), .stroke = ink, .width = 0.3}, {.kind = "value"});
 }
 
@@ -74,9 +90,27 @@ void draw_bars(canvas& c, const bar_panel& p, const scale& y, box inside)
     });
 }
 
-// Draws values and error bars, on top of the text across.
+void draw_value_lines(canvas& c, const bar_panel& p, const scale& y, box inside)
+{
+    // A set of lines for each series, and for each group in which the series are joined.
+    std::vector<std::vector<std::vector<spot>>> sets(p.series.size() + p.groups.size() - p.joined);
+    for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
+        const std::vector<spot> places = place_values(p.series[i].bars[g], y, x, width);
+        std::vector<std::vector<spot>>& lines = sets[g < p.joined ? i : p.series.size() + g - p.joined];
+        lines.resize(places.size());
+        for (std::size_t k = 0; k < places.size(); ++k)
+            lines[k].push_back(places[k]);
+    });
+    for (const std::vector<std::vector<spot>>& lines : sets)
+        for (const std::vector<spot>& line : lines)
+            if (line.size() > 1)
+                c.poly(line, false, {.stroke = with_alpha(ink, 0.35), .width = 0.3}, {.kind = "value-line"});
+}
+
+// Draws values, their lines and error bars, on top of the text across.
 void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
 {
+    draw_value_lines(c, p, y, inside);
     for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
         const bar& b = p.series[i].bars[g];
         draw_values(c, b, y, x, width);
@@ -120,6 +154,12 @@ void draw_legend(canvas& c, const bar_panel& p, double x, double y, double width
     }
 }
 
+void draw_panel_title(canvas& c, const std::string& title, box where)
+{
+    c.text({where.x, where.y + cap_height(title_text)}, shorten(clean(title), title_text, where.width, true),
+           {.size = title_text, .bold = true});
+}
+
 void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, box where)
 {
     const box inside{where.x + 28.0, where.y + 14.0, where.width - 30.0, where.height - 14.0 - labels_height};
@@ -128,8 +168,7 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
                         .data = {{"title", clean(p.title)},
                                  {"y0", fmt::format("{:.9g}", y(0.0))},
                                  {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
-    c.text({where.x, where.y + cap_height(title_text)},
-           shorten(clean(p.title), title_text, where.width, true), {.size = title_text, .bold = true});
+    draw_panel_title(c, p.title, where);
     draw_vertical_axis(c, y, nice_ticks(p.y_from, p.y_to, 11), inside,
                        shorten(clean(p.y_title), label_text, inside.height),
                        inside.x - 24.0 + cap_height(label_text));
@@ -142,6 +181,66 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
     write_across(c, across, inside);
     draw_spread(c, p, y, inside);
     draw_legend(c, p, inside.x, where.bottom() - 2.0, inside.width);
+}
+
+// Returns a colour from white, for no share, to blue.
+colour tint(double share)
+{
+    const auto mix = [share](std::uint8_t full) {
+        return static_cast<std::uint8_t>(std::lround(255.0 - share * (255.0 - full)));
+    };
+    return {mix(blue.r), mix(blue.g), mix(blue.b)};
+}
+
+// Draws the cells of a row, with the counts that are not 0.
+void draw_matrix_row(canvas& c, const matrix_panel& p, std::size_t row, box where)
+{
+    constexpr double light_from = 0.85; // share above which white has more contrast than ink
+    const std::vector<std::size_t>& counts = p.counts[row];
+    const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
+    const double width = where.width / static_cast<double>(counts.size());
+    const double size = std::min(small_text, 0.8 * where.height);
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+        const double x = where.x + width * static_cast<double>(k);
+        const double share = counts[k] == 0 ? 0.0 : static_cast<double>(counts[k]) / all;
+        const std::string count = fmt::format("{}", counts[k]);
+        c.rect({x, where.y, width, where.height}, {.fill = tint(share), .stroke = light_grey, .width = 0.4},
+               {.kind = "cell",
+                .title = fmt::format("{}: {}: {}", clean(p.names[row]), clean(p.names[k]), count),
+                .data = {{"row", clean(p.names[row])}, {"column", clean(p.names[k])}, {"count", count}}});
+        if (counts[k] != 0)
+            c.text({x + width / 2.0, where.y + where.height / 2.0 + cap_height(size) / 2.0}, count,
+                   {.size = size, .anchor = align::middle, .ink = share > light_from ? white : ink},
+                   {.kind = "count"});
+    }
+}
+
+// Draws a matrix with the names of its rows at the left and, upwards, those of its columns below.
+void draw_matrix_panel(canvas& c, const matrix_panel& p, const std::string& across, box where)
+{
+    constexpr double names_length = 40.0;
+    constexpr double names_space = names_length + 14.0; // with a title
+    const box inside{where.x + names_space, where.y + 14.0, where.width - names_space - 2.0,
+                     where.height - 14.0 - names_space};
+    const group one(c, {.kind = "matrix", .data = {{"title", clean(p.title)}}});
+    draw_panel_title(c, p.title, where);
+    const auto n = static_cast<double>(p.names.size());
+    const double half = cap_height(small_text) / 2.0;
+    for (std::size_t i = 0; i < p.names.size(); ++i) {
+        const double at = static_cast<double>(i);
+        const std::string name = shorten(p.names[i], small_text, names_length);
+        const box row{inside.x, inside.y + inside.height * at / n, inside.width, inside.height / n};
+        draw_matrix_row(c, p, i, row);
+        c.text({inside.x - 3.0, row.y + row.height / 2.0 + half}, name,
+               {.size = small_text, .anchor = align::end}, {.kind = "row"});
+        c.text({inside.x + inside.width * (at + 0.5) / n + half, inside.bottom() + 3.0}, name,
+               {.size = small_text, .anchor = align::end, .upwards = true}, {.kind = "column"});
+    }
+    c.text({where.x + cap_height(label_text), inside.y + inside.height / 2.0}, p.row_title,
+           {.size = label_text, .anchor = align::middle, .upwards = true}, {.kind = "axis-title"});
+    c.text({inside.x + inside.width / 2.0, where.bottom() - 2.0}, p.column_title,
+           {.size = label_text, .anchor = align::middle}, {.kind = "axis-title"});
+    write_across(c, across, inside);
 }
 
 } // namespace
@@ -160,13 +259,18 @@ canvas draw_bar_figure(const bar_figure& f)
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
-    for (std::size_t i = 0; i < f.panels.size(); ++i) {
+    const std::size_t count = f.panels.size() + f.matrices.size();
+    for (std::size_t i = 0; i < count; ++i) {
         const double x = margin + (width + between) * static_cast<double>(i % columns);
-        draw_bar_panel(c, f.panels[i], across, {x, y, width, panel_height});
-        if ((i + 1) % columns == 0 || i + 1 == f.panels.size())
+        const box where{x, y, width, panel_height};
+        if (i < f.panels.size())
+            draw_bar_panel(c, f.panels[i], across, where);
+        else
+            draw_matrix_panel(c, f.matrices[i - f.panels.size()], across, where);
+        if ((i + 1) % columns == 0 || i + 1 == count)
             y += panel_height + 8.0;
     }
-    y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 3, "note");
+    y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 6, "note");
     c.height = y + margin;
     return c;
 }

@@ -3,8 +3,10 @@
 /// Whole pictures: of strokes with their views, of predicted percepts, and of bars; what they say of a plan.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tactor/array.hpp>
@@ -51,8 +53,8 @@ canvas draw_comparison(const array& a, const detail::comparison& all, const std:
 
 struct bar {
     double height = 0.0;
-    std::optional<double> error = {}; ///< half the length of the error bar
-    std::vector<double> values = {};  ///< values with the height as their mean: a dot each
+    std::optional<std::pair<double, double>> error = {}; ///< ends of the error bar
+    std::vector<double> values = {};                     ///< values with the height as their mean: a dot each
 };
 
 /// Bars of one look: a bar in each group.
@@ -69,6 +71,18 @@ struct bar_panel {
     std::optional<double> level = {}; ///< a dashed line, such as chance
     std::vector<std::string> groups = {};
     std::vector<bar_series> series = {}; ///< each has as many bars as there are groups
+    /// Number of groups, from the first, over which a thin line joins a series' values of one place in
+    /// bar::values. In each other group it joins those of all series.
+    std::size_t joined = 0;
+};
+
+/// Counts by row and column, such as answers to stimuli.
+struct matrix_panel {
+    std::string title = {};
+    std::string row_title = {};
+    std::string column_title = {};
+    std::vector<std::string> names = {};               ///< of the rows, and of the columns
+    std::vector<std::vector<std::size_t>> counts = {}; ///< by row, then column
 };
 
 struct bar_figure {
@@ -78,11 +92,14 @@ struct bar_figure {
     std::string note = {};   ///< under the picture
     std::string across = {}; ///< text across each panel, such as "simulated"
     std::vector<bar_panel> panels = {};
+    std::vector<matrix_panel> matrices = {}; ///< after the panels
 };
 
 /// Draws the panels, two beside each other from 120 mm width on. Each panel is an SVG group of kind "bars"
 /// with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error
-/// bar of kind "error", a dot of kind "value".
+/// bar of kind "error", a dot of kind "value", a line between dots of kind "value-line". A matrix is a group
+/// of kind "matrix" with data-title: each cell, of kind "cell", is the darker the larger its share of the
+/// row.
 canvas draw_bar_figure(const bar_figure& f);
 
 /// Returns the vibration, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of

@@ -227,6 +227,47 @@ class Forms(AnalyzeTest):
         self.ok("analyze", self.study("ties"), "-o", "b.svg")
         self.assertNotIn("simulated", (self.dir / "b.svg").read_text())
 
+    def test_error_bars_are_those_that_were_chosen(self):
+        cut = 0
+        for study in ("simulated", "constant"):
+            told = self.analysis(self.study(study))["runs"]
+            for bars, key in (("within", "ci_within"), ("ci", "ci")):
+                self.ok("analyze", study, "--bars", bars, "-o", f"{bars}.svg")
+                for panel, run in zip(Svg(self.dir / f"{bars}.svg").all("bars"), told.values(), strict=True):
+                    y0, ky = number(panel, "data-y0"), number(panel, "data-y-scale")
+                    least, most = (0, 100) if run["task"] == "choose" else (1, 5)
+                    expected = []
+                    for bar in (e for e in panel.iter() if e.get("class") == "bar"):
+                        cells = run["preference"] if run["task"] == "choose" else run["means"][bar.get("data-series")]
+                        ends = (cells["motion"] | {"all": cells["all"]})[bar.get("data-group")][key]
+                        expected += [[max(ends[0], least), min(ends[1], most)]] if ends else []
+                        cut += bool(ends) and ends[1] > most
+                    drawn = [sorted((number(e, y) - y0) / ky for y in ("y1", "y2")) for e in panel.iter() if e.get("class") == "error"]
+                    self.assertEqual(len(drawn), len(expected))
+                    for pair in zip(drawn, expected):
+                        for shown, end in zip(*pair):
+                            self.assertAlmostEqual(shown, end, delta=0.02)
+        self.assertGreater(cut, 0)  # else nothing was cut
+        self.refused(2, "analyze", "simulated", "--bars", "sd", "-o", "never.svg")
+
+    def test_a_matrix_has_the_number_of_each_answer_and_nothing_for_none(self):
+        told = self.analysis(self.study("three-by-three"))["runs"]["which"]["confusion"]
+        self.ok("analyze", "three-by-three", "-o", "a.svg")
+        panels = Svg(self.dir / "a.svg").all("matrix")
+        self.assertEqual([p.get("data-title") for p in panels], [f"which: answers with {m}" for m in told])
+        for panel, confusion in zip(panels, told.values()):
+            cells = [e for e in panel.iter() if e.get("class") == "cell"]
+            counts = {(e.get("data-row"), e.get("data-column")): int(e.get("data-count")) for e in cells}
+            self.assertEqual(counts, {(i, k): n for i, row in confusion.items() for k, n in row.items()})
+            shown = [e.text for e in panel.iter() if e.get("class") == "count"]
+            self.assertEqual(shown, [str(n) for row in confusion.values() for n in row.values() if n])
+            light = {e.get("data-row"): [] for e in cells}
+            for e in cells:  # the more answers, the less red there is
+                light[e.get("data-row")].append((int(e.get("data-count")), -int(e.get("fill")[1:3], 16)))
+                self.assertEqual(e.get("data-count") == "0", e.get("fill") == "#ffffff")
+            for row in light.values():
+                self.assertEqual(sorted(row), sorted(row, key=lambda v: v[1]))
+
     def test_pictures_of_all_kinds_work_also_among_the_derivatives(self):
         folder = self.study("two-levels")
         within = folder / "derivatives/tactor"

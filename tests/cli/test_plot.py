@@ -217,6 +217,10 @@ class Files(PlotTest):
         svg = self.draw("analyze", "study", "--width", "85")
         self.near(float(svg.root.get("width")[:-2]), 85)
         self.assertEqual(len(svg.all("value")), len(list((self.dir / "study").glob("sub-*"))) * len(svg.all("bar")))
+        # For each participant a line for each method over the motions, and one over the methods of a run with two.
+        self.assertEqual(len(svg.all("value-line")), 12 * (1 + 1 + 3 + 3))
+        dots = {(e.get("cx"), e.get("cy")) for e in svg.all("value")}
+        self.assertEqual({tuple(at.split(",")) for e in svg.all("value-line") for at in e.get("points").split()} - dots, set())
         for panel in svg.all("bars"):
             order = [e.get("class") for e in panel.iter()]
             self.assertLess(order.index("across"), min(order.index("error"), order.index("value")))
