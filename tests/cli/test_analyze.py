@@ -168,6 +168,45 @@ class Forms(AnalyzeTest):
             cell = cells["all"] if group == "all" else cells["motion"][group]
             self.assertAlmostEqual((number(bar, "y") - y0) / ky, cell["mean"], delta=0.02)
 
+    def wide(self, name):
+        text = self.ok("analyze", name, "--format", "wide").stdout
+        return text, list(csv.DictReader(io.StringIO(text)))
+
+    def test_a_wide_table_has_each_participant_once_with_all_cells(self):
+        for name in ("three-by-three", "simulated"):
+            told = self.analysis(self.study(name))
+            text, rows = self.wide(name)
+            self.assertEqual(len(text.splitlines()), 1 + told["participants"])
+            expected = check_r.wide_means(told)
+            self.assertEqual(list(rows[0]), ["participant_id", *(["simulated"] if told["simulated"] else []), *expected])
+            self.assertEqual({r.get("simulated", "true") for r in rows}, {"true"})
+            for column, mean in expected.items():
+                self.assertAlmostEqual(sum(float(r[column]) for r in rows) / len(rows), mean, 9)
+        self.assertEqual([r["participant_id"] for r in rows[:2]], ["sub-01", "sub-02"])
+        self.assertEqual(self.ok("analyze", "simulated", "--format", "wide", env={"LC_ALL": "de_DE.UTF-8"}).stdout, text)
+
+    def test_a_wide_table_has_empty_cells_for_who_is_left_out(self):
+        self.study("missing")
+        rows = {r.pop("participant_id"): r for r in self.wide("missing")[1]}
+        empty = {code: {c.split(".")[0] for c, v in r.items() if v == ""} for code, r in rows.items()}
+        full = {code: {c.split(".")[0] for c, v in r.items() if v != ""} for code, r in rows.items()}
+        self.assertEqual({code: runs for code, runs in empty.items() if runs},
+                         {"sub-C3": {"taste"}, "sub-E5": {"marks"}, "sub-Late": {"taste", "marks"}})
+        self.assertEqual((full["sub-C3"], full["sub-E5"], full["sub-Late"]), ({"marks"}, {"taste"}, set()))
+
+    def test_columns_of_a_wide_table_have_names_for_any_program(self):
+        motions = ["a b", "a-b", "A_B", "m" * 39 + "1", "m" * 39 + "2", "nach Süden.", "\u6771"]
+        text = studies.definition("odd", motions, studies.TWO, [studies.run("2 points", "rate", 14)])
+        studies.write_study(self.dir / "odd", text, ["1", "2"], lambda *_: 3)
+        columns = list(self.wide("odd")[1][0])[1:]
+        self.assertEqual(len(columns), 14)
+        self.assertEqual(len({c.lower() for c in columns}), 14)
+        for c in columns:
+            self.assertRegex(c, r"^[A-Za-z][A-Za-z0-9._]{0,62}[A-Za-z0-9_]$")
+        head = "x2_points.tactile_brush."
+        self.assertEqual(columns[:3], [head + "a_b", head + "a_b_2", head + "A_B_3"])
+        self.assertEqual(columns[3:7], [head + "m" * 19, head + "m" * 19 + "_2", head + "nach_S_den_", head + "_"])
+
     def test_r_reads_names_of_any_letters(self):
         name = '"x" # \\\\'
         text = studies.definition("odd", ["motion #1", 'a "b" \\\\ c'], studies.TWO,

@@ -2,11 +2,13 @@
 """R computes what `tactor analyze` prints, for all studies of studies.py.
 
 Usage: check_r.py TOOL [--write]   --write: keeps what R says in golden/, which the suite compares with, without R.
-Compares R with golden/, and the tool with R: within 1e-8 max(1, |value|), Tukey's p within 1e-6. Then fits the models
-that --format tsv names, where lme4 is there, and counts the effects that they find where there are none. Ends with a line that counts.
+Compares R with golden/, and the tool with R: within 1e-8 max(1, |value|), Tukey's p within 1e-6. Reads the table of --format wide.
+Then fits the models that --format tsv names, where lme4 is there, and counts the effects that they find where there are none. Ends with
+a line that counts.
 """
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -119,6 +121,38 @@ cat(hits / times, over_all)
 """
 
 
+# Reads the table of --format wide as people do: each column by its own name, with numbers or nothing.
+WIDE = """
+d <- read.csv("wide.csv")
+for (n in setdiff(names(d), c("participant_id", "simulated"))) {
+  stopifnot(is.numeric(d[[n]]))
+  cat(n, "\\t", sprintf("%.17g", mean(d[[n]], na.rm = TRUE)), "\\n", sep = "")
+}
+"""
+
+
+def wide_means(told):
+    """Maps the columns of --format wide to the means that JSON gives of their cells."""
+    means = {}
+    for name, run_told in told["runs"].items():
+        rows = run_told.get("means") or run_told.get("correct") or {run_told["method"]: run_told["preference"]}
+        for method, cells in rows.items():
+            for motion, cell in cells["motion"].items():
+                means[".".join(re.sub(r"[^0-9A-Za-z.]", "_", part) for part in (name, method, motion))] = cell["mean"]
+    return means
+
+
+def check_wide(tool, name, folder):
+    (folder / "wide.csv").write_text(run(tool, "analyze", folder / name, "--format", "wide"))
+    said = subprocess.run(["Rscript", "-e", WIDE], cwd=folder, capture_output=True, text=True, check=False)
+    if said.returncode:
+        return [f"--format wide: {said.stderr[-1500:]}"]
+    expected = wide_means(json.loads(run(tool, "analyze", folder / name, "--format", "json")))
+    found = read(said.stdout)
+    bad = [f"--format wide: {list(found)}, not {list(expected)}"] if list(found) != list(expected) else []
+    return bad + [f"{c}: {found[c]}, not {mean}" for c, mean in expected.items() if not abs(found.get(c, 1e9) - mean) < 1e-9]
+
+
 def check_slopes(tool, name, folder):
     (folder / "trials.tsv").write_text(run(tool, "analyze", folder / name, "--format", "tsv"))
     said = subprocess.run(["Rscript", "-e", SLOPES], cwd=folder, capture_output=True, text=True, check=False)
@@ -146,7 +180,8 @@ def main():
         for name, make in studies.STUDIES.items():
             make(folder / name)
             studies.for_r(folder / name, folder / f"{name}.runs")
-            cases = {name: lambda n=name: check(tool, n, folder, write)}
+            cases = {name: lambda n=name: check(tool, n, folder, write),
+                     f"{name}, wide": lambda n=name: check_wide(tool, n, folder)}
             if has_lme4:
                 cases[f"{name}, models"] = lambda n=name: check_models(tool, n, folder)
                 if name == "simulated":

@@ -5,6 +5,7 @@
 #include <array>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -567,6 +568,32 @@ constexpr trial_column trial_columns[] = {
      }},
 };
 
+// Returns a name for a column that SPSS, JASP and R take as it is: RUN.METHOD.MOTION of at most 64 letters,
+// digits, dots and underscores, with a letter first and no dot last. Adds it to `taken`, where no two differ
+// in case only.
+std::string name_column(const std::array<std::string, 3>& parts, std::set<std::string>& taken)
+{
+    constexpr std::size_t longest = 60; // leaves room for a number
+    const bool fits = parts[0].size() + parts[1].size() + parts[2].size() + 2 < longest;
+    std::string name;
+    for (const std::string& part : parts) {
+        name += name.empty() ? "" : ".";
+        for (const char c : first_characters(part, fits ? longest : longest / 3 - 1))
+            if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.')
+                name += c;
+            else if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) // one for each character of UTF-8
+                name += '_';
+    }
+    if (const char first = in_small_letters(name)[0]; first < 'a' || first > 'z')
+        name.insert(0, "x");
+    if (name.back() == '.')
+        name.back() = '_';
+    std::string unique = name;
+    for (unsigned n = 2; !taken.insert(in_small_letters(unique)).second; ++n)
+        unique = fmt::format("{}_{}", name, n);
+    return unique;
+}
+
 } // namespace
 
 nlohmann::ordered_json make_analysis_json(const study::analysis& a)
@@ -641,6 +668,29 @@ void print_trials(const study::dataset& d)
                     text += "\t" + c.cell(t, d.experiment.runs[k]);
                 text += '\n';
             }
+    fmt::print("{}", text);
+}
+
+void print_wide(const study::dataset& d)
+{
+    std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
+    std::set<std::string> taken;
+    for (const study::run_outline& r : d.experiment.runs)
+        for (const std::string& method : study::row_methods(r))
+            for (const std::string& motion : r.motions)
+                text += "," + name_column({r.name, method, motion}, taken);
+    text += '\n';
+    for (std::size_t i = 0; i < d.participants.size(); ++i) {
+        text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
+        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+            const study::run_outline& r = d.experiment.runs[k];
+            const auto cells = study::compute_cells(r, d.data[i][k].trials);
+            for (std::size_t row = 0; row < study::row_methods(r).size(); ++row)
+                for (std::size_t m = 0; m < r.motions.size(); ++m)
+                    text += cells ? fmt::format(",{}", (*cells)[row][m]) : ",";
+        }
+        text += '\n';
+    }
     fmt::print("{}", text);
 }
 

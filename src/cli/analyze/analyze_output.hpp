@@ -18,6 +18,10 @@ nlohmann::ordered_json make_analysis_json(const study::analysis& a);
 /// and fit it.
 void print_trials(const study::dataset& d);
 
+/// Prints a line for each participant as CSV, for JASP and SPSS: a column for each cell of each run, empty
+/// where the participant is left out of the run.
+void print_wide(const study::dataset& d);
+
 /// Prints all warnings on stderr, but only the first about a missing figure, which the text shows as a dash.
 void print_warnings(const study::analysis& a);
 

@@ -192,6 +192,8 @@ int analyze(const analyze_options& o)
         fmt::print("{}", study::json_text(make_analysis_json(a)));
     else if (o.format == "tsv")
         print_trials(d);
+    else if (o.format == "wide")
+        print_wide(d);
     else
         print_analysis_text(a);
     return status_ok;
@@ -228,8 +230,9 @@ int run_analyze(command_line& line)
     analyze_options o;
     CLI::App& c = line.app;
     add_study_options(c, o.folder, o.who);
-    add_format_option(c, o.format, {"text", "json", "tsv"},
-                      "format of the output; tsv has a line for each trial, for R (default text)");
+    add_format_option(c, o.format, {"text", "json", "tsv", "wide"},
+                      "format of the output; tsv has a line for each trial, for R; wide has a line for each "
+                      "participant, for JASP and SPSS (default text)");
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
              "also draw means with error bars, each participant, and the answers of identify",
              [&o](const std::string& t) {

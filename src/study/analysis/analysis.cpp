@@ -335,6 +335,13 @@ std::optional<cell_values> compute_cells(const run_outline& run, const std::vect
     return sums;
 }
 
+std::vector<std::string> row_methods(const run_outline& run)
+{
+    if (run.task == task_kind::choose && !has_worths(run))
+        return {run.methods.back()};
+    return run.methods;
+}
+
 double rounding_in(const run_outline& run) noexcept
 {
     return few_digits * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);

@@ -88,6 +88,9 @@ using cell_values = std::vector<std::vector<double>>;
 /// has no trial.
 std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials);
 
+/// Returns the methods of these rows: of choose the last one.
+std::vector<std::string> row_methods(const run_outline& run);
+
 /// Returns the largest difference of a run's values that rounding may leave of 0.
 double rounding_in(const run_outline& run) noexcept;
 
