@@ -98,6 +98,21 @@ class Sessions(PageTest):
         self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))
         self.refused(2, *self.args(definition="de.toml"))
 
+    def test_both_stimuli_have_the_words_of_their_answers(self):
+        words = ["the first", "the second"]
+        self.write("words.toml", SHORT.replace("practice = 1", f"choices = {json.dumps(words)}"))
+        s = self.start(definition="words.toml")
+        p = s.participant()
+        p.begin()
+        for i in (1, 2):
+            self.assertEqual(p.answer("question", i)["choices"], words)
+        p.until("introduce")
+        s.key("q")
+        self.assertEqual(s.end(), 130)
+        self.assertEqual([(m["playing"], m["names"]) for m in p.seen if m.get("screen") == "stimulus"],
+                         [(playing, words) for playing in (0, 1, 0, 2)] * 2)
+        self.assertEqual([row[3] for row in self.answers()], ["1", "2"])
+
     def test_the_experimenter_s_keys_work(self):
         s = self.start()
         p = s.participant()

@@ -299,6 +299,15 @@ class ByLines(PersonTest):
         described = json.loads((self.dir / "study/task-pairs_beh.json").read_text())["early"]
         self.assertEqual(described["Levels"]["true"], "sooner than 10 s")
 
+    def test_both_answers_of_a_choice_have_words(self):
+        self.write("short.toml", SHORT.replace("animation = true", 'choices = ["the first", "the second"]'))
+        shown = self.ok(*self.args(), stdin=self.ANSWERS).stdout
+        self.assertEqual(re.findall(r" (\d/\d): the first\.\.\. the second\.\.\. Which one\? 1 \(the first\) or 2 \(the second\): (\d)\n", shown),
+                         [("1/1", "1"), ("1/2", "1"), ("2/2", "2")])
+        described = json.loads((self.dir / "study/task-pairs_beh.json").read_text())
+        self.assertEqual(described["response"]["Levels"], {"1": "the first", "2": "the second"})
+        self.assertIn("Words of the two answers: the first, the second", self.ok("report", "study").stdout)
+
     def test_a_left_hand_has_mirrored_motions_and_is_recorded(self):
         text = SHORT.replace('path = "M0 0H20"', 'path = "M0 0H15"\nmirror = true')
         self.write("left.toml", text)

@@ -275,6 +275,11 @@ TEST_CASE("faults have their line")
     for (const char* none : {"[\"a\"]", "[\"a\", \"b\", \"c\"]"})
         says(head + motion + methods + rate + "labels = " + none + "\n",
              "e.toml:17:", "for a scale of 5 (one for each end, or one for each step)");
+    says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n",
+         "e.toml:17:", "choices is of runs that choose (leave it out, or task = \"choose\")");
+    says(head + motion + methods + run + "choices = [\"a\"]\n",
+         "e.toml:17:", "choices has 1 text (one for each of the two answers)");
+    says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n", "e.toml:17:", "at most 2");
     says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
     says(head + motion + methods + run + run, "e.toml:18:", "one name");
 }

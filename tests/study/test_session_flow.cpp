@@ -233,6 +233,8 @@ TEST_CASE("a page gets pictures of motions, and which stimulus plays")
     CHECK_FALSE(asked.contains("stimuli"));
     CHECK(only(d.show({.name = "stimulus", .stimuli = 2, .playing = 1}, 0), 1) ==
           json{{"screen", "stimulus"}, {"ask", 0}, {"stimuli", 2}, {"playing", 1}});
+    CHECK(only(d.show({.name = "stimulus", .stimuli = 2, .names = {"left", "right"}}, 0), 1)["names"] ==
+          json{"left", "right"});
 }
 
 TEST_CASE("a question has one answer")

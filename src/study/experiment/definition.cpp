@@ -416,7 +416,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
 run_definition read_run_definition(const toml_table& t, const experiment_definition& d)
 {
     t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
-            "break_s", "motions", "methods", "simulate_as", "min_response_s"});
+            "choices", "break_s", "motions", "methods", "simulate_as", "min_response_s"});
     run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
@@ -424,9 +424,13 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
                                r.outline.name),
                    "another name: on some disks their files would be one");
-    for (const std::string_view key : {"scale", "labels"})
-        if (r.outline.task != task_kind::rate && t.has(key))
-            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
+    constexpr std::array of_one_task{std::pair("scale", task_kind::rate),
+                                     std::pair("labels", task_kind::rate),
+                                     std::pair("choices", task_kind::choose)};
+    for (const auto& [key, task] : of_one_task)
+        if (r.outline.task != task && t.has(key))
+            t.fail(key, fmt::format("{} is of runs that {}", key, to_string(task)),
+                   fmt::format("leave it out, or task = \"{}\"", to_string(task)));
     if (t.has("attribute") || r.outline.task != task_kind::identify)
         r.attribute = name_in(t, "attribute");
     const std::size_t kind = r.attribute == "similarity" ? 0 : r.attribute == "uniformity" ? 1 : 2;
@@ -446,6 +450,10 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             "labels",
             fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
             "one for each end, or one for each step");
+    r.choices = texts_in(t, "choices", 2);
+    if (t.has("choices") && r.choices.size() != 2)
+        t.fail("choices", fmt::format("choices has {}", counted(r.choices.size(), "text")),
+               "one for each of the two answers");
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     return r;
 }

@@ -84,6 +84,7 @@ struct run_definition {
     double break_s = 0.0;         ///< after the run
     double min_response_s = 0.15; ///< an earlier answer is marked early
     std::vector<std::string> labels = {};
+    std::vector<std::string> choices = {}; ///< choose: words of both answers; may be empty
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
     source_place where = {};

@@ -441,6 +441,8 @@ json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
         {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
         {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
         {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
+        {"choices",
+         fact([](const run_definition& r) { return r.choices.empty() ? "none" : join(r.choices); })},
         {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
         {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
 }

@@ -65,6 +65,8 @@ std::string page_dialogue::state(std::int64_t now_ns) const
     if (screen_.stimuli > 0) {
         j["stimuli"] = screen_.stimuli;
         j["playing"] = screen_.playing;
+        if (!screen_.names.empty())
+            j["names"] = screen_.names;
     }
     if (screen_.path.size() > 1)
         j["path"] = points_list(screen_.path);

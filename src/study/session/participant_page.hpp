@@ -44,6 +44,7 @@ struct page_screen {
     std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
     unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
     unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
+    std::vector<std::string> names = {};           ///< of the stimuli; may be empty
     std::vector<point> path = {};                  ///< the target, at equal parts of its time
     double lasts_s = 0.0;                          ///< of target and rest
     std::optional<page_progress> where = {};

@@ -48,6 +48,8 @@ std::vector<std::string> label_choices(const run_definition& r)
     std::vector<std::string> all(choices_in(r));
     if (r.outline.task == task_kind::identify)
         all = r.outline.motions;
+    else if (!r.choices.empty())
+        all = r.choices;
     else if (r.labels.size() == all.size())
         all = r.labels;
     else if (r.labels.size() == 2) {
@@ -57,7 +59,8 @@ std::vector<std::string> label_choices(const run_definition& r)
     return all;
 }
 
-// Returns the possible answers in a run: "1 or 2", "1 (not at all) to 5 (exactly)", "1 east, 2 west".
+// Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5
+// (exactly)", "1 east, 2 west".
 std::string choices_text(const experiment_definition& d, const run_definition& r)
 {
     const std::string between = d.page[r.outline.task == task_kind::choose ? "or" : "to"];
@@ -115,8 +118,10 @@ page_screen target_screen(const prepared_experiment& p, const session_step& s, c
 
 page_screen stimulus_screen(const prepared_experiment& p, const session_step& s, unsigned playing = 0)
 {
+    const run_definition& r = p.run_at(s.run);
     page_screen shown = idle_screen(p, "stimulus");
-    shown.stimuli = p.run_at(s.run).outline.task == task_kind::choose ? 2 : 0;
+    shown.stimuli = r.outline.task == task_kind::choose ? 2 : 0;
+    shown.names = r.choices;
     shown.playing = playing;
     shown.where = find_progress(p, s);
     return shown;
@@ -399,8 +404,13 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
     const std::array<std::pair<std::uint64_t, unsigned>, 3> changes{
         {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
     return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
-        for (; shown < changes.size() && frame >= changes[shown].first; ++shown)
-            on_page(stimulus_screen(p_, s, changes[shown].second));
+        const std::vector<std::string>& names = p_.run_at(s.run).choices;
+        for (; shown < changes.size() && frame >= changes[shown].first; ++shown) {
+            const unsigned playing = changes[shown].second;
+            on_page(stimulus_screen(p_, s, playing));
+            if (playing > 0 && !names.empty())
+                session::show(fmt::format("{}... ", names[playing - 1]));
+        }
     };
 }
 

@@ -71,7 +71,7 @@ private:
     /// Shows the target. Returns the reason if that made the trial void.
     std::string animate(const session_step& s, const planned_trial& t);
     given_stimulus give(const session_step& s, const planned_trial& t);
-    /// Returns a watcher that shows on the page which of two stimuli plays at a frame, and what came before.
+    /// Returns a watcher that shows which of two stimuli plays at a frame, and what came before.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     timed_answer ask(const session_step& s, const given_stimulus& g);
 

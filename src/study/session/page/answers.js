@@ -63,11 +63,11 @@ export function enable_answers(yes) {
 export function mark_answer(choice) { by_id("answers").children[choice - 1].classList.add("chosen"); }
 
 // Shows the stimuli of a trial at the places of the answers, and lights the one that plays.
-export function show_stimuli(count, playing) {
+export function show_stimuli(count, playing, names = []) {
   const all = by_id("stimuli");
   show_only_if(all, count > 0);
-  by_id("playing").textContent = playing || "";
+  by_id("playing").textContent = playing ? [playing, names[playing - 1]].join(" ").trim() : "";
   if (all.children.length !== count)
-    all.replaceChildren(...Array.from({length: count}, (_, i) => make("div", {}, make("b", {}, i + 1))));
+    all.replaceChildren(...Array.from({length: count}, (_, i) => make("div", {}, make("b", {}, i + 1), names[i] && make("span", {}, names[i]))));
   [...all.children].forEach((e, i) => e.classList.toggle("on", i + 1 === playing));
 }
