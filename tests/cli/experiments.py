@@ -92,6 +92,16 @@ trials = 2
 scale = 3
 labels = ["not", "half", "all"]
 """
+# Ratings on a line, without numbers.
+LINE = SHORT[:SHORT.index("[[run]]")] + """[[run]]
+name = "marks"
+task = "rate"
+attribute = "uniformity"
+question = "How even?"
+trials = 4
+scale = "vas"
+labels = ["not", "all"]
+"""
 
 
 class ExperimentTest(ToolTest):

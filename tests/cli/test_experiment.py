@@ -321,6 +321,22 @@ class Simulated(ExperimentTest):
         told = json.loads(self.ok("experiment", small, "--power", "3", "--studies", "4", "--simulate", "sigma=1", "--format", "json").stdout)
         self.assertEqual(told["runs"][0]["comparison"], "third chosen in its trials, t against 50 %")
 
+    def test_ratings_on_a_line_and_on_many_steps(self):
+        for scale, told, range_text in (('"vas"\nlabels = ["bad", "good"]', "vas", "0 to 100 on a visual analogue scale"), ("21", 21, "1 to 21")):
+            small, spec, folder = self.small(SMALL.replace("trials = 4\nscale = 7", f"trials = 40\nscale = {scale}")), "seed=1,sigma=60", f"study-{told}"
+            dry = json.loads(self.ok("experiment", small, "--dry-run", "--format", "json").stdout)
+            self.assertEqual({r["name"]: r["scale"] for r in dry["runs"]}, {"which-one": None, "how good": told, "what": None})
+            for more in ((), ("--resume",)):
+                self.simulate("01", *more, definition=small, spec=spec, folder=folder)
+            rows = self.rows("01", "howgood", folder)
+            ratings = [int(r["rating"]) for r in rows]
+            self.assertRegex(range_text, rf"^{min(ratings)} to {max(ratings)}\b")
+            self.assertEqual([r["response"] for r in rows], [r["rating"] for r in rows])
+            self.assertIn(f"mean rating (se), {range_text}\n", self.ok("analyze", folder).stdout)
+            self.assertIn(f"rated from {range_text}.", self.ok("report", folder).stdout)
+            described = json.loads((self.dir / folder / "task-howgood_beh.json").read_text())
+            self.assertEqual(described["response"]["Description"], f"The rating, {range_text}")
+
     def test_the_session_file_is_complete(self):
         self.simulate("01", "--seed", "12")
         s = self.session()

@@ -7,7 +7,7 @@ import signal
 import socket
 import urllib.request
 
-from experiments import SHORT, PersonTest, read_table
+from experiments import LINE, SHORT, PersonTest, read_table
 from harness import main
 from pages import Session
 from websocket import BINARY, TEXT, Peer, framed
@@ -98,19 +98,22 @@ class Sessions(PageTest):
         self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))
         self.refused(2, *self.args(definition="de.toml"))
 
-    def test_both_stimuli_have_the_words_of_their_answers(self):
+    def test_a_line_has_an_answer_for_each_place_and_stimuli_have_the_words_of_their_answers(self):
         words = ["the first", "the second"]
-        self.write("words.toml", SHORT.replace("practice = 1", f"choices = {json.dumps(words)}"))
-        s = self.start(definition="words.toml")
+        self.write("line.toml", LINE + f'[[run]]\nname = "pairs"\ntask = "choose"\nattribute = "similarity"\ntrials = 2\nchoices = {json.dumps(words)}\n')
+        s = self.start(definition="line.toml")
         p = s.participant()
         p.begin()
+        for place in (1, 101, 58, 2):
+            asked = p.answer("question", place)
+            self.assertEqual((asked["visual"], asked["choices"]), (True, ["not", *[""] * 99, "all"]))
+        p.answer("introduce", 1)
         for i in (1, 2):
             self.assertEqual(p.answer("question", i)["choices"], words)
-        p.until("introduce")
-        s.key("q")
-        self.assertEqual(s.end(), 130)
-        self.assertEqual([(m["playing"], m["names"]) for m in p.seen if m.get("screen") == "stimulus"],
-                         [(playing, words) for playing in (0, 1, 0, 2)] * 2)
+        p.until("over", asked=False)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([(m["playing"], m["names"]) for m in p.seen if m.get("stimuli")], [(playing, words) for playing in (0, 1, 0, 2)] * 2)
+        self.assertEqual([row[3] for row in self.answers("marks", "rating")], ["0", "100", "57", "1"])
         self.assertEqual([row[3] for row in self.answers()], ["1", "2"])
 
     def test_the_experimenter_s_keys_work(self):

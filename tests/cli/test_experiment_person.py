@@ -9,7 +9,7 @@ import shutil
 import time
 import unittest
 
-from experiments import SHORT, SMALL, PersonTest, Terminal, contents, noise_pieces, read_table
+from experiments import LINE, SHORT, SMALL, PersonTest, Terminal, contents, noise_pieces, read_table
 from harness import PATIENCE_S, main
 
 AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
@@ -87,6 +87,23 @@ class AtTheTerminal(PersonTest):
             self.assertNotRegex(rest, "[A-Za-z]{2}")
         self.assertIn("<target>\n", lines)
         self.assertIn("<no_answer>: 1 ", lines)
+
+    def test_numbers_above_nine_are_typed_with_enter(self):
+        self.write("short.toml", LINE)
+        t = self.start()
+        t.begin()
+        asked = "How even\\? 0 \\(not\\) to 100 \\(all\\): "
+        t.answer(asked, "0\n")
+        t.answer(asked, "57\x7f5\n")
+        t.answer(asked, "101\n")
+        t.answer("101\\s+That is no answer: 0 \\(not\\) to 100 \\(all\\) ", "1p1\n")  # a pause comes
+        t.answer("A pause", "g")
+        t.answer(asked, "100\n")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertEqual([row[3] for row in self.answers("marks", "rating")], ["0", "55", "11", "100"])
+        self.assertIn("57\b \b5", t.all)
+        self.assertNotIn("held down", t.said())
 
     def test_the_experimenter_s_keys_work(self):
         t = self.start()
@@ -298,6 +315,15 @@ class ByLines(PersonTest):
         self.assertIn("sooner after the stimulus than: 10 s", text)
         described = json.loads((self.dir / "study/task-pairs_beh.json").read_text())["early"]
         self.assertEqual(described["Levels"]["true"], "sooner than 10 s")
+
+    def test_a_session_goes_on_after_a_rating_of_0(self):
+        self.write("short.toml", LINE)
+        shown = self.refused(1, *self.args(), stdin=AGREED + "0\n57\n101\n").stdout
+        self.assertIn("How even? 0 (not) to 100 (all): That is no answer: 0 (not) to 100 (all) ", shown)
+        self.ok(*self.args("--resume"), stdin="y\ny\n100\n9\n")
+        rows = self.rows("01", "marks")
+        self.assertEqual([r["rating"] for r in rows], ["0", "57", "100", "9"])
+        self.assertEqual([r["response"] for r in rows], [r["rating"] for r in rows])
 
     def test_both_answers_of_a_choice_have_words(self):
         self.write("short.toml", SHORT.replace("animation = true", 'choices = ["the first", "the second"]'))

@@ -78,6 +78,8 @@ task = "identify"
 trials = 2
 """
 
+LINE = FELT.replace('task = "identify"', 'task = "rate"\nattribute = "even"\nquestion = "?"\nscale = "vas"\nlabels = ["no", "yes"]')
+
 
 def paths_in(schema, at="", root=None):
     """Returns the same places of a schema."""
@@ -159,6 +161,7 @@ class Schemas(ToolTest):
         walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
         self.write("o.toml", PAIR.partition("[sync]")[0])
         self.write("felt.toml", FELT)
+        self.write("line.toml", LINE)
         for study in ("missing", "three-by-three", "among"):
             studies.STUDIES[study](self.dir / study)
         texts = [self.ok(*args, "--format", "json").stdout for args in (
@@ -175,7 +178,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

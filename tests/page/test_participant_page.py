@@ -8,7 +8,7 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import DESK, SHORT, ExperimentTest  # noqa: E402
+from experiments import DESK, LINE, SHORT, ExperimentTest  # noqa: E402
 from harness import main  # noqa: E402
 from pages import Session  # noqa: E402
 
@@ -265,6 +265,58 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([r["rating"] for r in self.rows("01", "marks") if r["void"] == "false"], ["9"])
         self.assertEqual([r["response"] for r in self.rows("01", "what") if r["void"] == "false"], ["west"])
+
+    def mark(self, p, part, ask, name):
+        """Waits for a line that is newer than `ask`, and taps on it at a part of its width. Returns the number of the question."""
+        ask = p.until(f"state.ask > {ask} && document.querySelector('#answers input:enabled') && state.ask")
+        p.key("Enter")  # nothing is set
+        p.key("Digit5", "5")
+        self.assertEqual(p.value("[document.querySelector('#answers.unset button').disabled, document.querySelector('#answers output').textContent, state.ask]"),
+                         [True, "", ask])
+        self.picture(p, name)
+        x, y, w, h = p.value("(r => [r.x, r.y, r.width, r.height])(document.querySelector('#answers input').getBoundingClientRect())")
+        self.assertGreaterEqual(h, 44)
+        p.tap(x + 1 + part * (w - 2), y + h / 2)
+        p.until("!document.querySelector('#answers button').disabled")
+        return ask
+
+    def test_a_line_answers_once_it_is_set(self):
+        run = '[[run]]\nname = "%s"\ntask = "%s"\nattribute = "uniformity"\nquestion = "How even?"\ntrials = 1\n%s\n'
+        self.write("line.toml", LINE.replace("trials = 4", "trials = 3").replace("duration = 0.2", "duration = 0.6") + "".join(run % which for which in (
+            ("steps", "rate", 'scale = 21\nlabels = ["not", "all"]'), ("eleven", "rate", "scale = 11"), ("pairs", "choose", 'choices = ["first", "second"]'))))
+        s = self.start("line.toml")
+        p = self.open(s)
+        number = "document.querySelector('#answers output').textContent"
+        ask = self.mark(p, 0, self.begin(p), "line")
+        p.click("#answers button")
+        ask = self.mark(p, 0.5, ask, "line")
+        p.key("ArrowRight")
+        self.assertEqual(p.value(number), "")
+        p.key("Enter")
+        ask = self.mark(p, 1, ask, "line")
+        x, y = p.middle("#answers button")
+        p.touch("touchStart", (1, x, y))
+        p.touch("touchEnd")
+        ask = self.mark(p, 0.5, self.click(p, "introduce", 1, ask), "steps")
+        self.assertEqual(p.value(number), "11")
+        p.key("Home")
+        p.until(f"{number} === '1 not'")
+        p.click("#answers button")
+        # The words of a choice are where its answers will be.
+        ask = self.click(p, "introduce", 1, ask)
+        lit = p.until("document.querySelector('#stimuli .on')?.textContent === '2second' && document.querySelector('#playing').textContent === '2 second' && "
+                      "(r => [r.x + r.width / 2, r.y + r.height / 2])(document.querySelector('#stimuli .on').getBoundingClientRect())")
+        ask = self.asked(p, "question", ask)
+        self.assertEqual(p.middle("#answers button:nth-child(2)"), lit)
+        self.assertEqual(p.value("document.querySelector('#answers').innerText.split(/\\s+/)"), ["1", "first", "2", "second"])
+        ask = self.click(p, "introduce", 1, self.key(p, "question", "2"))
+        ask = self.asked(p, "question", ask)
+        self.picture(p, "eleven")
+        p.key("Digit1", "1")  # 1, 10 or 11?
+        self.click(p, "question", 11)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([[r["response"] for r in self.rows("01", name) if r["void"] == "false"] for name in ("marks", "steps", "pairs", "eleven")],
+                         [["0", "51", "100"], ["1"], ["2"], ["11"]])
 
     def test_thresholds_are_measured_on_it(self):
         for method in ("staircase", "adjustment"):

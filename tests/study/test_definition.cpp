@@ -275,6 +275,11 @@ TEST_CASE("faults have their line")
     for (const char* none : {"[\"a\"]", "[\"a\", \"b\", \"c\"]"})
         says(head + motion + methods + rate + "labels = " + none + "\n",
              "e.toml:17:", "for a scale of 5 (one for each end, or one for each step)");
+    const std::string line = rate + "scale = \"vas\"\n";
+    says(head + motion + methods + line,
+         "e.toml:17:", "labels has 0 texts for a visual analogue scale (one for each end)");
+    says(head + motion + methods + line + "labels = [\"a\"]\n", "e.toml:18:", "labels has 1 text for");
+    says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n", "e.toml:18:", "at most 2");
     says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n",
          "e.toml:17:", "choices is of runs that choose (leave it out, or task = \"choose\")");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
@@ -318,6 +323,17 @@ TEST_CASE("runs in order, motions and methods in the order of the definition")
     CHECK(e.runs[2].motions == std::vector<std::string>{"a", "b"});
 }
 
+TEST_CASE("ratings begin with 1, on a visual analogue scale with 0")
+{
+    const auto range = [](const std::string& scale) {
+        const std::string text = outline_head + "[[run]]\nname = \"r\"\ntask = \"rate\"\n" + scale;
+        return rating_range(read_outline(text, "e.toml").runs[0]);
+    };
+    CHECK(range("") == "1 to 5");
+    CHECK(range("scale = 101\n") == "1 to 101");
+    CHECK(range("scale = \"vas\"\n") == "0 to 100 on a visual analogue scale");
+}
+
 TEST_CASE("faults have their line")
 {
     const auto with = [](const std::string& run) {
@@ -329,7 +345,8 @@ TEST_CASE("faults have their line")
     CHECK(with("name = \"r\"\ntask = \"choose\"\n").empty()); // of three
     has(with("name = \"r\"\ntask = \"rate\"\nmotions = [\"c\"]\n"),
         "motions has what is not defined (one of a, b)");
-    for (const char* beyond : {"scale = 1", "scale = 10", "trials = 0", "trials = 10001"})
+    for (const char* beyond :
+         {"scale = 1", "scale = 102", "scale = 7.5", "scale = \"line\"", "trials = 0", "trials = 10001"})
         CHECK(with(std::string("name = \"r\"\ntask = \"rate\"\n") + beyond + "\n").find("e.toml:16:") == 0);
     has(with("name = \"r\"\ntask = \"identify\"\nmotions = [\"a\"]\n"), "one motion to identify");
     has(with("name = \"r 1\"\ntask = \"rate\"\n[[run]]\nname = \"r-1\"\ntask = \"rate\"\n"),

@@ -9,6 +9,7 @@
 #include <ranges>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -430,17 +431,22 @@ TEST_CASE("without noise a rating is the middle plus the advantage of the cost o
 
 TEST_CASE("ratings stay on the scale, and noise uses all of it")
 {
-    const rig r;
-    const simulated_observer o = r.observer(3, "sigma=3");
-    unsigned low = 9;
-    unsigned high = 0;
-    for (unsigned i = 1; i <= 500; ++i) {
-        const unsigned a = o.answer({0, 0}, i, 1, false).response;
-        low = std::min(low, a);
-        high = std::max(high, a);
-    }
-    CHECK(low == 1);
-    CHECK(high == 5);
+    rig r;
+    const auto range = [&](const std::string& spec) {
+        const simulated_observer o = r.observer(3, spec);
+        unsigned low = 1000;
+        unsigned high = 0;
+        for (unsigned i = 1; i <= 500; ++i) {
+            const unsigned a = o.answer({0, 0}, i, 1, false).response;
+            low = std::min(low, a);
+            high = std::max(high, a);
+        }
+        return std::pair(low, high);
+    };
+    CHECK(range("sigma=3") == std::pair(1U, 5U));
+    r.d.runs[3].outline.scale = 100;
+    r.d.runs[3].outline.visual = true;
+    CHECK(range("sigma=60") == std::pair(0U, 100U));
 }
 
 TEST_CASE("an identification names the nearest target: the right one without noise, any with much")

@@ -268,6 +268,23 @@ TEST_CASE("a keypad answers for the page that shows the question")
     CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
 }
 
+TEST_CASE("answers without keys have numbers: their places from 1, on a line from 0")
+{
+    for (const bool visual : {false, true}) {
+        page_dialogue d(json::object());
+        static_cast<void>(d.hear(1, hello, 0));
+        const page_screen s{.name = "question", .choices = std::vector<std::string>(101), .visual = visual};
+        CHECK(only(d.show(s, 0), 1).contains("visual") == visual);
+        CHECK_FALSE(d.press('1', 0).answer);
+        CHECK_FALSE(d.hear(1, answer(1, 102), 0).answer);
+        const auto last = d.hear(1, answer(1, 101), 0);
+        CHECK(last.answer.has_value());
+        CHECK(last.number == (visual ? 100U : 101U));
+        static_cast<void>(d.show(s, 0));
+        CHECK(d.hear(1, answer(2, 1), 0).number == (visual ? 0U : 1U));
+    }
+}
+
 TEST_CASE("a past question takes no answer")
 {
     page_dialogue d(json::object());
@@ -371,6 +388,24 @@ TEST_CASE("a key of a terminal counts after 100 ms without it, so one that is he
     CHECK_FALSE(repeated('1', 2200));
     CHECK(repeated('1', 2400, true)); // read together: nobody knows when each came
     CHECK(repeated('1', 2400));
+}
+
+TEST_CASE("a number is typed up to Enter, and a keypad has 0 and Enter, too")
+{
+    const auto typed = [](const std::string& keys) {
+        typed_number number;
+        std::vector<unsigned> all;
+        for (const char key : keys)
+            if (const auto n = number.take(key))
+                all.push_back(*n);
+        CHECK_MESSAGE(number.digits().empty(), keys);
+        return all;
+    };
+    CHECK(typed("57\n0\n100\r11\n") == std::vector<unsigned>{57, 0, 100, 11});
+    CHECK(typed("57\b5\n\x7f"
+                "8\x7f\n9\n") == std::vector<unsigned>{55, 9});
+    CHECK(typed("1234\n x-3\n\n") == std::vector<unsigned>{123, 3});
+    CHECK(typed("1na") == std::vector<unsigned>{10});
 }
 
 TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")

@@ -371,7 +371,7 @@ std::string paired_text(const study::t_test& t)
 
 void print_rate(const study::run_analysis& r)
 {
-    say(stdout, "  mean rating (se), 1 to {}\n", r.run.scale);
+    say(stdout, "  mean rating (se), {}\n", study::rating_range(r.run));
     const std::size_t w = widest(r.run.methods);
     const auto cell = [](const study::t_test& t) {
         return fmt::format("{} ({})", value_text(t.mean), value_text(t.se));

@@ -132,7 +132,7 @@ plot::bar_panel make_panel(const study::run_analysis& r, error_bars kind)
         return p;
     case study::task_kind::rate:
         p.y_title = "mean rating";
-        p.y_from = 1.0;
+        p.y_from = r.run.lowest_rating();
         p.y_to = r.run.scale;
         break;
     case study::task_kind::identify:

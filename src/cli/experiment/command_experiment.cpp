@@ -30,15 +30,14 @@ namespace tactor::cli {
 namespace {
 
 constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
-constexpr unsigned most_keys = 9;
 
 void check_keys(const study::prepared_experiment& p)
 {
     for (const study::run_definition& r : p.definition.runs)
-        if (study::choices_in(r) > most_keys)
+        if (r.outline.task == study::task_kind::identify && study::choices_in(r) > study::most_keys)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
-                                    r.outline.name, study::choices_in(r), most_keys),
+                                    r.outline.name, study::choices_in(r), study::most_keys),
                         "motions = [...] with fewer of them");
 }
 

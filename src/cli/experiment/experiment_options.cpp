@@ -62,7 +62,9 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
     j["question"] = r.question;
     j["animation"] = r.animation;
     j["min_response_s"] = r.min_response_s;
-    j["scale"] = r.outline.task == study::task_kind::rate ? json(r.outline.scale) : json(nullptr);
+    j["scale"] = nullptr;
+    if (r.outline.task == study::task_kind::rate)
+        j["scale"] = r.outline.visual ? json("vas") : json(r.outline.scale);
     j["break_s"] = r.break_s;
     j["duration_s"] = t.total_s;
     j["waits"] = t.waits;

@@ -359,7 +359,7 @@ std::optional<double> compared_value(const run_outline& run, const cell_values& 
 
 interval possible_values(const run_outline& run)
 {
-    return run.task == task_kind::rate ? interval{1.0, run.scale} : per_cents;
+    return run.task == task_kind::rate ? interval{run.lowest_rating(), run.scale} : per_cents;
 }
 
 } // namespace tactor::study

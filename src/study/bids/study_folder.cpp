@@ -127,7 +127,7 @@ std::string task_text(const run_definition& r, bool simulated)
         j["Labels"] = r.labels;
     for (const trial_column& c : trial_columns)
         j[std::string(c.name)] = column_json(c.meaning, c.unit);
-    j["response"] = column_json(fmt::format(fmt::runtime(task.response), r.outline.scale));
+    j["response"] = column_json(fmt::format(fmt::runtime(task.response), rating_range(r.outline)));
     if (!r.choices.empty())
         j["response"]["Levels"] = {{"1", r.choices[0]}, {"2", r.choices[1]}};
     j["early"]["Levels"] = {{"true", fmt::format("sooner than {} s", r.min_response_s)}, {"false", "later"}};

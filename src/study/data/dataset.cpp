@@ -155,10 +155,10 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
     return static_cast<std::size_t>(at - known.begin());
 }
 
-unsigned read_rating(const text_table& t, std::size_t row, unsigned scale)
+unsigned read_rating(const text_table& t, std::size_t row, const run_outline& run)
 {
-    const auto response = t.whole(row, "response", 1, scale);
-    const auto rating = t.whole(row, "rating", 1, scale);
+    const auto response = t.whole(row, "response", run.lowest_rating(), run.scale);
+    const auto rating = t.whole(row, "rating", run.lowest_rating(), run.scale);
     if (!response && !rating)
         t.refuse(row, "there is no rating", "a trial that counts has one");
     if (response && rating && *response != *rating)
@@ -173,7 +173,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.method_1 = find_place(t, row, "method_1", run.methods);
     r.response_time_s = t.number(row, "response_time");
     if (run.task == task_kind::rate) {
-        r.response = read_rating(t, row, run.scale);
+        r.response = read_rating(t, row, run);
     } else if (run.task == task_kind::identify) {
         r.response = static_cast<unsigned>(find_place(t, row, "response", run.motions));
     } else {
@@ -283,6 +283,12 @@ private:
 
 } // namespace
 
+std::string rating_range(const run_outline& run)
+{
+    return fmt::format("{} to {}{}", run.lowest_rating(), run.scale,
+                       run.visual ? " on a visual analogue scale" : "");
+}
+
 std::string make_file_name(std::string_view run)
 {
     std::string name;
@@ -337,7 +343,7 @@ const std::array<trial_column, 18> trial_columns{{
      &trial_row::response_time_s, column_use::analysis},
     {"early", "Whether the answer came sooner after the stimulus than min_response_s; n/a without an answer",
      "", &trial_row::early, column_use::nobody},
-    {"rating", "The rating; n/a where nothing is rated", "", &trial_row::rating, column_use::session, 1},
+    {"rating", "The rating; n/a where nothing is rated", "", &trial_row::rating},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void, column_use::analysis},
     {"xruns", "Gaps in the sound while the stimuli played, as the device tells them", "", &trial_row::xruns},

@@ -30,7 +30,7 @@ enum class task_kind { choose, rate, identify };
 struct task_row {
     std::string_view name;
     std::string_view trial;    ///< kind of a trial
-    std::string_view response; ///< meaning of its response; {} is the scale
+    std::string_view response; ///< meaning of its response; {} is the range of ratings
     /// Usual questions about similarity, uniformity, another attribute; empty: none.
     std::array<std::string_view, 3> questions;
 };
@@ -43,7 +43,7 @@ inline constexpr std::array<task_row, 3> tasks{{
      {"Which of the two was more like the target?", "Which of the two was more even?"}},
     {"rate",
      "One stimulus, which is rated",
-     "The rating, 1 to {}",
+     "The rating, {}",
      {"How much was it like the target?", "How even was it?"}},
     {"identify",
      "One stimulus, whose motion is named",
@@ -66,8 +66,10 @@ struct run_outline {
     std::vector<std::string> motions = {}; ///< in the order of the definition
     std::vector<std::string> methods = {}; ///< the same; what is chosen or compared is the last
     unsigned trials = 0;                   ///< 0: the definition does not say
-    unsigned scale = 5;                    ///< rate: 1 to this
+    unsigned scale = 5;                    ///< rate: the highest rating
+    bool visual = false;                   ///< rate: a visual analogue scale, without numbers
 
+    unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
 
@@ -77,6 +79,9 @@ struct experiment_outline {
 
     friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
 };
+
+/// Returns the ratings of a run: "1 to 5", "0 to 100 on a visual analogue scale".
+std::string rating_range(const run_outline& run);
 
 /// Returns the letters and digits of a run's name (BIDS allows no others in a task's).
 std::string make_file_name(std::string_view run);

@@ -141,6 +141,8 @@ std::string write_choice(const options::option& o, std::string_view value)
 }
 
 constexpr unsigned most_trials = 10000;
+constexpr unsigned most_steps = 101;
+constexpr unsigned visual_most = 100;
 
 // Returns the places in `all` that a run names, in the order of `all`; every place if it names none.
 template <class T>
@@ -377,6 +379,20 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     return {name_in(t, "name"), std::move(w), std::move(drawn), t.where()};
 }
 
+// Reads the number of steps, or "vas".
+void read_scale(const toml_table& t, run_outline& o)
+{
+    const toml::node* n = t.node("scale");
+    if (n == nullptr)
+        return;
+    o.visual = n->value_exact<std::string>() == "vas";
+    const auto most = o.visual ? std::optional<std::int64_t>(visual_most) : n->value_exact<std::int64_t>();
+    if (!most || *most < 2 || *most > most_steps)
+        t.fail("scale", fmt::format("scale is {}", detail::shown(*n)),
+               fmt::format("2 to {}, or \"vas\"", most_steps));
+    o.scale = static_cast<unsigned>(*most);
+}
+
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
 {
@@ -399,7 +415,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     const std::string task = t.need(t.choice("task", names), "task");
     o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
     o.trials = t.whole("trials", 1, most_trials).value_or(0);
-    o.scale = t.whole("scale", 2, 9).value_or(o.scale);
+    read_scale(t, o);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     for (const std::size_t i : r.motions)
@@ -444,7 +460,11 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");
     r.practice = t.whole("practice", 0, most_trials).value_or(0);
-    r.labels = texts_in(t, "labels", r.outline.scale);
+    r.labels = texts_in(t, "labels", r.outline.visual ? 2 : r.outline.scale);
+    if (r.outline.visual && r.labels.size() != 2)
+        t.fail(t.has("labels") ? "labels" : "scale",
+               fmt::format("labels has {} for a visual analogue scale", counted(r.labels.size(), "text")),
+               "one for each end");
     if (!r.labels.empty() && r.labels.size() != 2 && r.labels.size() != r.outline.scale)
         t.fail(
             "labels",
@@ -528,6 +548,7 @@ constexpr std::array english{
     page_word{"over", "That was all. Thank you."},
     page_word{"elsewhere", "This session goes on in another window."},
     page_word{"offline", "There is no connection. Please tell the experimenter."},
+    page_word{"confirm", "Confirm"},
     page_word{"full_screen", "Full screen"},
     // On a terminal only.
     page_word{"or", "or"},

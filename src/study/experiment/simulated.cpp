@@ -199,9 +199,10 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
         break;
     }
     case task_kind::rate: {
-        const double scale = run_.outline.scale;
-        const double rating = std::round((scale + 1.0) / 2.0 + utility(t.method_1) - mean_);
-        a.response = static_cast<unsigned>(std::clamp(rating, 1.0, scale));
+        const double lowest = run_.outline.lowest_rating();
+        const double highest = run_.outline.scale;
+        const double rating = std::round((highest + lowest) / 2.0 + utility(t.method_1) - mean_);
+        a.response = static_cast<unsigned>(std::clamp(rating, lowest, highest));
         break;
     }
     case task_kind::identify: {

@@ -407,7 +407,7 @@ std::string describe_task(const run_outline& r)
         return fmt::format("two stimuli of one motion, by {} and by {}, one after the other; one was chosen",
                            r.methods[0], r.methods[1]);
     if (r.task == task_kind::rate)
-        return fmt::format("one stimulus ({}), rated from 1 to {}", methods, r.scale);
+        return fmt::format("one stimulus ({}), rated from {}", methods, rating_range(r));
     return fmt::format("one stimulus ({}); one of {} was named", methods,
                        counted(r.motions.size(), "motion"));
 }

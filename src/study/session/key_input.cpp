@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -18,6 +19,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/split.hpp"
 #include "rt/clock.hpp"
 #include "session/process.hpp"
 #include "session/say.hpp"
@@ -64,18 +66,12 @@ std::optional<operator_key> find_operator_key(char c)
     return at != std::string_view::npos ? std::optional(static_cast<operator_key>(at)) : std::nullopt;
 }
 
-unsigned digit(char c)
+session_key make_key(std::string text, bool is_key)
 {
-    return c >= '1' && c <= '9' ? static_cast<unsigned>(c - '0') : 0;
-}
-
-session_key make_key(std::string text)
-{
-    session_key k{.text = std::move(text), .at_ns = rt::monotonic_ns()};
-    if (k.text.size() == 1) {
+    session_key k{.text = std::move(text), .is_key = is_key, .at_ns = rt::monotonic_ns()};
+    if (k.text.size() == 1)
         k.command = find_operator_key(k.text.front());
-        k.answer = digit(k.text.front());
-    }
+    k.answer = detail::number_in<unsigned>(k.text);
     return k;
 }
 
@@ -90,6 +86,21 @@ std::optional<char> find_answer(std::uint16_t code) noexcept
     for (const key& k : others)
         if (k.code == code)
             return k.answer;
+    return {};
+}
+
+std::optional<unsigned> typed_number::take(char key)
+{
+    constexpr std::size_t most_digits = 3;
+    constexpr char backspace = '\x7f';
+    if (key == 'n')
+        key = '0';
+    if (key >= '0' && key <= '9' && digits_.size() < most_digits)
+        digits_ += key;
+    else if ((key == backspace || key == '\b') && !digits_.empty())
+        digits_.pop_back();
+    else if (key == '\n' || key == '\r' || key == 'a')
+        return detail::number_in<unsigned>(std::exchange(digits_, {}));
     return {};
 }
 
@@ -221,17 +232,17 @@ void session_keys::drop_keys()
         ;
 }
 
-std::optional<session_key> session_keys::poll()
+std::optional<session_key> session_keys::poll(bool repeated)
 {
     if (page_ != nullptr)
         return poll_page();
     if (const auto key = pressed())
-        return make_key(std::string(1, *key));
+        return make_key(std::string(1, *key), true);
     while (auto line = typed()) {
-        const bool repeated =
+        const bool is_held =
             terminal_ && guard_.is_repeated(line->front(), read_ns_, text_.starts_with(*line));
-        session_key k = make_key(*std::move(line));
-        if (!repeated || k.command)
+        session_key k = make_key(*std::move(line), terminal_);
+        if (!is_held || repeated || k.command)
             return k;
         if (!std::exchange(warned_, true))
             session::say(stderr, "tactor: a key is held down: it answers nothing until it is let go\n");
@@ -244,24 +255,44 @@ std::optional<session_key> session_keys::poll_page()
     while (const auto key = pressed())
         page_->press(*key);
     while (auto line = typed())
-        if (const session_key k = make_key(*std::move(line)); k.command)
+        if (const session_key k = make_key(*std::move(line), terminal_); k.command)
             return session_key{.command = k.command, .at_ns = k.at_ns};
     const auto a = page_->poll();
     if (!a)
         return {};
-    return session_key{.text = std::string(1, a->key), .answer = digit(a->key), .at_ns = a->at_ns};
+    return session_key{.text = std::string(1, a->key), .answer = a->number, .at_ns = a->at_ns};
 }
 
-session_key session_keys::wait(const std::string& subject)
+session_key session_keys::wait(const std::string& subject, bool repeated)
 {
     for (;;) {
-        if (auto k = poll())
+        if (auto k = poll(repeated))
             return *std::move(k);
         if (ended()) {
             session::show("\n");
             throw error(error_kind::runtime, subject, "there is no answer any more", resume_hint);
         }
         stage_.wait_for(any_ ? any_.get() : STDIN_FILENO);
+    }
+}
+
+session_key session_keys::wait_for_number(typed_number& number)
+{
+    const std::string& digits = number.digits();
+    for (;;) {
+        session_key k = wait("the session", true);
+        if (k.command || !k.is_key)
+            return k;
+        const std::size_t before = digits.size();
+        k.answer = number.take(k.text.front());
+        if (k.answer)
+            return k;
+        if (digits.size() > before)
+            session::show(digits.substr(before));
+        if (digits.size() < before) {
+            std::fputs("\b \b", stdout); // show() would escape it
+            session::flush_output();
+        }
     }
 }
 

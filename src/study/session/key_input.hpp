@@ -24,6 +24,21 @@ namespace tactor::study {
 /// nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
+/// Greatest number of answers that have a key each.
+inline constexpr unsigned most_keys = 9;
+
+/// A number of up to three digits that somebody types. A value without a terminal.
+class typed_number {
+public:
+    /// Takes a key: a digit, backspace or Enter, and of a keypad n (0) or a (Enter); ignores others. Returns
+    /// the number at Enter, and then begins anew.
+    std::optional<unsigned> take(char key);
+    const std::string& digits() const noexcept { return digits_; }
+
+private:
+    std::string digits_ = {};
+};
+
 /// Tells keys that a terminal repeats, because they are held down, from keys that are pressed. A value
 /// without a clock.
 class repeat_guard {
@@ -84,8 +99,9 @@ enum class operator_key {
 struct session_key {
     std::string text = {}; ///< without blanks; empty for a command from a terminal beside a page
     std::optional<operator_key> command = {};
-    unsigned answer = 0;    ///< 1 to 9, or 0
-    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
+    std::optional<unsigned> answer = {}; ///< the number that this is, or that of the page's answer
+    bool is_key = false;                 ///< of a terminal or a keypad: a number may have more digits
+    std::int64_t at_ns = 0;              ///< CLOCK_MONOTONIC
 };
 
 /// The participant's ways to answer besides the terminal.
@@ -110,12 +126,15 @@ public:
     bool come_early() const noexcept { return terminal_ || page_ != nullptr; }
     /// Returns true if the participant has keys, not only lines.
     bool has_keys() const noexcept { return come_early() || !keypads_.empty(); }
-    /// Returns the next key or line, if any, also an unknown one. Leaves out keys that a terminal repeats,
-    /// and says so the first time. \throws error (runtime) if a source cannot be read.
-    std::optional<session_key> poll();
+    /// Returns the next key or line, if any, also an unknown one. Unless `repeated` leaves out keys that a
+    /// terminal repeats, and says so the first time. \throws error (runtime) if a source cannot be read.
+    std::optional<session_key> poll(bool repeated = false);
     /// Waits for the next key. \throws stage::interruption; error (runtime) as poll(), and if nothing more
     /// can come; `subject` names what then has no answer.
-    session_key wait(const std::string& subject = "the session");
+    session_key wait(const std::string& subject = "the session", bool repeated = false);
+    /// Waits for a number, or for a command. Shows the digits as keys type them; lines and the page give the
+    /// whole number. Throws as wait().
+    session_key wait_for_number(typed_number& number);
     /// Returns true if nothing more can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
     /// Drops keys that were pressed on a keypad up to now.

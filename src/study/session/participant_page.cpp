@@ -54,6 +54,8 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["question"] = screen_.question;
     if (!screen_.choices.empty())
         j["choices"] = screen_.choices;
+    if (screen_.visual)
+        j["visual"] = true;
     if (screen_.where)
         j["progress"] = {{"run", screen_.where->run},
                          {"runs", screen_.where->runs},
@@ -89,6 +91,13 @@ std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int6
     return {{*theirs_, state(now_ns)}};
 }
 
+page_dialogue::heard page_dialogue::take(std::size_t choice)
+{
+    open_ = false;
+    return {.answer = choice < screen_.keys.size() ? screen_.keys[choice] : '\0',
+            .number = static_cast<unsigned>(choice) + (screen_.visual ? 0U : 1U)};
+}
+
 page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, std::int64_t now_ns)
 {
     const ordered received = ordered::parse(text, nullptr, false);
@@ -108,25 +117,21 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
         return {.understood = false};
     if (theirs_ != from)
         return h; // the page knows that another one took its place
-    if (!open_ || whole_number(received, "ask") != asked_ || choice > screen_.keys.size()) {
+    if (!open_ || whole_number(received, "ask") != asked_ || choice > screen_.choices.size()) {
         h.replies.push_back({from, state(now_ns)});
         return h;
     }
-    open_ = false;
-    h.answer = screen_.keys[choice - 1];
-    return h;
+    return take(choice - 1);
 }
 
 page_dialogue::heard page_dialogue::press(char key, std::int64_t now_ns)
 {
-    heard h;
     std::size_t choice = screen_.keys.find(key);
     if (choice == std::string::npos && key >= '1' && key <= '9')
         choice = static_cast<std::size_t>(key - '1');
     if (!theirs_ || !open_ || choice >= screen_.keys.size())
-        return h;
-    open_ = false;
-    h.answer = screen_.keys[choice];
+        return {};
+    heard h = take(choice);
     h.replies.push_back({*theirs_, state(now_ns)});
     return h;
 }
@@ -196,7 +201,7 @@ void participant_page::take(const page_dialogue::heard& h, std::int64_t now_ns)
     send(h.replies);
     if (!h.answer)
         return;
-    answer_ = {*h.answer, now_ns};
+    answer_ = {*h.answer, h.number, now_ns};
     answered_.signal();
 }
 

@@ -40,7 +40,8 @@ struct page_screen {
     std::string text = {};
     std::string question = {};
     std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
-    std::string keys = {};                 ///< a key for each choice
+    std::string keys = {};                 ///< a key for each choice, or none
+    bool visual = false; ///< the choices are places on a line, from 0 on, and have no numbers
     std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
     unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
     unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
@@ -69,7 +70,8 @@ public:
     struct heard {
         bool understood = true; ///< else the visitor is to be sent away
         std::vector<message> replies = {};
-        std::optional<char> answer = {}; ///< the key of what was asked; each question has one at most
+        std::optional<char> answer = {}; ///< its key, or 0; each question has one at most
+        unsigned number = 0;             ///< of the answer: its place from 1, or from 0 if visual
     };
     /// Takes a message. A page that says {"hello":true} is the participant's from then on;
     /// {"ask":N,"answer":CHOICE} answers.
@@ -84,6 +86,8 @@ public:
 
 private:
     std::string state(std::int64_t now_ns) const;
+    /// Closes the question with a choice, from 0.
+    heard take(std::size_t choice);
 
     nlohmann::ordered_json facts_;
     page_screen screen_ = {};
@@ -94,7 +98,8 @@ private:
 };
 
 struct page_answer {
-    char key = 0;           ///< of the choice
+    char key = 0; ///< of the choice; 0: it has none
+    unsigned number = 0;
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC at its arrival
 };
 

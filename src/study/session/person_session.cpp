@@ -70,7 +70,7 @@ std::string choices_text(const experiment_definition& d, const run_definition& r
     std::string text;
     for (std::size_t i = 0; i < labels.size(); i += each ? 1 : labels.size() - 1) {
         text += i == 0 ? "" : each ? ", " : fmt::format(" {} ", between);
-        text += fmt::format("{}", i + 1);
+        text += fmt::format("{}", i + r.outline.lowest_rating());
         if (!labels[i].empty())
             text += fmt::format(fmt::runtime(named ? " {}" : " ({})"), labels[i]);
     }
@@ -131,7 +131,9 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
 {
     const run_definition& r = p.run_at(s.run);
     page_screen shown{.name = "question", .question = r.question, .choices = label_choices(r)};
-    shown.keys = std::string("123456789").substr(0, shown.choices.size());
+    if (shown.choices.size() <= most_keys)
+        shown.keys = std::string("123456789").substr(0, shown.choices.size());
+    shown.visual = r.outline.visual;
     if (r.outline.task == task_kind::identify)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(
@@ -145,7 +147,7 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
 unsigned choices_in(const run_definition& r)
 {
     return r.outline.task == task_kind::choose ? 2
-           : r.outline.task == task_kind::rate ? r.outline.scale
+           : r.outline.task == task_kind::rate ? r.outline.scale - r.outline.lowest_rating() + 1
                                                : static_cast<unsigned>(r.motions.size());
 }
 
@@ -470,11 +472,11 @@ void person_session::trial(const session_step& s)
     std::string flaw = g.flaw;
     if (flaw.empty()) {
         const timed_answer a = ask(s, g);
-        if (a.choice == 0) {
+        if (!a.number) {
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
-            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a.choice - 1]) : a.choice,
+            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[*a.number - 1]) : *a.number,
                          a.time_s);
         }
     }
@@ -495,18 +497,23 @@ person_session::timed_answer person_session::ask(const session_step& s, const gi
     on_page(question_screen(p_, s));
     const std::string choices = choices_text(p_.definition, r);
     session::show(fmt::format("{} {}: ", r.question, choices));
+    const unsigned lowest = r.outline.lowest_rating();
+    const bool is_typed = choices_in(r) > most_keys;
+    typed_number typed;
     for (;;) {
-        const session_key k = keys_.wait();
+        const session_key k = is_typed ? keys_.wait_for_number(typed) : keys_.wait();
+        const bool is_shown = is_typed && k.is_key;
         const double time_s = std::max(0.0, static_cast<double>(k.at_ns - g.ended_ns) * 1e-9);
         if (k.command == operator_key::repeat)
             return {};
         if (k.command)
             obey(*k.command);
-        else if (k.answer >= 1 && k.answer <= choices_in(r)) {
-            session::show(fmt::format("{}\n", k.answer));
-            return {k.answer, time_s};
-        } else if (!keys_.come_early())
-            session::show(fmt::format("{}: {} ", p_.definition.page["no_answer"], choices));
+        else if (k.answer && *k.answer >= lowest && *k.answer < lowest + choices_in(r)) {
+            session::show(is_shown ? "\n" : fmt::format("{}\n", *k.answer));
+            return {*k.answer, time_s};
+        } else if (is_typed || !keys_.come_early())
+            session::show(
+                fmt::format("{}{}: {} ", is_shown ? "\n" : "", p_.definition.page["no_answer"], choices));
     }
 }
 

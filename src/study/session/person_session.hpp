@@ -63,7 +63,7 @@ private:
     bool end();
 
     struct timed_answer {
-        unsigned choice = 0; ///< 0: the experimenter repeats the trial
+        std::optional<unsigned> number = {}; ///< none: the experimenter repeats the trial
         double time_s = 0.0;
     };
     /// Returns a watcher that asks for a moment's patience when it is first called.

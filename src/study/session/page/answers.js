@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Answers are buttons with numbers, which are keys, too. Their kinds only look different.
+// Answers are buttons with numbers, which are keys, too, or many of them a line with a mark.
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {draw_picture} from "./motion.js";
+
+const MOST_BUTTONS = 11; // of a scale
 
 function has_words_at_ends(choices) {
   return choices.length > 2 && choices[0] && choices.slice(1, -1).every(c => !c);
@@ -11,6 +13,7 @@ function find_kind({screen, choices, pictures}) {
   if (choices.length === 1) return "begin";
   if (screen === "consent" || screen === "walk") return "plain";
   if (choices.length === 2) return "pair";
+  if (choices.length > MOST_BUTTONS) return "line";
   return has_words_at_ends(choices) || choices.every(c => !c) ? "scale" : "list";
 }
 function make_button(s, label, i, tactors) {
@@ -22,17 +25,40 @@ function make_button(s, label, i, tactors) {
   return b;
 }
 
+// Makes a line whose mark shows once it is set, and a button that answers. Only the steps of a scale have numbers.
+function make_line({choices, visual}, word, answer) {
+  const describe = i => [...visual ? [] : [i + 1], choices[i]].join(" ").trim();
+  const number = make("output"), confirm = make("button", {type: "button", onclick: () => answer(mark.valueAsNumber)}, word);
+  const set = () => {
+    by_id("answers").classList.remove("unset");
+    confirm.disabled = mark.disabled;
+    if (!visual) number.textContent = describe(mark.value - 1);
+    mark.setAttribute("aria-valuetext", visual ? mark.value - 1 : number.textContent);
+  };
+  // Safari lets people only drag the mark, which is hidden at first: here each place on the line sets it.
+  const point = e => {
+    const {x, width} = mark.getBoundingClientRect();
+    if (!e.buttons || mark.disabled) return;
+    mark.value = 1 + (choices.length - 1) * (e.clientX - x) / width;
+    set();
+  };
+  const mark = make("input", {type: "range", min: 1, max: choices.length, "aria-labelledby": "question low high", "aria-valuetext": "–",
+    oninput: set, onpointerdown: point, onpointermove: point, onkeydown: e => { if (e.key === "Enter" && !e.repeat) confirm.click(); }});
+  return [mark, make("span", {id: "low"}, describe(0)), make("span", {id: "high"}, describe(choices.length - 1)), number, confirm];
+}
+
 let kept = ""; // what the buttons show
 let focused = -1;
 
 // Shows the buttons of a screen. Those of the same question stay, with the keyboard's focus.
-export function show_answers(s, tactors, answer) {
+export function show_answers(s, tactors, word, answer) {
   const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen]);
+  const kind = choices.length ? find_kind(s) : "", on_line = kind === "line";
   if (now !== kept || !choices.length) {
     kept = now;
     all.closest("main").scrollTop = 0;
-    focused = -1;
-    all.className = choices.length ? find_kind(s) : "";
+    focused = on_line ? 0 : -1; // so that arrows set the mark
+    all.className = on_line ? "line unset" : kind;
     const set = (name, value) => all.style.setProperty(name, value), n = choices.length;
     const on_phone = n < 5 && n !== 3 ? 2 : 3;
     set("--n", n);
@@ -40,27 +66,30 @@ export function show_answers(s, tactors, answer) {
     set("--across-phone", on_phone);
     all.classList.toggle("long", n > 7);
     all.classList.toggle("slim", on_phone > 2);
-    all.replaceChildren(...choices.map((label, i) => {
+    all.replaceChildren(...on_line ? make_line(s, word, answer) : choices.map((label, i) => {
       const b = make_button(s, label, i, tactors);
       b.addEventListener("click", () => answer(i + 1));
       return b;
     }));
   }
   for (const b of all.children) b.classList.remove("chosen");
-  const ends = has_words_at_ends(choices);
+  const ends = kind === "scale" && has_words_at_ends(choices);
   show_only_if(by_id("ends"), ends);
   if (ends) [by_id("ends").firstElementChild.textContent, by_id("ends").lastElementChild.textContent] = [choices[0], choices.at(-1)];
 }
 export function enable_answers(yes) {
   const all = [...by_id("answers").children];
   if (!yes && all.includes(document.activeElement)) focused = all.indexOf(document.activeElement);
-  for (const b of all) b.disabled = !yes;
+  for (const b of all) b.disabled = !yes || b.matches(".unset button");
   if (yes && focused >= 0) {
     all[focused]?.focus();
     focused = -1;
   }
 }
-export function mark_answer(choice) { by_id("answers").children[choice - 1].classList.add("chosen"); }
+export function mark_answer(choice) {
+  const buttons = by_id("answers").querySelectorAll("button");
+  (buttons[choice - 1] ?? buttons[0]).classList.add("chosen"); // a line has one
+}
 
 // Shows the stimuli of a trial at the places of the answers, and lights the one that plays.
 export function show_stimuli(count, playing, names = []) {

@@ -48,7 +48,7 @@ function show(s) {
   for (const mark of by_id("mark").children) show_only_if(mark, !s.stimuli && mark.dataset.on.split(" ").includes(s.screen));
   if (s.progress || !BETWEEN.includes(s.screen)) show_progress(s.progress, s.screen === "rest");
   show_stimuli(s.stimuli ?? 0, s.playing ?? 0, s.names);
-  show_answers(s, tactors, answer);
+  show_answers(s, tactors, words.confirm, answer);
   enable_answers(state.ask > 0);
   show_only_if(by_id("field"), s.path);
   show_only_if(by_id("rest"), s.screen === "rest");
@@ -99,7 +99,7 @@ addEventListener("keydown", e => {
   const presses = e.key === " " || e.key === "Enter";
   if (e.repeat && presses) e.preventDefault(); // a key that is held answers once
   if (e.repeat || e.ctrlKey || e.altKey || e.metaKey) return;
-  if (/^[1-9]$/.test(e.key)) answer(Number(e.key));
+  if (/^[1-9]$/.test(e.key) && state.choices?.length < 10) answer(Number(e.key)); // of more, digits do not tell 1 from 10
   else if (presses && state.choices?.length === 1 && e.target !== by_id("full")) {
     e.preventDefault(); // or the button's own click would follow
     answer(1);
