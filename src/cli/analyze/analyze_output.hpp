@@ -3,16 +3,11 @@
 /// Output of `tactor analyze`, from values.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 
 void print_analysis_text(const study::analysis& a);
-
-/// Returns an object with the schema tactor-analysis/1.
-nlohmann::ordered_json make_analysis_json(const study::analysis& a);
 
 /// Every trial that counts on a line, with tabs between, after lines that begin with # and tell R how to read
 /// and fit it.

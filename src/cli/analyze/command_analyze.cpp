@@ -20,6 +20,7 @@
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/process.hpp"
+#include "study/analysis/analysis_json.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/dataset.hpp"
 #include "study/report/report.hpp"
@@ -189,7 +190,7 @@ int analyze(const analyze_options& o)
         draw(o, a);
     print_warnings(a);
     if (o.format == "json")
-        fmt::print("{}", study::json_text(make_analysis_json(a)));
+        fmt::print("{}", study::json_text(study::make_analysis_json(a)));
     else if (o.format == "tsv")
         print_trials(d);
     else if (o.format == "wide")
@@ -211,7 +212,7 @@ int report(const report_options& o)
     const study::dataset d = study::read_dataset(o.folder, o.who);
     const study::study_facts f = study::read_facts(o.folder, d);
     const study::analysis a = study::analyse(d);
-    const std::string text = study::methods_text(f, d, make_analysis_json(a));
+    const std::string text = study::methods_text(f, d, study::make_analysis_json(a));
     if (o.file.empty())
         fmt::print("{}", text);
     else {

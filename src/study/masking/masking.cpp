@@ -42,11 +42,6 @@ constexpr int masking_priority = 60; // below the array's audio thread
 
 } // namespace
 
-double greatest_noise_dbfs(noise_color c) noexcept
-{
-    return c == noise_color::white ? -5.0 : -15.0;
-}
-
 noise::noise(noise_color c, double level_dbfs, std::string_view seed)
     : color_(c),
       gain_(std::pow(10.0, level_dbfs / 20.0) *

@@ -37,7 +37,10 @@ constexpr std::string_view to_string(noise_color c) noexcept
 
 /// Returns the greatest level, dBFS, without clipping. White noise is uniform; pink noise has peaks, which
 /// are clipped at full scale (15 dB above this level, once in minutes).
-double greatest_noise_dbfs(noise_color c) noexcept;
+constexpr double greatest_noise_dbfs(noise_color c) noexcept
+{
+    return c == noise_color::white ? -5.0 : -15.0;
+}
 
 /// Noise of one colour. Levels are roots of the mean square, in dB below that of a full-scale square.
 class noise {
