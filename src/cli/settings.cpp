@@ -37,7 +37,9 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 constexpr std::array own_words{options::own_word{"command:plan", "tactor plan STROKE --format json"},
                                options::own_word{"array=none", "say no --array"},
                                options::own_word{"force=true", "--force"},
-                               options::own_word{"wider=true", "without a number of channels it"}};
+                               options::own_word{"wider=true", "without a number of channels it"},
+                               options::own_word{"participants", "--participants"},
+                               options::own_word{"exclude", "--exclude"}};
 
 std::string spell_option(const options::option& o, std::string_view value)
 {

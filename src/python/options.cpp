@@ -42,6 +42,8 @@ constexpr std::array own_words{options::own_word{"command:devices", "tactor.devi
                                options::own_word{"array", "Array.preset(\"{}\")"},
                                options::own_word{"force=true", "force=True"},
                                options::own_word{"wider=true", "without channels= it"},
+                               options::own_word{"participants", "participants"},
+                               options::own_word{"exclude", "exclude"},
                                options::own_word{"pitch_x_mm", "pitch_mm"},
                                options::own_word{"pitch_y_mm", "pitch_mm"},
                                options::own_word{"start_s", "start"},

@@ -2,6 +2,7 @@
 #include "study/data/dataset.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -90,8 +91,9 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
     for (std::filesystem::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed))
         all.push_back(i->path());
     if (failed)
-        throw error(error_kind::bad_input, folder.string(), failed.message(),
-                    "it must be readable as a whole");
+        throw error(error_kind::bad_input, source_place{folder.string()}, failed.message(),
+                    "it must be readable as a whole")
+            .with_os_code(failed.value());
     return all;
 }
 
@@ -103,9 +105,15 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
         if (!name.starts_with(prefix))
             continue;
         if (std::find(known.begin(), known.end(), name.substr(prefix.size())) == known.end())
-            throw error(error_kind::bad_input, path.string(), "it is of nobody in participants.tsv",
-                        "add a line, or move it away");
+            throw error(error_kind::bad_input, source_place{path.string()},
+                        "it is of nobody in participants.tsv", "add a line, or move it away");
     }
+}
+
+// Returns an error about an option that selects participants, which each front end spells.
+error selection_error(std::string_view option, std::string_view why, std::string_view hint)
+{
+    return error(error_kind::bad_input, option, why, hint).with_field(option);
 }
 
 // Returns the code that an option names, without sub-.
@@ -114,8 +122,8 @@ std::string find_code(const std::vector<std::string>& known, const std::string& 
 {
     std::string code = wanted.starts_with(prefix) ? wanted.substr(prefix.size()) : wanted;
     if (std::find(known.begin(), known.end(), code) == known.end())
-        throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not in participants.tsv", wanted),
-                    fmt::format("there are {}", fmt::join(known, ", ")));
+        throw selection_error(option, fmt::format("\"{}\" is not in participants.tsv", wanted),
+                              fmt::format("there are {}", fmt::join(known, ", ")));
     return code;
 }
 
@@ -125,10 +133,10 @@ std::vector<std::string> select(const std::vector<std::string>& known, const sel
 {
     std::set<std::string> only;
     for (const std::string& wanted : who.only)
-        only.insert(find_code(known, wanted, "--participants"));
+        only.insert(find_code(known, wanted, "participants"));
     std::map<std::string, std::string> without;
     for (const auto& [wanted, reason] : who.without)
-        if (std::string& why = without[find_code(known, wanted, "--exclude")]; !reason.empty())
+        if (std::string& why = without[find_code(known, wanted, "exclude")]; !reason.empty())
             why = reason;
     std::vector<std::string> selected;
     for (const std::string& code : known)
@@ -139,8 +147,7 @@ std::vector<std::string> select(const std::vector<std::string>& known, const sel
         else
             selected.push_back(code);
     if (selected.empty())
-        throw error(error_kind::bad_input, "--participants", "nobody is left",
-                    "somebody must have taken part");
+        throw selection_error("participants", "nobody is left", "somebody must have taken part");
     return selected;
 }
 
@@ -229,7 +236,8 @@ public:
     dataset finish()
     {
         if (first_.empty())
-            throw error(error_kind::bad_input, (folder_ / "sourcedata").string(), "nobody has a session.json",
+            throw error(error_kind::bad_input, source_place{(folder_ / "sourcedata").string()},
+                        "nobody has a session.json",
                         "tactor experiment writes it, with the experiment in it");
         for (std::vector<run_data>& runs : set_.data)
             runs.resize(set_.experiment.runs.size());
@@ -250,10 +258,10 @@ private:
             throw error(error_kind::bad_input, fmt::format("sub-{} and sub-{}", first_, code), why, hint);
         };
         if (s.simulated != set_.simulated)
-            differs("one is simulated and one is not", "choose with --participants or --exclude");
+            differs("one is simulated and one is not", "choose with {participants} or {exclude}");
         if (s.experiment != set_.experiment)
             differs("their experiments differ in runs, motions or methods",
-                    "choose with --participants or --exclude");
+                    "choose with {participants} or {exclude}");
         if (s.text != text_)
             set_.warnings.push_back(fmt::format(
                 "sub-{} and sub-{}: the texts of their experiments differ, though not in what is analysed",
@@ -270,8 +278,8 @@ private:
             };
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
                 std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), is_its_table))
-                throw error(error_kind::bad_input, path.string(), "it is of no run of the experiment",
-                            "move it away");
+                throw error(error_kind::bad_input, source_place{path.string()},
+                            "it is of no run of the experiment", "move it away");
         }
     }
 
@@ -440,14 +448,14 @@ run_data read_run(const text_table& t, const run_outline& run)
 dataset read_dataset(const fs::path& folder, const selection& who)
 {
     std::error_code failed;
-    if (!fs::is_directory(folder, failed))
-        throw error(error_kind::bad_input, folder.string(),
-                    fs::exists(folder, failed) ? "it is no folder" : "No such file or directory",
-                    "name the folder of a study");
+    if (!fs::is_directory(fs::status(folder, failed)))
+        throw error(error_kind::bad_input, source_place{folder.string()},
+                    failed ? failed.message() : "it is no folder", "name the folder of a study")
+            .with_os_code(failed ? failed.value() : ENOTDIR);
     const std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
     if (known.empty())
-        throw error(error_kind::bad_input, (folder / "participants.tsv").string(), "nobody is in it",
-                    "tactor experiment adds a line for each participant");
+        throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
+                    "nobody is in it", "tactor experiment adds a line for each participant");
     refuse_strangers(folder, known);
     reader r(folder);
     std::vector<left_out> excluded;

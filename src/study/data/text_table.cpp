@@ -111,11 +111,11 @@ std::string read_file(const std::filesystem::path& file)
     std::error_code failed;
     const std::filesystem::file_status s = std::filesystem::status(file, failed);
     if (!std::filesystem::exists(s))
-        throw error(error_kind::bad_input, file.string(),
-                    failed ? failed.message() : "No such file or directory",
-                    "the folder of a study is what tactor experiment wrote");
+        throw error(error_kind::bad_input, source_place{file.string()}, failed.message(),
+                    "the folder of a study is what tactor experiment wrote")
+            .with_os_code(failed.value());
     if (!std::filesystem::is_regular_file(s))
-        throw error(error_kind::bad_input, file.string(), "it is no file",
+        throw error(error_kind::bad_input, source_place{file.string()}, "it is no file",
                     "the folder of a study has files only");
     return std::string(
         std::string_view(detail::read_text_file(file, most_bytes, detail::owner_kind::program)));
@@ -125,12 +125,13 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
 {
     namespace fs = std::filesystem;
     fs::path at = study;
-    const auto refuse = [&at](std::string_view why) {
-        throw error(error_kind::bad_input, at.string(), why,
-                    "mend it, or leave its participant out with --exclude");
+    std::error_code failed;
+    const auto refuse = [&](std::string_view why) {
+        throw error(error_kind::bad_input, source_place{at.string()}, why,
+                    "mend it, or leave its participant out with {exclude}")
+            .with_os_code(failed.value());
     };
     for (const fs::path& part : below) {
-        std::error_code failed;
         if (at != study && !fs::is_directory(at, failed))
             refuse(failed ? failed.message() : "it is no folder");
         at /= part;
@@ -163,7 +164,8 @@ text_table::text_table(const std::filesystem::path& file, std::string text, last
     detail::refuse_no_text(text_, file_, "save it as text with tabs between the columns");
     std::vector<table_line> lines = split_table(text_, text_.size() - detail::without_mark(text_).size());
     if (lines.empty())
-        throw error(error_kind::bad_input, file_, "it is empty", "the first line names the columns");
+        throw error(error_kind::bad_input, source_place{file_}, "it is empty",
+                    "the first line names the columns");
     take_header(std::move(lines.front()));
     for (std::size_t i = 1; i < lines.size(); ++i)
         take_row(std::move(lines[i]), end == last_line::may_be_cut);
