@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Files of a study's folder, and tables.
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -285,6 +290,50 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
     CHECK_FALSE(t.is_open());
     CHECK(t.rows() == 1);
     CHECK(caught_message([&] { t.refuse_cut("mend it"); }) == "t.tsv:3: the last line is cut off (mend it)");
+}
+
+TEST_CASE("a study's lines are read with the types of their columns, void ones too")
+{
+    const folder f;
+    f.write("participants.tsv", "participant_id\nsub-01\nsub-02\n");
+    f.write("sourcedata/sub-01/session.json",
+            R"({"simulated": true, "experiment": {"text": "[experiment]\nname = \"x\"\n[[motion]]\nname = )"
+            R"(\"up\"\n[[method]]\nname = \"a\"\n[[run]]\nname = \"how-far\"\ntask = \"rate\"\n"}})");
+    const auto write = [&](const std::string& first_time) {
+        f.write("sub-01/beh/sub-01_task-howfar_beh.tsv",
+                "trial\tattempt\tmotion\tmethod_1\tresponse\trating\tresponse_time\tvoid\tframe_1\tnote\n"
+                "1\t1\tup\ta\tn/a\tn/a\t" +
+                    first_time +
+                    "\ttrue\t9000000000\tcoughed\n"
+                    "1\t2\tup\ta\t4\t4\t0.5\tfalse\tn/a\tn/a\n");
+        return read_study(f.path(), {});
+    };
+    const std::vector<trial_cells> all = write("n/a");
+    REQUIRE(all.size() == 2);
+    const auto cell = [&](std::size_t line, std::string_view name) {
+        const auto at = std::ranges::find(all[line], name, &trial_cells::value_type::first);
+        REQUIRE(at != all[line].end());
+        return at->second;
+    };
+    CHECK(all[0].size() == 4 + trial_columns.size() + 1);
+    CHECK(cell(0, "participant") == cell_value(std::string("01")));
+    CHECK(cell(0, "run") == cell_value(std::string("how-far")));
+    CHECK(cell(0, "task") == cell_value(std::string("rate")));
+    CHECK(cell(0, "simulated") == cell_value(true));
+    CHECK(cell(0, "void") == cell_value(true));
+    CHECK(cell(0, "response_time") == cell_value());
+    CHECK(cell(0, "frame_1") == cell_value(std::uint64_t{9000000000}));
+    CHECK(cell(0, "note") == cell_value(std::string("coughed")));
+    CHECK(cell(1, "attempt") == cell_value(std::uint64_t{2}));
+    CHECK(cell(1, "rating") == cell_value(std::uint64_t{4}));
+    CHECK(cell(1, "response") == cell_value(std::string("4")));
+    CHECK(cell(1, "response_time") == cell_value(0.5));
+    CHECK(cell(1, "void") == cell_value(false));
+    CHECK(cell(1, "xruns") == cell_value()); // not a column of the table
+    CHECK(cell(1, "note") == cell_value());
+    has(caught_message([&] { write("0,5"); }), "_beh.tsv:2: response_time is \"0,5\"");
+    CHECK(os_code([&] { read_study(f / "none", {}); }) == ENOENT);
+    CHECK(os_code([&] { read_study(f / "participants.tsv", {}); }) == ENOTDIR);
 }
 
 TEST_CASE("anything other than a file is refused at once")

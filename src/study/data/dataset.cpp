@@ -70,6 +70,43 @@ struct cell_reader {
     }
 };
 
+template <class T>
+cell_value to_value(const T& v)
+{
+    return v;
+}
+
+template <class T>
+cell_value to_value(const std::optional<T>& v)
+{
+    return *v;
+}
+
+cell_value read_value(const text_table& t, std::size_t row, const trial_column& c)
+{
+    if (!t.has(c.name) || !t.cell(row, c.name))
+        return {};
+    trial_row r;
+    return std::visit(
+        [&](auto member) {
+            cell_reader{t, row, c}.into(r.*member);
+            return to_value(r.*member);
+        },
+        c.member);
+}
+
+// Adds all cells of a line; of columns that are not in trial_columns, the texts.
+void add_cells(trial_cells& into, const text_table& t, std::size_t row)
+{
+    for (const trial_column& c : trial_columns)
+        into.emplace_back(c.name, read_value(t, row, c));
+    for (const std::string& name : t.columns())
+        if (std::ranges::find(trial_columns, name, &trial_column::name) == trial_columns.end()) {
+            const auto text = t.cell(row, name);
+            into.emplace_back(name, text ? cell_value(std::string(*text)) : cell_value());
+        }
+}
+
 namespace fs = std::filesystem;
 
 constexpr std::string_view prefix = "sub-";
@@ -464,6 +501,27 @@ dataset read_dataset(const fs::path& folder, const selection& who)
     dataset d = r.finish();
     d.excluded = std::move(excluded);
     return d;
+}
+
+std::vector<trial_cells> read_study(const fs::path& folder, const selection& who)
+{
+    const dataset d = read_dataset(folder, who);
+    std::vector<trial_cells> all;
+    for (const std::string& code : d.participants)
+        for (const run_outline& run : d.experiment.runs) {
+            const fs::path file = table_path(code, run);
+            if (!is_there(folder, file))
+                continue;
+            const text_table t(folder / file);
+            for (std::size_t row = 0; row < t.rows(); ++row) {
+                all.push_back({{"participant", code},
+                               {"run", run.name},
+                               {"task", std::string(to_string(run.task))},
+                               {"simulated", d.simulated}});
+                add_cells(all.back(), t, row);
+            }
+        }
+    return all;
 }
 
 } // namespace tactor::study

@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -215,5 +216,16 @@ run_data read_run(const text_table& t, const run_outline& run);
 ///         differ, real and simulated sessions together, names that the experiment does not know, answers out
 ///         of range, a trial that counts twice.
 dataset read_dataset(const std::filesystem::path& folder, const selection& who);
+
+/// A cell as the type of its column; no value for n/a.
+using cell_value = std::variant<std::monostate, bool, std::uint64_t, double, std::string>;
+
+/// Cells of a trial by name: participant, run, task and simulated, then all trial_columns, then the others of
+/// its table as texts. Columns that the table does not have are n/a.
+using trial_cells = std::vector<std::pair<std::string, cell_value>>;
+
+/// Reads every line of every table, void trials included, in the order of participants, runs and lines.
+/// \throws error (bad_input) with file and line, as read_dataset(), and for a cell that is not of its type.
+std::vector<trial_cells> read_study(const std::filesystem::path& folder, const selection& who);
 
 } // namespace tactor::study
