@@ -29,7 +29,7 @@ MAY_INCLUDE = {
     "study": {"files/json", "files/plan", "options", "session", "net"},
     "server": {"files/json", "files/plan", "net", "options", "plot", "session"},
     "cli": {"files/json", "files/plan", "options", "session", "plot", "study", "net", "server"},
-    "python": {"files/plan", "options", "session", "plot"},
+    "python": {"files/plan", "options", "session", "plot", "study"},
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
 PUBLIC = {

@@ -254,6 +254,7 @@ void check_same_array(const plan_handle& p, const array& in_use);
 void bind_values(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_tool(py::module_& m);
+void bind_study(py::module_& m);
 void bind_player(py::module_& m);
 
 } // namespace tactor::python

@@ -68,5 +68,6 @@ PYBIND11_MODULE(_tactor, m)
     bind_values(m);
     bind_plan(m);
     bind_tool(m);
+    bind_study(m);
     bind_player(m);
 }

@@ -101,7 +101,7 @@ def test_facts_of_the_build_have_the_library_s_versions():
 
 
 @pytest.mark.unsanitized
-def test_the_package_has_neither_study_nor_service():
+def test_the_package_has_no_service():
     said = subprocess.run([sys.executable, "-c", "import tactor; print(open(tactor._tactor.__file__, 'rb').read().count(b'tactor6server'))"],
                           capture_output=True, text=True, check=True)
     assert said.stdout == "0\n"

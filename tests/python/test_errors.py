@@ -113,6 +113,7 @@ def missing(tmp_path, palm, plan):
     there = tmp_path / "none"
     return [lambda: tactor.load(there / "s.toml"), lambda: tactor.Array.from_file(there), lambda: tactor.load_plan(there / "p.json"),
             lambda: tactor.Player("null", palm, config=there), lambda: tactor.devices(config=there), lambda: tactor.plan(palm, plan.stroke, waveform=f"{there}.wav"),
+            lambda: tactor.study.read(there), lambda: tactor.study.analyze(there),
             lambda: tactor.Score(palm, plan).write(there / "x.wav"), lambda: tactor.plot(plan, there / "x.svg"), lambda: palm.write(there / "a.toml"),
             lambda: plan.write(there / "p.json"), lambda: plan.stroke.write(there / "s.toml"), lambda: tactor.compare(palm, plan.stroke).plot(there / "x.svg")]
 

@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import runpy
 import signal
 import subprocess
 import sys
@@ -173,6 +174,26 @@ def test_a_notebook_goes_from_stroke_to_figure(root, tool, tmp_path, monkeypatch
     tool("render", "--path", "M 0 10 C 20 -5 20 45 40 30", "--duration", "1.2", "--phantom", "barycentric", "-o", "tool.wav")
     assert (tmp_path / "curve.wav").read_bytes() == (tmp_path / "tool.wav").read_bytes()
     assert (tmp_path / "curve.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_a_study_becomes_a_figure(root, tool, tmp_path, monkeypatch, capsys):
+    pytest.importorskip("pandas", reason="pandas is not here: no figure of a study is drawn")
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    pytest.importorskip("matplotlib", reason="Matplotlib is not here: no figure of a study is drawn")
+    monkeypatch.chdir(tmp_path)
+    for participant in ("01", "02", "03"):
+        tool("experiment", "park2016", "--participant", participant, "-o", "strokes", "--simulate", f"seed={participant},sigma=1")
+    guide = (root / "man/guide/python.md").read_text(encoding="utf-8")
+    exec(textwrap.dedent(re.search(r"## Read a study\n\n((?:    .*\n|\n)+)", guide)[1]), {})
+    assert (tmp_path / "ratings.pdf").read_bytes().startswith(b"%PDF")
+    monkeypatch.setattr(sys, "argv", ["study_figure.py", "strokes", "uniformity-rating", "means.png"])
+    capsys.readouterr()
+    names = runpy.run_path(str(root / "examples/python/study_figure.py"))
+    assert (tmp_path / "means.png").read_bytes().startswith(b"\x89PNG")
+    means = tactor.study.analyze("strokes")["runs"]["uniformity-rating"]["means"]
+    for method, cells in names["people"].mean().items():
+        assert dict(cells) == pytest.approx({motion: cell["mean"] for motion, cell in means[method]["motion"].items()})
+    assert re.fullmatch(r"difference -?[\d.]+, t\(2\) = -?[\d.]+, p = [\d.e-]+\n", capsys.readouterr().out)
 
 
 def test_the_readme_runs(root, tmp_path):

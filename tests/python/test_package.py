@@ -38,9 +38,10 @@ def test_the_version_is_that_of_the_library(tool):
     assert "alsa-lib" in tactor.build_facts()
 
 
-def test_the_markers_need_no_import():
-    code = "import sys, tactor; assert 'tactor.lsl' not in sys.modules; print(tactor.lsl.Markers.__name__)"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "Markers\n"
+@pytest.mark.parametrize("module,name", [("lsl", "Markers"), ("study", "analyze")])
+def test_modules_need_no_import(module, name):
+    code = f"import sys, tactor; assert 'tactor.{module}' not in sys.modules; print(tactor.{module}.{name}.__name__)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == f"{name}\n"
 
 
 def test_modules_import_each_other_in_one_direction():

@@ -18,7 +18,7 @@ from tactor._score import Score
 from tactor._stroke import Fitting, Path, Stroke, apply_fits, fit_strokes, load, parse, stroke_presets, stroke_shapes
 
 if _t.TYPE_CHECKING:
-    from tactor import lsl as lsl
+    from tactor import lsl as lsl, study as study
     from tactor._client import Client, RemoteLive, RemoteStroke, Reply
     from tactor._player import Player
     from tactor._ticket import Delay, LiveStroke, Report, Ticket
@@ -49,8 +49,8 @@ _LATER = {
 
 def __getattr__(name: str) -> _t.Any:
     import importlib
-    if name == "lsl":
-        return importlib.import_module("tactor.lsl")
+    if name in ("lsl", "study"):
+        return importlib.import_module(f"tactor.{name}")
     if name not in _LATER:
         raise AttributeError(f"module 'tactor' has no attribute {name!r}")
     value = getattr(importlib.import_module("tactor." + _LATER[name]), name)

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Studies, by the code of the tool.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/binding.hpp"
+#include "study/analysis/analysis_json.hpp"
+#include "study/data/dataset.hpp"
+
+namespace tactor::python {
+namespace {
+
+using codes = std::vector<std::string>;
+
+study::selection select_participants(const codes& only, const codes& without)
+{
+    study::selection who{only};
+    for (const std::string& code : without)
+        who.without.try_emplace(code);
+    return who;
+}
+
+std::vector<study::trial_cells> read_trials(const std::string& folder, const study::selection& who)
+{
+    const without_lock free;
+    return study::read_study(folder, who);
+}
+
+py::list read_study(const std::string& folder, const codes& only, const codes& without)
+{
+    py::list trials;
+    for (const study::trial_cells& cells : read_trials(folder, select_participants(only, without))) {
+        py::dict trial;
+        for (const auto& [name, value] : cells)
+            trial[py::str(name)] = value;
+        trials.append(std::move(trial));
+    }
+    return trials;
+}
+
+std::string analyze_study(const std::string& folder, const codes& only, const codes& without)
+{
+    const without_lock free;
+    const study::dataset d = study::read_dataset(folder, select_participants(only, without));
+    return study::make_analysis_json(study::analyse(d)).dump();
+}
+
+} // namespace
+
+void bind_study(py::module_& m)
+{
+    m.def("read_study", &read_study);
+    m.def("analyze_study", &analyze_study);
+}
+
+} // namespace tactor::python
