@@ -66,6 +66,7 @@ struct calibrated_tactor {
     unsigned tactor = 0;
     std::optional<double> threshold_dbfs = {}; ///< none: not felt
     std::optional<double> sd_db = {};
+    std::optional<double> posterior_sd_db = {}; ///< QUEST+, in place of sd_db
     unsigned trials = 0;
 
     friend bool operator==(const calibrated_tactor&, const calibrated_tactor&) = default;
@@ -76,7 +77,7 @@ struct calibration_origin {
     std::string participant = {};
     double carrier_hz = 0.0;
     bool simulated = false;
-    std::string method = {};                ///< "staircase" or "adjustment"
+    std::string method = {};                ///< "staircase", "adjustment" or "quest"
     std::optional<std::string> rule = {};   ///< "1up3down" or "1up2down", of a staircase
     double interval_s = 0.0;                ///< duration of each interval
     std::optional<bool> feedback = {};      ///< the participant was told whether each answer was right

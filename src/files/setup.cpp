@@ -425,7 +425,7 @@ void read_serve(const toml_table& t, located_setup& out)
 
 calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const toml_table*>& entries)
 {
-    t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right",
+    t.only({"tactor", "threshold_dbfs", "sd_db", "posterior_sd_db", "trials", "reversals_dbfs", "check_right",
             "check_below_right", "staircases"});
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
     note_entry(t, i, entries, "it is measured once in a calibration");
@@ -435,7 +435,7 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
         for (const toml::node& n : *all)
             t.to_number(n, "reversals_dbfs", limit_db);
     return {i, t.number("threshold_dbfs", limit_db), t.number("sd_db", spread_db),
-            t.need(t.whole("trials", 0, any_number), "trials")};
+            t.number("posterior_sd_db", spread_db), t.need(t.whole("trials", 0, any_number), "trials")};
 }
 
 // Reads and checks [calibration] and [[calibration.tactor]], which say how thresholds were measured, after
@@ -449,7 +449,7 @@ void read_calibration(const toml_table& t, located_setup& out)
             "simulated", "tactor"});
     calibration_origin r;
     r.participant = t.need(t.text("participant"), "participant");
-    r.method = t.need(t.choice("method", {"staircase", "adjustment"}), "method");
+    r.method = t.need(t.choice("method", {"staircase", "adjustment", "quest"}), "method");
     r.rule = t.choice("rule", {"1up3down", "1up2down"});
     r.carrier_hz = t.need(t.number("carrier_hz", bounds_of::carrier_hz), "carrier_hz");
     r.interval_s = t.need(t.number("interval_s", bounds_of::interval_s), "interval_s");

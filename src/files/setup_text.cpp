@@ -333,6 +333,7 @@ std::string origin_text(const calibration_origin& o)
         out.add("tactor", t.tactor);
         out.add("threshold_dbfs", t.threshold_dbfs);
         out.add("sd_db", t.sd_db);
+        out.add("posterior_sd_db", t.posterior_sd_db);
         out.add("trials", t.trials);
     }
     return out.take();

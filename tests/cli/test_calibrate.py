@@ -107,6 +107,27 @@ class Simulated(CalibrateTest):
         for r in rows:
             self.assertEqual(r["correct"] == "true", r["interval"] == r["response"])
 
+    def test_quest_asks_thirty_times_and_gives_a_posterior_deviation(self):
+        args = ("--method", "quest", "--tactors", "3,1,4", "--practice", 1)
+        said = self.simulated("me.toml", *args)
+        self.assertRegex(said.stdout, r"tactor   3  +-4\d\.\d\d dBFS, posterior sd \d\.\d\d dB, 30 trials\n")
+        rows, told = self.rows(), self.toml()["calibration"]
+        self.assertEqual((len(rows), told["method"], told["feedback"], "rule" in told), (91, "quest", True, False))
+        self.assertEqual({r["reversal"] for r in rows}, {"false"})
+        for t in told["tactor"]:
+            self.assertEqual(set(t), {"tactor", "threshold_dbfs", "posterior_sd_db", "trials", "reversals_dbfs"})
+            self.assertEqual((t["trials"], t["reversals_dbfs"]), (30, []))
+            self.assertLess(abs(t["threshold_dbfs"] + 45), 8)
+        # A session that goes on asks what the whole one asked.
+        whole = (self.dir / "me.tsv").read_bytes()
+        (self.dir / "me.toml").unlink()
+        (self.dir / "me.tsv").write_bytes(b"".join(whole.splitlines(keepends=True)[:50]))
+        self.simulated("me.toml", *args, "--resume")
+        self.assertEqual((self.dir / "me.tsv").read_bytes(), whole)
+        self.refused(2, "calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, *args, "--trials", 31, "--resume", says=("trials",))
+        less = self.simulated("less.toml", *args, "--stop-sd", 4)
+        self.assertTrue(all(t["trials"] < 30 and t["posterior_sd_db"] <= 4 for t in self.toml("less.toml")["calibration"]["tactor"]), less.stdout)
+
     def test_a_disk_that_fills_loses_no_trial(self):
         self.simulated("whole.toml", *SHORT, "--tactors", 0)
         args = ("calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, *SHORT, "--tactors", 0)
@@ -258,7 +279,7 @@ class Page(CalibrateTest):
     """The participant's page; test_experiment_page.py has the tests for every page."""
 
     def start(self, *more):
-        s = Session(self, (*self.ARGS, "--display", "page", *more))
+        s = Session(self, replaced(self.ARGS, "--display", "page", *more))
         self.page = s.participant()
         return s
 
@@ -287,6 +308,19 @@ class Page(CalibrateTest):
         self.assertEqual(s.end(), 130)
         self.assertEqual(self.responses(), ["1"] * 2)
         self.assertIn("trial 1: interval 1 interval 2 which? 1", s.shown)
+
+    def test_the_page_tells_the_progress_and_has_a_break_before_the_next_tactor(self):
+        s = self.start("--method", "quest", "--trials", 5, "--tactors", "1,4")
+        self.page.answer("introduce", 1)
+        for trial in range(1, 6):
+            asked = self.page.answer("question", 1)
+            self.assertEqual(asked["progress"], {"run": 1, "runs": 2, "practice": False, "trial": trial, "trials": 5})
+        pause = self.page.answer("introduce", 1)
+        self.assertEqual((pause["text"], pause["choices"], pause["progress"]["run"]), ("A break", ["Begin"], 2))
+        self.page.until("question")
+        s.process.send_signal(signal.SIGINT)
+        self.assertEqual(s.end(), 130)
+        self.assertEqual(len(self.rows()), 5)
 
     def test_a_level_is_set_on_the_page(self):
         s = self.start("--method", "adjustment")
@@ -320,7 +354,8 @@ class Refused(CalibrateTest):
                      "--array limited.toml --start-dbfs -20", "--array quiet.toml --start-dbfs -20", "--array short.toml",
                      "--method adjustment --interval 1", "--carrier 24000", "--carrier nan", "--start-dbfs 3", "--steps 4,,1", "--steps -1",
                      "--reversals 25", "--reversals 5 --discard 4", "--practice 1.5", "--interval 0", "--feedback yes", "--rule 2up1down",
-                     "--method limits", "--method adjustment --rule 1up2down", "--masker-dbfs -20", "--masker null --masker-dbfs -3",
+                     "--method limits", "--method adjustment --rule 1up2down", "--method quest --rule 1up2down", "--trials 40", "--stop-sd 1",
+                     "--method adjustment --trials 40", "--method quest --trials 4", "--masker-dbfs -20", "--masker null --masker-dbfs -3",
                      "--masker null --masker-noise pink --masker-dbfs -12", "--masker null --masker-noise brown",
                      "--log x.txt", "--log nowhere/x.tsv", "--log folder.tsv", "--log link.tsv", f"--log {'x' * 300}.tsv", "--seed -1",
                      "--simulate seed=x,threshold=-45", "--simulate level=3", "--keypad /dev/input/event0", "--display page"):

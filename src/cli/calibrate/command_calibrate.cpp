@@ -50,13 +50,15 @@ struct calibrate_options {
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
-    std::string of_staircase; ///< an option from the command line that an adjustment does not have
-    bool has_start = false;   ///< the command line gives the start level, which no ceiling may lower
+    std::vector<std::string> of_method; ///< options from the command line that not every method has
+    bool has_start = false; ///< the command line gives the start level, which no ceiling may lower
     bool resume = false;
 };
 
 constexpr double most_seed = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t most_steps = 20;
+constexpr double least_quest_trials = 5;
+constexpr double most_quest_trials = 200; // the next trial is computed in a fraction of a millisecond
 
 std::uint32_t whole(const char* option, const std::string& text, double low, double high)
 {
@@ -93,6 +95,14 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
              });
     add_text(c, "--practice", "N", "first trials that do not count (default 0)",
              [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
+    begin_group(c, "QUEST+");
+    add_text(c, "--trials", "N", "number of trials of a tactor (default 30)", [&o](const std::string& t) {
+        o.settings.trials = whole("--trials", t, least_quest_trials, most_quest_trials);
+    });
+    add_text(c, "--stop-sd", "DB", "end a tactor once the posterior deviation of its threshold is smaller",
+             [&o](const std::string& t) {
+                 o.settings.stop_sd_db = options::parse_number("--stop-sd", t, {0.1, 20.0}, "dB");
+             });
     begin_group(c);
 }
 
@@ -181,13 +191,14 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     c.add_option("-o,--output", o.output, "array file to write, with the thresholds")
         ->type_name("FILE.toml")
         ->required();
-    add_text(c, "--method", "staircase|adjustment",
-             "ask about two intervals (default), or let the participant set a level",
-             [&s](const std::string& t) {
-                 s.method = choose("--method", t, {"staircase", "adjustment"}) == 0
-                                ? study::calibration_method::staircase
-                                : study::calibration_method::adjustment;
-             });
+    add_text(
+        c, "--method", "staircase|quest|adjustment",
+        "ask about two intervals, by a staircase (default) or QUEST+, or let the participant set a level",
+        [&s](const std::string& t) {
+            using enum study::calibration_method;
+            constexpr study::calibration_method all[] = {staircase, quest, adjustment};
+            s.method = all[choose("--method", t, {"staircase", "quest", "adjustment"})];
+        });
     add_text(c, "--tactors", "LIST", "tactors to measure, in this order, such as 0,3-5 (default all)",
              [&o](const std::string& t) { o.tactors = t; });
     add_text(c, "--interval", "S", "duration of each interval or pulse (default 0.5)",
@@ -230,12 +241,27 @@ void settle_names(calibrate_options& o)
         refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
 }
 
+// Refuses an option of other methods.
+void check_method(const calibrate_options& o)
+{
+    using enum study::calibration_method;
+    constexpr std::string_view names[] = {"a staircase", "an adjustment", "QUEST+"}; // in the enum's order
+    for (const std::string& name : o.of_method) {
+        const bool of_quest = name == "--trials" || name == "--stop-sd";
+        const bool of_both = name == "--feedback" || name == "--practice";
+        const study::calibration_method own = of_quest ? quest : staircase;
+        if (o.settings.method != own && !(of_both && o.settings.method == quest))
+            refuse_option(
+                name,
+                fmt::format("{} does not have that", names[static_cast<std::size_t>(o.settings.method)]),
+                fmt::format("leave it out, or use --method {}", to_string(own)));
+    }
+}
+
 void check_calibrate_options(const calibrate_options& o, const settings& s)
 {
     const study::calibration_settings& c = o.settings;
-    if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
-        refuse_option(o.of_staircase, "an adjustment does not have that",
-                      "leave it out, or use --method staircase");
+    check_method(o);
     if (c.staircase.reversals < c.staircase.discard + 2)
         refuse_option(
             "--discard",
@@ -347,8 +373,9 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
             why_none(t.end));
         return;
     }
-    say(stdout, "tactor {:>3}  {:>7.2f} dBFS, sd {:.2f} dB, {}{}\n", t.tactor, *t.threshold_dbfs,
-        t.sd_db.value_or(0.0), counted(t.trials, "trial"),
+    say(stdout, "tactor {:>3}  {:>7.2f} dBFS, {}sd {:.2f} dB, {}{}\n", t.tactor, *t.threshold_dbfs,
+        t.posterior_sd_db ? "posterior " : "", t.posterior_sd_db.value_or(t.sd_db.value_or(0.0)),
+        counted(t.trials, "trial"),
         t.staircases == 1 ? "" : ", a second staircase: the first ended too high");
     const double missing = *t.threshold_dbfs + paper_sl_db - ceiling_dbfs;
     if (missing > 0.0)
@@ -504,11 +531,13 @@ int run_calibrate(command_line& line)
     settings& s = add_options(line, options::on_calibrate);
     line.app.footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
                     "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
+                    "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --method quest\n"
                     "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
     line.parse();
-    for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice"})
-        if (o.of_staircase.empty() && line.app.count(name) > 0)
-            o.of_staircase = name;
+    for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice",
+                             "--trials", "--stop-sd"})
+        if (line.app.count(name) > 0)
+            o.of_method.emplace_back(name);
     return calibrate(s, o);
 }
 

@@ -27,6 +27,21 @@ constexpr double halves_may_differ_db = 2.0;
 
 constexpr double series_from_db = 15.0;
 
+// QUEST+: levels and thresholds stand 1 dB apart, thresholds as far above the ceiling as says "not felt".
+constexpr int levels_db = 80;
+constexpr int above_ceiling_db = 10;
+constexpr double guess_chance = 0.5;
+// The first tactor's threshold is expected below the start level, within some 20 dB; each other's near to
+// those that were measured.
+constexpr double below_start_db = 20.0;
+constexpr double first_sd_db = 20.0;
+constexpr double other_sd_db = 10.0;
+
+double to_hundredths(double db)
+{
+    return std::round(db * 100.0) / 100.0;
+}
+
 random_numbers numbers_for(const calibration_settings& s, const std::string& part)
 {
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
@@ -229,7 +244,29 @@ void calibration::begin_tactor()
     o.ceiling_dbfs = settings_.ceilings_dbfs[place_];
     o.start_dbfs = std::min(o.start_dbfs, o.ceiling_dbfs);
     stairs_ = staircase(std::move(o));
+    if (settings_.method == calibration_method::quest)
+        quest_ = make_quest();
+    of_tactor_ = 0;
     series_dbfs_.clear();
+}
+
+quest calibration::make_quest() const
+{
+    std::vector<double> measured;
+    for (const tactor_threshold& t : thresholds_)
+        if (t.threshold_dbfs)
+            measured.push_back(*t.threshold_dbfs);
+    const double expected = measured.empty() ? settings_.start_dbfs() - below_start_db : mean(measured);
+    const double sd = measured.empty() ? first_sd_db : other_sd_db;
+    quest_grid g{.slopes = {1.0, 1.6, 2.5, 4.0, 6.0}, .lapses = {0.0, 0.02, 0.04}};
+    for (int i = -levels_db; i <= above_ceiling_db; ++i) {
+        const double level = settings_.ceilings_dbfs[place_] + i;
+        if (i <= 0)
+            g.stimuli.push_back(level);
+        g.thresholds.push_back(level);
+        g.weights.push_back(std::exp(-0.5 * std::pow((level - expected) / sd, 2.0)));
+    }
+    return {g, [](double level, const psychometric& p) { return normal_chance(level, p, guess_chance); }};
 }
 
 void calibration::make_trial()
@@ -238,6 +275,8 @@ void calibration::make_trial()
     trial_.number = given_ + 1;
     trial_.tactor = settings_.tactors[place_];
     trial_.ceiling_dbfs = settings_.ceilings_dbfs[place_];
+    trial_.place = place_ + 1;
+    trial_.of_tactor = of_tactor_ + 1;
     if (settings_.method == calibration_method::adjustment) {
         const double last = series_dbfs_.empty() ? settings_.start_dbfs() : series_dbfs_.back();
         const double by = series_dbfs_.size() % 2 == 0 ? series_from_db : -series_from_db;
@@ -245,8 +284,9 @@ void calibration::make_trial()
         return;
     }
     trial_.practice = practised_ < settings_.practice;
-    trial_.level_dbfs =
-        trial_.practice ? std::min(settings_.start_dbfs(), trial_.ceiling_dbfs) : stairs_.level_dbfs();
+    trial_.level_dbfs = trial_.practice ? std::min(settings_.start_dbfs(), trial_.ceiling_dbfs)
+                        : quest_        ? quest_->stimulus()
+                                        : stairs_.level_dbfs();
     trial_.interval = 1 + intervals_.below(2);
 }
 
@@ -257,13 +297,13 @@ calibration_record calibration::answer(const calibration_answer& a)
     if (settings_.method == calibration_method::adjustment)
         after_series(a, r);
     else
-        after_staircase(a, r);
+        after_interval(a, r);
     if (!done())
         make_trial();
     return r;
 }
 
-void calibration::after_staircase(const calibration_answer& a, calibration_record& r)
+void calibration::after_interval(const calibration_answer& a, calibration_record& r)
 {
     const bool right = a.interval == trial_.interval;
     r.response = fmt::format("{}", a.interval);
@@ -273,6 +313,9 @@ void calibration::after_staircase(const calibration_answer& a, calibration_recor
             begin_tactor();
         return;
     }
+    ++of_tactor_;
+    if (quest_)
+        return after_quest(right);
     r.reversal = stairs_.answer(right);
     const auto end = stairs_.end();
     if (!end)
@@ -291,12 +334,32 @@ void calibration::after_staircase(const calibration_answer& a, calibration_recor
     finish_tactor(std::move(t));
 }
 
+void calibration::after_quest(bool right)
+{
+    quest_->answer(right);
+    const double sd_db = quest_->threshold_sd();
+    if (of_tactor_ < settings_.trials && !(sd_db < settings_.stop_sd_db.value_or(0.0)))
+        return;
+    const double threshold_dbfs = to_hundredths(quest_->estimate().threshold);
+    tactor_threshold t{.tactor = trial_.tactor, .trials = of_tactor_};
+    if (threshold_dbfs > trial_.ceiling_dbfs)
+        t.end = staircase_end::not_felt;
+    else if (threshold_dbfs < trial_.ceiling_dbfs - levels_db + 1.0)
+        t.end = staircase_end::below_range;
+    else {
+        t.threshold_dbfs = threshold_dbfs;
+        t.posterior_sd_db = to_hundredths(sd_db);
+    }
+    finish_tactor(std::move(t));
+}
+
 void calibration::after_series(const calibration_answer& a, calibration_record& r)
 {
     r.response = a.set_dbfs ? "set" : "none";
     if (a.set_dbfs) {
         r.trial.level_dbfs = *a.set_dbfs;
         series_dbfs_.push_back(*a.set_dbfs);
+        of_tactor_ = series_dbfs_.size();
         if (series_dbfs_.size() < adjustment_series)
             return;
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A calibration of several tactors: the adaptive staircase of each (Levitt 1971), the next trial, the effect
-/// of an answer, the thresholds; and a simulated observer, who tests the chain and says nothing about people.
+/// A calibration of several tactors: the adaptive staircase of each (Levitt 1971) or its QUEST+ (Watson
+/// 2017), the next trial, the effect of an answer, the thresholds; and a simulated observer, who tests the
+/// chain and says nothing about people.
 /// Uses no clock and no device: the same settings and answers give the same trials.
 #pragma once
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "study/random/random.hpp"
+#include "study/statistics/quest.hpp"
 
 namespace tactor::study {
 
@@ -112,10 +114,11 @@ private:
     std::optional<staircase_end> end_ = {};
 };
 
-enum class calibration_method { staircase, adjustment };
+enum class calibration_method { staircase, adjustment, quest };
 constexpr std::string_view to_string(calibration_method m) noexcept
 {
-    return m == calibration_method::staircase ? "staircase" : "adjustment";
+    constexpr std::string_view names[] = {"staircase", "adjustment", "quest"};
+    return names[static_cast<std::size_t>(m)];
 }
 
 /// Pause between the intervals of a trial, and ramps at their ends, s.
@@ -130,6 +133,8 @@ struct calibration_settings {
     std::vector<unsigned> tactors = {};     ///< in the order in which they are measured
     std::vector<double> ceilings_dbfs = {}; ///< of each of these
     staircase_options staircase = {};       ///< its ceiling is not used
+    std::size_t trials = 30;                ///< quest: for each tactor, at most
+    std::optional<double> stop_sd_db = {};  ///< quest: posterior deviation with which a tactor ends earlier
     double carrier_hz = 250.0;
     double interval_s = 0.5;
     bool feedback = true;
@@ -154,6 +159,8 @@ struct calibration_trial {
     double ceiling_dbfs = 0.0; ///< of this tactor
     unsigned interval = 0;     ///< 1 or 2: which one sounds; 0: an adjustment
     bool practice = false;
+    std::size_t place = 0;     ///< of the tactor in the session, from 1
+    std::size_t of_tactor = 0; ///< number among the trials or series of this tactor, from 1
 };
 
 /// An answer: to a staircase's trial `interval`, to an adjustment the level set.
@@ -179,6 +186,7 @@ struct tactor_threshold {
     staircase_end end = staircase_end::felt;
     std::optional<double> threshold_dbfs = {}; ///< nothing where it was not felt
     std::optional<double> sd_db = {};
+    std::optional<double> posterior_sd_db = {}; ///< quest
     std::size_t trials = 0;
     std::vector<double> reversals_dbfs = {};
     std::optional<std::size_t> check_right = {};       ///< of ten trials 6 dB above the threshold
@@ -202,7 +210,9 @@ public:
 private:
     void begin_tactor();
     void make_trial();
-    void after_staircase(const calibration_answer& a, calibration_record& r);
+    quest make_quest() const;
+    void after_interval(const calibration_answer& a, calibration_record& r);
+    void after_quest(bool right);
     void after_series(const calibration_answer& a, calibration_record& r);
     void finish_tactor(tactor_threshold t);
 
@@ -212,6 +222,8 @@ private:
     unsigned practised_ = 0;
     random_numbers intervals_;
     staircase stairs_;
+    std::optional<quest> quest_ = {};
+    std::size_t of_tactor_ = 0; ///< trials or series of this tactor that are answered
     std::vector<double> series_dbfs_ = {};
     calibration_trial trial_ = {};
     std::vector<tactor_threshold> thresholds_ = {};

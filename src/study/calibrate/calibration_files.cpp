@@ -149,13 +149,15 @@ void add(std::string& to, std::string_view key, const std::optional<T>& v)
         to += fmt::format("{} = {}\n", key, *v);
 }
 
-std::string threshold_text(const tactor_threshold& t, bool stairs)
+std::string threshold_text(const tactor_threshold& t, calibration_method m)
 {
+    const bool stairs = m == calibration_method::staircase;
     std::string s = fmt::format("\n[[calibration.tactor]]\ntactor = {}\n", t.tactor);
     add(s, "threshold_dbfs", t.threshold_dbfs);
     add(s, "sd_db", t.sd_db);
+    add(s, "posterior_sd_db", t.posterior_sd_db);
     s += fmt::format("trials = {}\n", t.trials);
-    if (stairs)
+    if (m != calibration_method::adjustment)
         s += fmt::format("reversals_dbfs = [{}]\n", fmt::join(t.reversals_dbfs, ", "));
     add(s, "check_right", t.check_right);
     add(s, "check_below_right", t.check_below_right);
@@ -281,26 +283,31 @@ void calibration_log::append(const calibration_record& r)
 std::string settings_text(const calibration_settings& s)
 {
     const bool stairs = s.method == calibration_method::staircase;
+    const bool asks = s.method != calibration_method::adjustment;
     const auto if_stairs = [&](nlohmann::ordered_json v) { return stairs ? std::move(v) : nullptr; };
-    const nlohmann::ordered_json j{{"participant", s.participant},
-                                   {"method", std::string(to_string(s.method))},
-                                   {"rule", if_stairs(rule_name(s))},
-                                   {"tactors", s.tactors},
-                                   {"max_dbfs", s.ceilings_dbfs},
-                                   {"carrier_hz", s.carrier_hz},
-                                   {"interval_s", s.interval_s},
-                                   {"start_dbfs", s.start_dbfs()},
-                                   {"steps_db", if_stairs(s.staircase.steps_db)},
-                                   {"reversals", if_stairs(s.staircase.reversals)},
-                                   {"discard", if_stairs(s.staircase.discard)},
-                                   {"feedback", if_stairs(s.feedback)},
-                                   {"practice", if_stairs(s.practice)},
-                                   {"masker", s.masker.empty() ? "none" : s.masker},
-                                   {"masker_pcm", s.masker.empty() ? "none" : s.masker_pcm},
-                                   {"seed", s.seed},
-                                   {"simulate", files::or_null(s.simulate)},
-                                   {"array_sha256", s.array},
-                                   {"date", s.date}};
+    nlohmann::ordered_json j{{"participant", s.participant},
+                             {"method", std::string(to_string(s.method))},
+                             {"rule", if_stairs(rule_name(s))},
+                             {"tactors", s.tactors},
+                             {"max_dbfs", s.ceilings_dbfs},
+                             {"carrier_hz", s.carrier_hz},
+                             {"interval_s", s.interval_s},
+                             {"start_dbfs", s.start_dbfs()},
+                             {"steps_db", if_stairs(s.staircase.steps_db)},
+                             {"reversals", if_stairs(s.staircase.reversals)},
+                             {"discard", if_stairs(s.staircase.discard)},
+                             {"feedback", asks ? nlohmann::ordered_json(s.feedback) : nullptr},
+                             {"practice", asks ? nlohmann::ordered_json(s.practice) : nullptr},
+                             {"masker", s.masker.empty() ? "none" : s.masker},
+                             {"masker_pcm", s.masker.empty() ? "none" : s.masker_pcm},
+                             {"seed", s.seed},
+                             {"simulate", files::or_null(s.simulate)},
+                             {"array_sha256", s.array},
+                             {"date", s.date}};
+    if (s.method == calibration_method::quest) { // absent else: sessions of older versions go on
+        j["trials"] = s.trials;
+        j["stop_sd_db"] = files::or_null(s.stop_sd_db);
+    }
     return json_text(j);
 }
 
@@ -323,20 +330,19 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
 
 std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
 {
-    const bool stairs = s.method == calibration_method::staircase;
     std::string t = fmt::format("\n[calibration]\nparticipant = {}\nmethod = \"{}\"\n",
                                 detail::toml_string(s.participant), to_string(s.method));
-    if (stairs)
+    if (s.method == calibration_method::staircase)
         t += fmt::format("rule = \"{}\"\n", rule_name(s));
     t += fmt::format("carrier_hz = {}\ninterval_s = {}\n", s.carrier_hz, s.interval_s);
-    if (stairs)
+    if (s.method != calibration_method::adjustment)
         t += fmt::format("feedback = {}\n", s.feedback);
     t += fmt::format(
         "masker = {}\ndate = {}\nseed = {}\nsimulated = {}\n",
         detail::toml_string(s.masker.empty() ? "none" : fmt::format("{}, {}", s.masker, s.masker_pcm)),
         detail::toml_string(s.date), s.seed, !s.simulate.empty());
     for (const tactor_threshold& one : thresholds)
-        t += threshold_text(one, stairs);
+        t += threshold_text(one, s.method);
     return t;
 }
 

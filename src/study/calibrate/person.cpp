@@ -28,6 +28,17 @@ page_screen adjust_screen(const page_words& w)
             .keys = level_keys};
 }
 
+// Tells the tactor and, where their number is known, the trial of this tactor.
+page_progress find_progress(const calibration_trial& t, const calibration_settings& s)
+{
+    page_progress p{t.place, s.tactors.size(), t.practice, 0, 1};
+    if (t.practice || s.method == calibration_method::staircase)
+        return p;
+    p.trial = static_cast<unsigned>(t.of_tactor);
+    p.trials = s.method == calibration_method::quest ? s.trials : adjustment_series;
+    return p;
+}
+
 } // namespace
 
 person::person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
@@ -90,19 +101,16 @@ given_stimulus person::play(const calibration_trial& t, const score& s,
 
 void person::begin()
 {
-    if (begun_)
-        return;
-    begun_ = true;
-    const bool stairs = settings_.method == calibration_method::staircase;
+    const bool asks = settings_.method != calibration_method::adjustment;
     on_page({.name = "introduce",
-             .text = words_[stairs ? "calibrate_choose" : "calibrate_adjust"],
+             .text = words_[asks ? "calibrate_choose" : "calibrate_adjust"],
              .choices = {words_["begin"]},
              .keys = " "});
     session::show(
-        stairs ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
-               : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
-                 "is it;\n"
-                 "n: not felt at any level.\n");
+        asks ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
+             : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
+               "is it;\n"
+               "n: not felt at any level.\n");
     if (!keys_.has_keys())
         return;
     session::show(page_ != nullptr ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
@@ -111,15 +119,30 @@ void person::begin()
         ;
 }
 
+// Lets the participant begin with each tactor.
+void person::rest()
+{
+    on_page({.name = "introduce", .text = words_["rest"], .choices = {words_["begin"]}, .keys = " "});
+    session::show("A break: the participant begins again.\n");
+    while (keys_.wait().text.empty())
+        ;
+}
+
 void person::on_page(page_screen s)
 {
-    if (page_ != nullptr)
-        page_->show(std::move(s));
+    if (page_ == nullptr)
+        return;
+    s.where = where_;
+    page_->show(std::move(s));
 }
 
 calibration_answer person::answer(const calibration_trial& t)
 {
-    begin();
+    where_ = find_progress(t, settings_);
+    if (!std::exchange(begun_, true))
+        begin();
+    else if (page_ != nullptr && t.place > 1 && t.of_tactor == 1)
+        rest();
     return t.interval != 0 ? choose(t) : adjust(t);
 }
 
@@ -218,6 +241,7 @@ void person::tell(const calibration_record& r)
 
 void person::thank()
 {
+    where_.reset();
     on_page({.name = "over", .text = words_["over"]});
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "study/calibrate/calibration.hpp"
 #include "study/experiment/definition.hpp"
@@ -37,6 +38,7 @@ private:
     /// Lets time pass until the limits allow the trial to drive its tactor. \throws stage::interruption.
     void make_room(const score& s);
     void begin();
+    void rest();
     void on_page(page_screen s);
 
     stage& stage_;
@@ -47,6 +49,7 @@ private:
     page_words words_;
     session_keys keys_;
     bool begun_ = false;
+    std::optional<page_progress> where_ = {};
 };
 
 } // namespace tactor::study

@@ -169,11 +169,14 @@ json calibration_facts(const prepared_experiment& p)
         return nullptr;
     const calibration_origin& c = *p.where.config.calibration;
     json tactors = json::array();
-    for (const calibrated_tactor& t : c.tactors)
+    for (const calibrated_tactor& t : c.tactors) {
         tactors.push_back({{"tactor", t.tactor},
                            {"threshold_dbfs", or_null(t.threshold_dbfs)},
                            {"sd_db", or_null(t.sd_db)},
                            {"trials", t.trials}});
+        if (t.posterior_sd_db)
+            tactors.back()["posterior_sd_db"] = *t.posterior_sd_db;
+    }
     return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
             {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
             {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},
