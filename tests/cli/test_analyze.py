@@ -101,10 +101,10 @@ class Figures(AnalyzeTest):
 class Forms(AnalyzeTest):
     def test_no_printed_interval_is_beyond_a_per_cent_or_a_scale(self):
         beyond = 0
-        for name in ("simulated", "few", "ties", "three-by-three"):
+        for name in ("simulated", "few", "ties", "three-by-three", "among"):
             text = self.ok("analyze", self.study(name)).stdout
             beyond += sum(v < 0 or v > 100 for p, v in check_r.flat(self.analysis(name)["runs"]) if v is not None
-                          and re.search(r"\.(preference|correct)\..*\.ci\.[01]$", p))
+                          and re.search(r"\.(preference|chosen|correct)\..*\.ci\.[01]$", p))
             shown = re.findall(r"^  \S.*? +[\d.]+ +[\d.]+ +(-?[\d.]+) \.\.\. (-?[\d.]+) ", text, re.M)
             self.assertTrue(all(0 <= float(low) <= float(high) <= 100 for low, high in shown), shown)
             self.assertEqual(bool(shown), "Columns: mean and se" in text, name)
@@ -173,7 +173,7 @@ class Forms(AnalyzeTest):
         return text, list(csv.DictReader(io.StringIO(text)))
 
     def test_a_wide_table_has_each_participant_once_with_all_cells(self):
-        for name in ("three-by-three", "simulated"):
+        for name in ("three-by-three", "among", "simulated"):
             told = self.analysis(self.study(name))
             text, rows = self.wide(name)
             self.assertEqual(len(text.splitlines()), 1 + told["participants"])
@@ -268,7 +268,7 @@ class Forms(AnalyzeTest):
 
     def test_error_bars_are_those_that_were_chosen(self):
         cut = 0
-        for study in ("simulated", "constant"):
+        for study in ("simulated", "constant", "among"):
             told = self.analysis(self.study(study))["runs"]
             for bars, key in (("within", "ci_within"), ("ci", "ci")):
                 self.ok("analyze", study, "--bars", bars, "-o", f"{bars}.svg")
@@ -277,7 +277,7 @@ class Forms(AnalyzeTest):
                     least, most = (0, 100) if run["task"] == "choose" else (1, 5)
                     expected = []
                     for bar in (e for e in panel.iter() if e.get("class") == "bar"):
-                        cells = run["preference"] if run["task"] == "choose" else run["means"][bar.get("data-series")]
+                        cells = run.get("preference") or (run.get("means") or run["chosen"])[bar.get("data-series")]
                         ends = (cells["motion"] | {"all": cells["all"]})[bar.get("data-group")][key]
                         expected += [[max(ends[0], least), min(ends[1], most)]] if ends else []
                         cut += bool(ends) and ends[1] > most

@@ -135,7 +135,8 @@ def wide_means(told):
     """Maps the columns of --format wide to the means that JSON gives of their cells."""
     means = {}
     for name, run_told in told["runs"].items():
-        rows = run_told.get("means") or run_told.get("correct") or {run_told["method"]: run_told["preference"]}
+        rows = run_told.get("means") or run_told.get("correct") or run_told.get("chosen")
+        rows = rows or {run_told["method"]: run_told["preference"]}
         for method, cells in rows.items():
             for motion, cell in cells["motion"].items():
                 means[".".join(re.sub(r"[^0-9A-Za-z.]", "_", part) for part in (name, method, motion))] = cell["mean"]
