@@ -531,7 +531,6 @@ int run_calibrate(command_line& line)
     settings& s = add_options(line, options::on_calibrate);
     line.app.footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
                     "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
-                    "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --method quest\n"
                     "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
     line.parse();
     for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice",

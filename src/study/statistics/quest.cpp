@@ -48,7 +48,7 @@ quest::quest(const quest_grid& g, const std::function<double(double, const psych
     for (const double x : stimuli_)
         for (const psychometric& p : parameters_) {
             chance_.push_back(chance(x, p));
-            entropy_of_.push_back(answer_entropy(chance_.back()));
+            answer_entropies_.push_back(answer_entropy(chance_.back()));
         }
     choose();
 }
@@ -66,7 +66,7 @@ void quest::choose()
         double known = 0.0;
         for (std::size_t k = 0; k < n; ++k) {
             right += likely_[k] * chance_[i * n + k];
-            known += likely_[k] * entropy_of_[i * n + k];
+            known += likely_[k] * answer_entropies_[i * n + k];
         }
         if (const double after = entropy - (answer_entropy(right) - known); after < entropy_) {
             entropy_ = after;

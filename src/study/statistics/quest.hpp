@@ -51,9 +51,9 @@ private:
 
     std::vector<double> stimuli_;
     std::vector<psychometric> parameters_ = {};
-    std::vector<double> chance_ = {};     ///< of a right answer, by stimulus, then by parameters
-    std::vector<double> entropy_of_ = {}; ///< of an answer with that chance
-    std::vector<double> likely_ = {};     ///< chance of each set of parameters; sums up to 1
+    std::vector<double> chance_ = {};           ///< of a right answer, by stimulus, then by parameters
+    std::vector<double> answer_entropies_ = {}; ///< of an answer with that chance
+    std::vector<double> likely_ = {};           ///< chance of each set of parameters; sums up to 1
     std::size_t next_ = 0;
     double entropy_ = 0.0;
 };
