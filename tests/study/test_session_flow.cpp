@@ -405,7 +405,7 @@ TEST_CASE("a number is typed up to Enter, and a keypad has 0 and Enter, too")
     CHECK(typed("57\b5\n\x7f"
                 "8\x7f\n9\n") == std::vector<unsigned>{55, 9});
     CHECK(typed("1234\n x-3\n\n") == std::vector<unsigned>{123, 3});
-    CHECK(typed("1na") == std::vector<unsigned>{10});
+    CHECK(typed("1na0\n") == std::vector<unsigned>{10});
 }
 
 TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")

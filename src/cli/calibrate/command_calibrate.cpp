@@ -50,7 +50,7 @@ struct calibrate_options {
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
-    std::vector<std::string> of_method; ///< options from the command line that not every method has
+    std::vector<std::string> method_options; ///< options from the command line that not every method has
     bool has_start = false; ///< the command line gives the start level, which no ceiling may lower
     bool resume = false;
 };
@@ -246,11 +246,11 @@ void check_method(const calibrate_options& o)
 {
     using enum study::calibration_method;
     constexpr std::string_view names[] = {"a staircase", "an adjustment", "QUEST+"}; // in the enum's order
-    for (const std::string& name : o.of_method) {
-        const bool of_quest = name == "--trials" || name == "--stop-sd";
-        const bool of_both = name == "--feedback" || name == "--practice";
-        const study::calibration_method own = of_quest ? quest : staircase;
-        if (o.settings.method != own && !(of_both && o.settings.method == quest))
+    for (const std::string& name : o.method_options) {
+        const bool is_of_quest = name == "--trials" || name == "--stop-sd";
+        const bool is_shared = name == "--feedback" || name == "--practice";
+        const study::calibration_method own = is_of_quest ? quest : staircase;
+        if (o.settings.method != own && !(is_shared && o.settings.method == quest))
             refuse_option(
                 name,
                 fmt::format("{} does not have that", names[static_cast<std::size_t>(o.settings.method)]),
@@ -536,7 +536,7 @@ int run_calibrate(command_line& line)
     for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice",
                              "--trials", "--stop-sd"})
         if (line.app.count(name) > 0)
-            o.of_method.emplace_back(name);
+            o.method_options.emplace_back(name);
     return calibrate(s, o);
 }
 

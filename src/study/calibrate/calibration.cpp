@@ -31,6 +31,8 @@ constexpr double series_from_db = 15.0;
 constexpr int levels_db = 80;
 constexpr int above_ceiling_db = 10;
 constexpr double guess_chance = 0.5;
+// Right answers of a tactor, without a wrong one, that do not come from the skin.
+constexpr std::size_t too_many_right = 20;
 // The first tactor's threshold is expected below the start level, within some 20 dB; each other's near to
 // those that were measured.
 constexpr double below_start_db = 20.0;
@@ -246,7 +248,8 @@ void calibration::begin_tactor()
     stairs_ = staircase(std::move(o));
     if (settings_.method == calibration_method::quest)
         quest_ = make_quest();
-    of_tactor_ = 0;
+    answered_ = 0;
+    wrong_ = 0;
     series_dbfs_.clear();
 }
 
@@ -276,7 +279,7 @@ void calibration::make_trial()
     trial_.tactor = settings_.tactors[place_];
     trial_.ceiling_dbfs = settings_.ceilings_dbfs[place_];
     trial_.place = place_ + 1;
-    trial_.of_tactor = of_tactor_ + 1;
+    trial_.on_tactor = answered_ + 1;
     if (settings_.method == calibration_method::adjustment) {
         const double last = series_dbfs_.empty() ? settings_.start_dbfs() : series_dbfs_.back();
         const double by = series_dbfs_.size() % 2 == 0 ? series_from_db : -series_from_db;
@@ -313,7 +316,7 @@ void calibration::after_interval(const calibration_answer& a, calibration_record
             begin_tactor();
         return;
     }
-    ++of_tactor_;
+    ++answered_;
     if (quest_)
         return after_quest(right);
     r.reversal = stairs_.answer(right);
@@ -337,14 +340,16 @@ void calibration::after_interval(const calibration_answer& a, calibration_record
 void calibration::after_quest(bool right)
 {
     quest_->answer(right);
+    wrong_ += right ? 0 : 1;
     const double sd_db = quest_->threshold_sd();
-    if (of_tactor_ < settings_.trials && !(sd_db < settings_.stop_sd_db.value_or(0.0)))
+    if (answered_ < settings_.trials && !(sd_db < settings_.stop_sd_db.value_or(0.0)))
         return;
     const double threshold_dbfs = to_hundredths(quest_->estimate().threshold);
-    tactor_threshold t{.tactor = trial_.tactor, .trials = of_tactor_};
+    tactor_threshold t{.tactor = trial_.tactor, .trials = answered_};
     if (threshold_dbfs > trial_.ceiling_dbfs)
         t.end = staircase_end::not_felt;
-    else if (threshold_dbfs < trial_.ceiling_dbfs - levels_db + 1.0)
+    else if (threshold_dbfs < trial_.ceiling_dbfs - levels_db + 1.0 ||
+             (wrong_ == 0 && answered_ >= too_many_right))
         t.end = staircase_end::below_range;
     else {
         t.threshold_dbfs = threshold_dbfs;
@@ -359,7 +364,7 @@ void calibration::after_series(const calibration_answer& a, calibration_record& 
     if (a.set_dbfs) {
         r.trial.level_dbfs = *a.set_dbfs;
         series_dbfs_.push_back(*a.set_dbfs);
-        of_tactor_ = series_dbfs_.size();
+        answered_ = series_dbfs_.size();
         if (series_dbfs_.size() < adjustment_series)
             return;
     }

@@ -160,7 +160,7 @@ struct calibration_trial {
     unsigned interval = 0;     ///< 1 or 2: which one sounds; 0: an adjustment
     bool practice = false;
     std::size_t place = 0;     ///< of the tactor in the session, from 1
-    std::size_t of_tactor = 0; ///< number among the trials or series of this tactor, from 1
+    std::size_t on_tactor = 0; ///< number among the trials or series of this tactor, from 1
 };
 
 /// An answer: to a staircase's trial `interval`, to an adjustment the level set.
@@ -223,7 +223,8 @@ private:
     random_numbers intervals_;
     staircase stairs_;
     std::optional<quest> quest_ = {};
-    std::size_t of_tactor_ = 0; ///< trials or series of this tactor that are answered
+    std::size_t answered_ = 0; ///< trials or series of this tactor
+    std::size_t wrong_ = 0;    ///< quest: wrong answers of this tactor
     std::vector<double> series_dbfs_ = {};
     calibration_trial trial_ = {};
     std::vector<tactor_threshold> thresholds_ = {};

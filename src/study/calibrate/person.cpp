@@ -28,13 +28,13 @@ page_screen adjust_screen(const page_words& w)
             .keys = level_keys};
 }
 
-// Tells the tactor and, where their number is known, the trial of this tactor.
+// Returns the place of the tactor and, where their number is known, that of its trial.
 page_progress find_progress(const calibration_trial& t, const calibration_settings& s)
 {
     page_progress p{t.place, s.tactors.size(), t.practice, 0, 1};
     if (t.practice || s.method == calibration_method::staircase)
         return p;
-    p.trial = static_cast<unsigned>(t.of_tactor);
+    p.trial = static_cast<unsigned>(t.on_tactor);
     p.trials = s.method == calibration_method::quest ? s.trials : adjustment_series;
     return p;
 }
@@ -141,7 +141,7 @@ calibration_answer person::answer(const calibration_trial& t)
     where_ = find_progress(t, settings_);
     if (!std::exchange(begun_, true))
         begin();
-    else if (page_ != nullptr && t.place > 1 && t.of_tactor == 1)
+    else if (page_ != nullptr && t.place > 1 && t.on_tactor == 1)
         rest();
     return t.interval != 0 ? choose(t) : adjust(t);
 }

@@ -440,10 +440,9 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
                                r.outline.name),
                    "another name: on some disks their files would be one");
-    constexpr std::array of_one_task{std::pair("scale", task_kind::rate),
-                                     std::pair("labels", task_kind::rate),
-                                     std::pair("choices", task_kind::choose)};
-    for (const auto& [key, task] : of_one_task)
+    constexpr std::array task_keys{std::pair("scale", task_kind::rate), std::pair("labels", task_kind::rate),
+                                   std::pair("choices", task_kind::choose)};
+    for (const auto& [key, task] : task_keys)
         if (r.outline.task != task && t.has(key))
             t.fail(key, fmt::format("{} is of runs that {}", key, to_string(task)),
                    fmt::format("leave it out, or task = \"{}\"", to_string(task)));

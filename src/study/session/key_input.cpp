@@ -93,13 +93,11 @@ std::optional<unsigned> typed_number::take(char key)
 {
     constexpr std::size_t most_digits = 3;
     constexpr char backspace = '\x7f';
-    if (key == 'n')
-        key = '0';
     if (key >= '0' && key <= '9' && digits_.size() < most_digits)
         digits_ += key;
     else if ((key == backspace || key == '\b') && !digits_.empty())
         digits_.pop_back();
-    else if (key == '\n' || key == '\r' || key == 'a')
+    else if (key == '\n' || key == '\r')
         return detail::number_in<unsigned>(std::exchange(digits_, {}));
     return {};
 }
@@ -236,8 +234,11 @@ std::optional<session_key> session_keys::poll(bool repeated)
 {
     if (page_ != nullptr)
         return poll_page();
-    if (const auto key = pressed())
-        return make_key(std::string(1, *key), true);
+    if (const auto key = pressed()) {
+        session_key k = make_key(std::string(1, *key), true);
+        k.from_keypad = true;
+        return k;
+    }
     while (auto line = typed()) {
         const bool is_held =
             terminal_ && guard_.is_repeated(line->front(), read_ns_, text_.starts_with(*line));
@@ -284,7 +285,9 @@ session_key session_keys::wait_for_number(typed_number& number)
         if (k.command || !k.is_key)
             return k;
         const std::size_t before = digits.size();
-        k.answer = number.take(k.text.front());
+        const char key = k.text.front();
+        // A keypad's Enter is a, and its 0 is n, as in an adjustment.
+        k.answer = number.take(!k.from_keypad ? key : key == 'a' ? '\n' : key == 'n' ? '0' : key);
         if (k.answer)
             return k;
         if (digits.size() > before)

@@ -30,8 +30,8 @@ inline constexpr unsigned most_keys = 9;
 /// A number of up to three digits that somebody types. A value without a terminal.
 class typed_number {
 public:
-    /// Takes a key: a digit, backspace or Enter, and of a keypad n (0) or a (Enter); ignores others. Returns
-    /// the number at Enter, and then begins anew.
+    /// Takes a key: a digit, backspace or Enter; ignores others. Returns the number at Enter, and then begins
+    /// anew.
     std::optional<unsigned> take(char key);
     const std::string& digits() const noexcept { return digits_; }
 
@@ -101,7 +101,8 @@ struct session_key {
     std::optional<operator_key> command = {};
     std::optional<unsigned> answer = {}; ///< the number that this is, or that of the page's answer
     bool is_key = false;                 ///< of a terminal or a keypad: a number may have more digits
-    std::int64_t at_ns = 0;              ///< CLOCK_MONOTONIC
+    bool from_keypad = false;
+    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };
 
 /// The participant's ways to answer besides the terminal.
