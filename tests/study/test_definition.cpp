@@ -188,6 +188,23 @@ TEST_CASE("a rest is one time, or two between which it is drawn")
         has(refusal(head + "rest_s = " + wrong + "\n" + motion + methods + run), "e.toml:3:");
 }
 
+const std::string group = "[[group]]\nname = \"g\"\n";
+
+TEST_CASE("a group has some of the runs, motions and methods")
+{
+    const std::string text =
+        head + motion + "[[motion]]\nname = \"n\"\npreset = \"park2016-2\"\n" + methods + run +
+        "[[run]]\nname = \"s\"\ntask = \"rate\"\nattribute = \"similarity\"\ntrials = 4\n"
+        "motions = [\"n\"]\n[[group]]\nname = \"all\"\n[[group]]\nname = \"some\"\nruns = [\"s\"]\n"
+        "methods = [\"b\"]\n";
+    const experiment_definition d = read(text);
+    REQUIRE(d.outline.groups.size() == 2);
+    CHECK(d.outline.groups[0] == group_outline{"all", d.outline.runs});
+    CHECK(d.outline.groups[1].name == "some");
+    CHECK(describe_group(d.outline.groups[1]) == "s: motions n, methods b");
+    CHECK(read_outline(text, "e.toml") == d.outline);
+}
+
 TEST_CASE("the words that stay English are listed where others are given")
 {
     CHECK(missing_words(read(head + motion + methods + run)).empty());
@@ -287,6 +304,19 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n", "e.toml:17:", "at most 2");
     says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
     says(head + motion + methods + run + run, "e.toml:18:", "one name");
+    says(head + "order = \"latn\"\n" + motion + methods + run, "e.toml:3:", "did you mean 'latin'");
+    says(head + motion + methods + run + "blocks = \"motion\"\n", "e.toml:17:", "did you mean 'motions'");
+    says(head + motion + methods + run + "blocks = \"methods\"\n",
+         "e.toml:17:", "r has two methods in each trial");
+    const std::string with_group = head + motion + methods + run + group;
+    says(with_group + "runs = [\"s\"]\n", "e.toml:19:", "runs has what is not defined (one of r)");
+    says(with_group + "method = [\"a\"]\n", "e.toml:19:", "did you mean 'methods'");
+    says(with_group + "methods = [\"a\"]\n",
+         "e.toml:17:", "r has one method to choose from (name two or more in methods)");
+    says(head + motion + "[[motion]]\nname = \"n\"\npreset = \"park2016-2\"\n" + methods + run +
+             "motions = [\"m\"]\n" + group + "motions = [\"n\"]\n",
+         "e.toml:21:", "r has no motion or no method (leave it out of runs, or name more)");
+    says(with_group + group, "e.toml:20:", "the group \"g\" is there twice");
 }
 
 TEST_CASE("a missing experiment lists the existing ones")

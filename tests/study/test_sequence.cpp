@@ -47,11 +47,34 @@ experiment_definition with_run(const std::string& run, unsigned motions = 4, uns
 
 std::string order_text(std::size_t n, const std::string& code)
 {
+    experiment_definition d;
+    d.runs.resize(n);
     std::string text;
-    for (const std::size_t r : run_order(n, code))
+    for (const std::size_t r : square_row(d.order, n, default_row(d, code) - 1))
         text += std::to_string(r + 1);
     return text;
 }
+
+// Returns the levels in the order in which their trials come; a level that comes back is there twice.
+std::vector<std::size_t> list_levels(const std::vector<planned_trial>& trials,
+                                     std::size_t planned_trial::*level)
+{
+    std::vector<std::size_t> levels;
+    for (const planned_trial& t : trials)
+        if (levels.empty() || levels.back() != t.*level)
+            levels.push_back(t.*level);
+    return levels;
+}
+
+std::vector<std::size_t> list_runs(const std::vector<run_sequence>& all)
+{
+    std::vector<std::size_t> runs;
+    for (const run_sequence& s : all)
+        runs.push_back(s.run);
+    return runs;
+}
+
+const std::string rate_24 = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 24\n";
 
 // Returns the probability of counts so far from equal, if all are equally likely.
 double p_of_equal(const std::vector<double>& counts)
@@ -90,11 +113,12 @@ TEST_CASE("a code without a number gets a row of the square too, and codes use t
 TEST_CASE("over all rows each run is at each place, and after each other, equally often")
 {
     for (std::size_t n = 2; n <= 7; ++n) {
-        const std::size_t rows = n % 2 == 0 ? n : 2 * n;
+        const std::size_t rows = square_rows("williams", n);
+        CHECK(rows == (n % 2 == 0 ? n : 2 * n));
         std::map<std::pair<std::size_t, std::size_t>, std::size_t> at;
         std::map<std::pair<std::size_t, std::size_t>, std::size_t> after;
         for (std::size_t row = 0; row < rows; ++row) {
-            const std::vector<std::size_t> order = run_order(n, std::to_string(row + 1));
+            const std::vector<std::size_t> order = square_row("williams", n, row);
             for (std::size_t i = 0; i < n; ++i) {
                 ++at[{i, order[i]}];
                 if (i > 0)
@@ -106,6 +130,76 @@ TEST_CASE("over all rows each run is at each place, and after each other, equall
         CHECK(std::all_of(at.begin(), at.end(), [&](const auto& c) { return c.second == rows / n; }));
         CHECK(std::all_of(after.begin(), after.end(), [&](const auto& c) { return c.second == rows / n; }));
     }
+}
+
+TEST_CASE("a random order of the runs is the participant's, and none is favoured")
+{
+    experiment_definition d =
+        with_run(rate_24 + "[[run]]\nname = \"s\"\n" + rate_24 + "[[run]]\nname = \"t\"\n" + rate_24);
+    d.order = "random";
+    CHECK(count_rows(d) == 1);
+    std::map<std::vector<std::size_t>, double> orders;
+    for (unsigned code = 0; code < 600; ++code)
+        ++orders[list_runs(make_sequence(d, std::to_string(code), 7))];
+    REQUIRE(orders.size() == 6);
+    std::vector<double> counts;
+    for (const auto& [order, n] : orders)
+        counts.push_back(n);
+    CHECK(p_of_equal(counts) > 1e-4);
+}
+
+TEST_CASE("a row replaces that of the code, and leaves the participant's trials")
+{
+    const experiment_definition d = load_definition("park2016");
+    CHECK(count_rows(d) == 4);
+    CHECK(default_row(d, "P07") == 3);
+    const std::vector<run_sequence> own = make_sequence(d, "P07", 1);
+    const std::vector<run_sequence> other = make_sequence(d, "P07", 1, 2);
+    CHECK(list_runs(other) == list_runs(make_sequence(d, "P02", 1)));
+    CHECK(list_runs(other) != list_runs(own));
+    for (const run_sequence& s : other)
+        CHECK(std::find(own.begin(), own.end(), s) != own.end());
+}
+
+TEST_CASE("blocks keep the trials of a level together, each cell equally often")
+{
+    for (const bool by_method : {true, false}) {
+        const auto level = by_method ? &planned_trial::method_1 : &planned_trial::motion;
+        const experiment_definition d =
+            with_run(rate_24 + fmt::format("blocks = \"{}\"\n", by_method ? "methods" : "motions"));
+        const std::size_t levels = by_method ? 2 : 4;
+        REQUIRE(count_rows(d) == levels);
+        std::set<std::vector<std::size_t>> orders;
+        for (std::size_t row = 1; row <= levels; ++row) {
+            const run_sequence s = make_run(d, 0, "01", 5, row);
+            CHECK(list_levels(s.trials, level).size() == levels);
+            orders.insert(list_levels(s.trials, level));
+            std::map<std::pair<std::size_t, std::size_t>, int> cells;
+            for (const planned_trial& t : s.trials)
+                ++cells[{t.motion, t.method_1}];
+            CHECK(cells.size() == 8);
+            CHECK(std::all_of(cells.begin(), cells.end(), [](const auto& c) { return c.second == 3; }));
+        }
+        CHECK(orders.size() == levels);
+    }
+}
+
+TEST_CASE("over all rows each order of the runs meets each order of the blocks")
+{
+    const std::string blocks = rate_24 + "blocks = \"motions\"\n";
+    experiment_definition d = with_run(blocks + "[[run]]\nname = \"s\"\n" + blocks, 3);
+    for (const auto& [order, rows] : std::map<std::string, std::size_t>{{"williams", 12}, {"latin", 6}}) {
+        d.order = order;
+        REQUIRE(count_rows(d) == rows);
+        std::set<std::pair<std::vector<std::size_t>, std::vector<std::size_t>>> seen;
+        for (std::size_t row = 1; row <= rows; ++row) {
+            const std::vector<run_sequence> all = make_sequence(d, "01", 5, row);
+            seen.insert({list_runs(all), list_levels(all[0].trials, &planned_trial::motion)});
+        }
+        CHECK(seen.size() == rows);
+    }
+    d.order = "random";
+    CHECK(list_levels(make_run(d, 0, "01", 5).trials, &planned_trial::motion).size() == 3);
 }
 
 TEST_CASE("each motion and order comes equally often, and no motion four times in a row")
@@ -656,7 +750,7 @@ TEST_CASE("choices among three methods have the worths that their costs imply")
     const simulation s{.seed = 2, .sigma = 1.0};
     const boost::math::normal noise(0.0, std::sqrt(2.0) * s.sigma);
     dataset all;
-    all.experiment = make_outline(r.d);
+    all.experiment = r.d.outline;
     std::vector<std::vector<double>> expected(3, std::vector<double>(3, 0.0));
     for (unsigned i = 1; i <= 40; ++i) {
         all.participants.push_back(fmt::format("{:02}", i));

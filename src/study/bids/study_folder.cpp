@@ -54,7 +54,13 @@ bool make_study_folder(const fs::path& folder)
     return is_new;
 }
 
-constexpr const char* new_participants = "participant_id\tage\tsex\thandedness\n";
+// Returns the header of a new participants.tsv.
+const char* new_participants(const experiment_definition& d)
+{
+    return d.group.empty() ? "participant_id\tage\tsex\thandedness\n"
+                           : "participant_id\tage\tsex\thandedness\tgroup\n";
+}
+
 constexpr const char* new_scans = "filename\tacq_time\n";
 
 text_table read_or_begin(const fs::path& file, const char* header)
@@ -104,7 +110,7 @@ std::string readme_text(const experiment_definition& d, bool simulated)
         d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name);
 }
 
-std::string participants_text(bool simulated)
+std::string participants_text(const experiment_definition& d, bool simulated)
 {
     ordered j;
     j["participant_id"] =
@@ -114,10 +120,14 @@ std::string participants_text(bool simulated)
     j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
     j["handedness"] = column_json("Hand that the participant prefers");
     j["handedness"]["Levels"] = {{"R", "right"}, {"L", "left"}, {"A", "both"}};
+    for (const group_outline& g : d.outline.groups) {
+        j["group"]["Description"] = "Group, with its runs, and their motions and methods";
+        j["group"]["Levels"][g.name] = describe_group(g);
+    }
     return json_text(j);
 }
 
-std::string task_text(const run_definition& r, bool simulated)
+std::string task_text(const run_definition& r, bool simulated, bool has_groups)
 {
     ordered j{{"TaskName", r.outline.name}};
     const task_row& task = find_task(r.outline.task);
@@ -126,7 +136,8 @@ std::string task_text(const run_definition& r, bool simulated)
     if (!r.labels.empty())
         j["Labels"] = r.labels;
     for (const trial_column& c : trial_columns)
-        j[std::string(c.name)] = column_json(c.meaning, c.unit);
+        if (c.use != column_use::groups || has_groups)
+            j[std::string(c.name)] = column_json(c.meaning, c.unit);
     j["response"] = column_json(fmt::format(fmt::runtime(task.response), rating_range(r.outline)));
     if (!r.choices.empty())
         j["response"]["Levels"] = {{"1", r.choices[0]}, {"2", r.choices[1]}};
@@ -195,7 +206,7 @@ void study_folder::refuse_others()
                 error_kind::bad_input, folder_.string(),
                 fmt::format("{} is {}, and this session is {}", who, kind(s.simulated), kind(simulated_)),
                 one_kind);
-        if (s.experiment != make_outline(definition_))
+        if (s.experiment != definition_.outline)
             throw error(error_kind::bad_input, folder_.string(),
                         fmt::format("{} had another experiment: \"{}\" with other runs, motions or methods",
                                     who, s.experiment.name),
@@ -237,9 +248,9 @@ void study_folder::describe() const
     // First, because it makes the folder known as a study's.
     put(folder_ / "dataset_description.json", dataset_text(definition_, simulated_));
     put(folder_ / "README", readme_text(definition_, simulated_));
-    put(folder_ / "participants.json", participants_text(simulated_));
+    put(folder_ / "participants.json", participants_text(definition_, simulated_));
     for (const run_definition& r : definition_.runs)
-        put(folder_ / description_path(r.outline), task_text(r, simulated_));
+        put(folder_ / description_path(r.outline), task_text(r, simulated_, !definition_.group.empty()));
 }
 
 fs::path study_folder::scans() const
@@ -249,7 +260,14 @@ fs::path study_folder::scans() const
 
 void study_folder::check_lists() const
 {
-    read_participants(read_or_begin(folder_ / "participants.tsv", new_participants));
+    const text_table people = read_or_begin(folder_ / "participants.tsv", new_participants(definition_));
+    read_participants(people);
+    const std::string& group = definition_.group;
+    if (const auto row = find_row(people, "participant_id", "sub-" + code_);
+        row && !group.empty() && people.has("group"))
+        if (const auto listed = people.cell(*row, "group"); listed && *listed != group)
+            people.refuse(*row, fmt::format("sub-{} is of group \"{}\", not \"{}\"", code_, *listed, group),
+                          "use --group with the group of the list, or correct the list");
     const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
@@ -258,11 +276,12 @@ void study_folder::check_lists() const
 bool study_folder::add_participant()
 {
     const fs::path file = folder_ / "participants.tsv";
-    const text_table t = read_or_begin(file, new_participants);
+    const text_table t = read_or_begin(file, new_participants(definition_));
     const std::string id = "sub-" + code_;
     if (find_row(t, "participant_id", id))
         return false;
-    write_whole(file, t.with_line({{"participant_id", id}}));
+    const std::string& group = definition_.group;
+    write_whole(file, t.with_line({{"participant_id", id}, {"group", group.empty() ? "n/a" : group}}));
     return true;
 }
 

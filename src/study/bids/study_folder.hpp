@@ -49,10 +49,11 @@ public:
     std::vector<std::filesystem::path> list_files() const;
 
     /// Reads participants.tsv and sub-CODE_scans.tsv, if they are there. \throws error (bad_input) with file
-    /// and line: see read_participants().
+    /// and line: see read_participants(); if the first has another group for the participant.
     void check_lists() const;
 
-    /// Adds a line to participants.tsv, with n/a in its other columns. Returns false if there is one.
+    /// Adds a line to participants.tsv, with the group, and n/a in its other columns. Returns false if there
+    /// is one.
     bool add_participant();
 
     /// Enters a run's table, named relative to sub-CODE, into sub-CODE_scans.tsv; replaces the time of one

@@ -256,17 +256,21 @@ public:
         if (!is_there(folder_, file) && !has_tables) {
             set_.participants.push_back(code); // in the list, but not here yet
             set_.data.emplace_back();
+            set_.groups.emplace_back();
             return;
         }
-        take_session(code, read_session(folder_ / file));
+        const session_data s = read_session(folder_ / file);
+        take_session(code, s);
+        set_.participants.push_back(code);
+        set_.groups.push_back(s.group);
         std::vector<run_data> runs;
-        for (const run_outline& run : set_.experiment.runs) {
+        for (std::size_t i = 0; i < set_.experiment.runs.size(); ++i) {
+            const run_outline& run = find_run(set_, set_.participants.size() - 1, i);
             const fs::path table = table_path(code, run);
             runs.push_back(is_there(folder_, table) ? read_whole_run(folder_ / table, run) : run_data{});
         }
         if (has_tables)
             refuse_unknown_tables(folder_ / beh, code);
-        set_.participants.push_back(code);
         set_.data.push_back(std::move(runs));
     }
 
@@ -334,6 +338,16 @@ std::string rating_range(const run_outline& run)
                        run.visual ? " on a visual analogue scale" : "");
 }
 
+std::string describe_group(const group_outline& g)
+{
+    std::vector<std::string> parts;
+    for (const run_outline& r : g.runs)
+        if (!r.motions.empty())
+            parts.push_back(fmt::format("{}: motions {}, methods {}", r.name, fmt::join(r.motions, ", "),
+                                        fmt::join(r.methods, ", ")));
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
 std::string make_file_name(std::string_view run)
 {
     std::string name;
@@ -368,10 +382,16 @@ session_data read_session(const std::filesystem::path& file)
     s.simulated = all["simulated"].need_truth();
     s.text = all["experiment"]["text"].need_text();
     s.experiment = read_outline(s.text, name + ": experiment.text");
+    const std::vector<group_outline>& groups = s.experiment.groups;
+    if (!groups.empty()) {
+        s.group = all["group"].need_text();
+        if (std::ranges::find(groups, s.group, &group_outline::name) == groups.end())
+            all["group"].refuse("is no group of the experiment");
+    }
     return s;
 }
 
-const std::array<trial_column, 18> trial_columns{{
+const std::array<trial_column, 19> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration", "From the first frame of the first stimulus to the last of the last, the gap included", "s",
@@ -379,6 +399,7 @@ const std::array<trial_column, 18> trial_columns{{
     {"trial", "Place in the sequence, from 1; a trial that comes again keeps it", "", &trial_row::trial,
      column_use::analysis, 1},
     {"attempt", "How often the trial has been begun", "", &trial_row::attempt, column_use::analysis, 1},
+    {"group", "Group of the participant", "", &trial_row::group, column_use::groups},
     {"motion", "Target motion; the methods are how it was rendered", "", &trial_row::motion,
      column_use::analysis},
     {"method_1", "Method of the first stimulus", "", &trial_row::method_1, column_use::analysis},
@@ -403,14 +424,15 @@ named_cells make_cells(const trial_row& r)
 {
     named_cells cells;
     for (const trial_column& c : trial_columns)
-        cells.emplace_back(c.name, std::visit([&](auto member) { return written(r.*member); }, c.member));
+        if (c.use != column_use::groups || !r.group.empty())
+            cells.emplace_back(c.name, std::visit([&](auto member) { return written(r.*member); }, c.member));
     return cells;
 }
 
 std::vector<trial_row> read_rows(const text_table& t)
 {
     for (const trial_column& c : trial_columns)
-        if (c.use != column_use::nobody)
+        if (c.use == column_use::analysis || c.use == column_use::session)
             t.need_column(c.name);
     std::vector<trial_row> all(t.rows());
     for (const trial_column& c : trial_columns)
@@ -501,6 +523,25 @@ dataset read_dataset(const fs::path& folder, const selection& who)
     dataset d = r.finish();
     d.excluded = std::move(excluded);
     return d;
+}
+
+const run_outline& find_run(const dataset& d, std::size_t participant, std::size_t run)
+{
+    for (const group_outline& g : d.experiment.groups)
+        if (g.name == d.groups[participant])
+            return g.runs[run];
+    return d.experiment.runs[run];
+}
+
+dataset select_group(const dataset& d, const group_outline& g)
+{
+    dataset own{{d.experiment.name, g.runs}, d.simulated};
+    for (std::size_t i = 0; i < d.participants.size(); ++i)
+        if (d.groups[i] == g.name) {
+            own.participants.push_back(d.participants[i]);
+            own.data.push_back(d.data[i]);
+        }
+    return own;
 }
 
 std::vector<trial_cells> read_study(const fs::path& folder, const selection& who)

@@ -6,7 +6,8 @@
 ///   participants.tsv                          participant_id: who takes part, in this order
 ///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials, in the columns of trial_columns
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
-///                                             left alone: the order of motions and methods, and the runs
+///                                             left alone: the order of motions and methods, and the runs;
+///                                             "group": its name, if the experiment has groups
 #pragma once
 
 #include <array>
@@ -74,15 +75,27 @@ struct run_outline {
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
 
+/// A group of participants. A run that it lacks has no motions.
+struct group_outline {
+    std::string name;
+    std::vector<run_outline> runs = {}; ///< all of the experiment's, with the group's motions and methods
+
+    friend bool operator==(const group_outline&, const group_outline&) = default;
+};
+
 struct experiment_outline {
     std::string name;
     std::vector<run_outline> runs = {};
+    std::vector<group_outline> groups = {}; ///< empty: everybody has all runs
 
     friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
 };
 
 /// Returns the ratings of a run: "1 to 5", "0 to 100 on a visual analogue scale".
 std::string rating_range(const run_outline& run);
+
+/// Returns the runs of a group with their motions and methods, in words.
+std::string describe_group(const group_outline& g);
 
 /// Returns the letters and digits of a run's name (BIDS allows no others in a task's).
 std::string make_file_name(std::string_view run);
@@ -103,6 +116,7 @@ struct session_data {
     bool simulated = false;
     std::string text; ///< of the experiment, TOML
     experiment_outline experiment;
+    std::string group = {}; ///< empty: the experiment has none
 };
 
 /// Reads a session.json. \throws error (bad_input) with file and, where it has one, line.
@@ -114,6 +128,7 @@ struct trial_row {
     double duration_s = 0.0;            ///< from the first stimulus frame to the last, the gap included
     unsigned trial = 0;                 ///< place in the sequence, from 1
     unsigned attempt = 1;
+    std::string group = {};
     std::string motion = {};
     std::string method_1 = {};
     std::string method_2 = {};
@@ -135,6 +150,7 @@ enum class column_use {
     analysis, ///< the analysis of each task, and sessions that go on
     session,  ///< sessions that go on; the analysis of the tasks that have it
     nobody,   ///< none: tables of older versions do not have it
+    groups,   ///< none: only studies with groups have it
 };
 
 struct trial_column {
@@ -151,9 +167,9 @@ struct trial_column {
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 18> trial_columns;
+extern const std::array<trial_column, 19> trial_columns;
 
-/// Returns the cells of a row, in the order of a new table.
+/// Returns the cells of a row, in the order of a new table; no cell for an empty group.
 named_cells make_cells(const trial_row& r);
 
 /// Reads all columns of all lines. \throws error (bad_input) with file and line.
@@ -193,7 +209,8 @@ struct dataset {
     experiment_outline experiment;
     bool simulated = false;
     std::vector<std::string> participants = {};   ///< codes, without sub-
-    std::vector<std::vector<run_data>> data = {}; ///< by participant, by run
+    std::vector<std::vector<run_data>> data = {}; ///< by participant, by run: see find_run()
+    std::vector<std::string> groups = {};         ///< by participant; empty: without a session, or groups
     std::vector<left_out> excluded = {};          ///< in participants.tsv, not selected
     std::vector<std::string> warnings = {};
 };
@@ -216,6 +233,12 @@ run_data read_run(const text_table& t, const run_outline& run);
 ///         differ, real and simulated sessions together, names that the experiment does not know, answers out
 ///         of range, a trial that counts twice.
 dataset read_dataset(const std::filesystem::path& folder, const selection& who);
+
+/// Returns a run as the participant's group has it, with the motions and methods of their trials.
+const run_outline& find_run(const dataset& d, std::size_t participant, std::size_t run);
+
+/// Returns the data of a group alone, with all runs as it has them.
+dataset select_group(const dataset& d, const group_outline& g);
 
 /// A cell as the type of its column; no value for n/a.
 using cell_value = std::variant<std::monostate, bool, std::uint64_t, double, std::string>;

@@ -144,13 +144,13 @@ constexpr unsigned most_trials = 10000;
 constexpr unsigned most_steps = 101;
 constexpr unsigned visual_most = 100;
 
-// Returns the places in `all` that a run names, in the order of `all`; every place if it names none.
+// Returns the places in `all` that a table names, in the order of `all`; every place if it names none.
 template <class T>
-std::vector<std::size_t> places_in(const toml_table& run, std::string_view key, const std::vector<T>& all)
+std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, const std::vector<T>& all)
 {
-    const toml::array* list = run.list(key, "names");
+    const toml::array* list = t.list(key, "names");
     if (list != nullptr && list->empty())
-        run.fail(key, fmt::format("{} is empty", key), "names in quotes, in brackets");
+        t.fail(key, fmt::format("{} is empty", key), "names in quotes, in brackets");
     std::vector<std::string> known;
     for (const T& one : all)
         known.push_back(one.name);
@@ -158,7 +158,7 @@ std::vector<std::size_t> places_in(const toml_table& run, std::string_view key, 
     for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
         const auto at = std::find(known.begin(), known.end(), list->get(i)->value_exact<std::string>());
         if (at == known.end())
-            detail::fail_at(run.where(*list->get(i)), fmt::format("{} has what is not defined", key),
+            detail::fail_at(t.where(*list->get(i)), fmt::format("{} has what is not defined", key),
                             fmt::format("one of {}", fmt::join(known, ", ")));
         wanted[static_cast<std::size_t>(at - known.begin())] = true;
     }
@@ -274,13 +274,14 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
     d.name = name_in(*t, "name");
     if (e.outline_only)
         return;
-    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "seed", "consent", "authors"});
+    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "order", "seed", "consent", "authors"});
     d.title = t->has("title") ? name_in(*t, "title") : d.name;
     if (t->has("array") && e.folder != nullptr)
         d.array = array_in(*t, *e.folder);
     read_level(*t, d);
     d.gap_s = t->number("gap_s", {0.0, 60.0}).value_or(d.gap_s);
     d.rest = read_rest(*t);
+    d.order = t->choice("order", {"williams", "latin", "random"}).value_or(d.order);
     d.seed = read_seed(*t);
     d.consent = t->text("consent").value_or("");
     d.authors = texts_in(*t, "authors", 1000);
@@ -393,6 +394,17 @@ void read_scale(const toml_table& t, run_outline& o)
     o.scale = static_cast<unsigned>(*most);
 }
 
+// Refuses a run with too few motions or methods for its task.
+void check_cells(const toml_table& t, const run_outline& o)
+{
+    if (o.motions.empty() || o.methods.empty())
+        t.fail(fmt::format("{} has no motion or no method", o.name), "leave it out of runs, or name more");
+    if (o.task == task_kind::choose && o.methods.size() < 2)
+        t.fail(fmt::format("{} has one method to choose from", o.name), "name two or more in methods");
+    if (o.task == task_kind::identify && o.motions.size() < 2)
+        t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
+}
+
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
 {
@@ -422,17 +434,14 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
         o.motions.push_back(d.motions[i].name);
     for (const std::size_t i : r.methods)
         o.methods.push_back(d.methods[i].name);
-    if (o.task == task_kind::choose && r.methods.size() < 2)
-        t.fail(fmt::format("{} has one method to choose from", o.name), "name two or more in methods");
-    if (o.task == task_kind::identify && r.motions.size() < 2)
-        t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
+    check_cells(t, o);
     return r;
 }
 
 run_definition read_run_definition(const toml_table& t, const experiment_definition& d)
 {
     t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
-            "choices", "break_s", "motions", "methods", "simulate_as", "min_response_s"});
+            "choices", "break_s", "motions", "methods", "blocks", "simulate_as", "min_response_s"});
     run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
@@ -474,7 +483,34 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
         t.fail("choices", fmt::format("choices has {}", counted(r.choices.size(), "text")),
                "one for each of the two answers");
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
+    r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
+    if (r.blocks == "methods" && r.outline.task == task_kind::choose)
+        t.fail("blocks", fmt::format("{} has two methods in each trial", r.outline.name),
+               "blocks = \"motions\", or leave it out");
     return r;
+}
+
+// Reads [[group]], after the runs.
+group_outline read_group(const toml_table& t, const experiment_definition& d)
+{
+    group_outline g{name_in(t, "name"), d.outline.runs};
+    const auto keep = [&](std::vector<std::string>& names, std::string_view key, const auto& all) {
+        const std::vector<std::size_t> kept = places_in(t, key, all);
+        std::erase_if(names, [&](const std::string& name) {
+            return std::ranges::none_of(kept, [&](std::size_t i) { return all[i].name == name; });
+        });
+    };
+    const std::vector<std::size_t> runs = places_in(t, "runs", d.outline.runs);
+    for (std::size_t i = 0; i < g.runs.size(); ++i) {
+        run_outline& r = g.runs[i];
+        keep(r.motions, "motions", d.motions);
+        keep(r.methods, "methods", d.methods);
+        if (std::ranges::find(runs, i) != runs.end())
+            check_cells(t, r);
+        else
+            r.motions.clear();
+    }
+    return g;
 }
 
 std::vector<toml_table> need_tables(const toml_table& root, std::string_view key)
@@ -508,7 +544,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     experiment_definition d;
     d.text = toml;
     if (!e.outline_only)
-        root.only({"experiment", "masking", "page", "motion", "method", "run"});
+        root.only({"experiment", "masking", "page", "motion", "method", "run", "group"});
     read_head(root, e, d);
     if (!e.outline_only) {
         d.masking = read_masking(root);
@@ -522,8 +558,17 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
         return e.outline_only ? method_definition{name_in(t, "name"), {}, {}, t.where()}
                               : read_method(t, d, e.folder);
     });
-    for (const toml_table& t : need_tables(root, "run"))
+    d.outline.name = d.name;
+    for (const toml_table& t : need_tables(root, "run")) {
         d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d));
+        d.outline.runs.push_back(d.runs.back().outline);
+    }
+    if (root.has("group"))
+        d.outline.groups = read_all<group_outline>(root, "group", [&](const toml_table& t) {
+            if (!e.outline_only)
+                t.only({"name", "runs", "motions", "methods"});
+            return read_group(t, d);
+        });
     return d;
 }
 
@@ -601,15 +646,7 @@ experiment_definition read_design(std::string_view toml, const std::string& name
 
 experiment_outline read_outline(std::string_view toml, const std::string& name)
 {
-    return make_outline(definition_in(toml, name, {.outline_only = true}));
-}
-
-experiment_outline make_outline(const experiment_definition& d)
-{
-    experiment_outline e{d.name};
-    for (const run_definition& r : d.runs)
-        e.runs.push_back(r.outline);
-    return e;
+    return definition_in(toml, name, {.outline_only = true}).outline;
 }
 
 experiment_definition load_definition(const std::string& name_or_file)

@@ -87,6 +87,7 @@ struct run_definition {
     std::vector<std::string> choices = {}; ///< choose: words of both answers; may be empty
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
+    std::string blocks = {}; ///< methods or motions: the trials of each stand together; empty: all are mixed
     source_place where = {};
 };
 
@@ -106,6 +107,7 @@ struct experiment_definition {
     double sl_db = 7.0;                     ///< above each tactor's threshold
     double gap_s = 1.0;                     ///< choose: from the first stimulus' end to the second's begin
     rest_range rest = {};                   ///< before each trial
+    std::string order = "williams";         ///< or latin, random: of the runs, and of the blocks in a run
     std::optional<std::uint64_t> seed = {}; ///< none: default_seed(code)
     std::string consent = {};
     std::vector<std::string> authors = {};
@@ -114,7 +116,9 @@ struct experiment_definition {
     std::vector<motion_definition> motions = {};
     std::vector<method_definition> methods = {};
     std::vector<run_definition> runs = {};
-    std::string text = {}; ///< all of it, TOML
+    std::string group = {};          ///< group whose runs `runs` are; empty: those of everybody
+    experiment_outline outline = {}; ///< of all runs and groups
+    std::string text = {};           ///< all of it, TOML
 };
 
 /// Reads a definition. `name` stands for the text in messages, and names of files in it are relative to
@@ -134,9 +138,6 @@ experiment_outline read_outline(std::string_view toml, const std::string& name);
 
 /// Returns true if a level, the experiment's or a method's, is above the thresholds.
 bool uses_thresholds(const experiment_definition& d);
-
-/// Returns what the analysis needs of a definition.
-experiment_outline make_outline(const experiment_definition& d);
 
 /// Name of the definition that is built in.
 inline constexpr const char* shipped_experiment = "park2016";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -113,6 +114,45 @@ bool too_many_in_a_row(const std::vector<planned_trial>& trials)
     return false;
 }
 
+// Returns the order of n runs or blocks; `row` is from 0. Draws nothing unless it is random.
+std::vector<std::size_t> make_order(std::string_view order, std::size_t n, std::size_t row, random_numbers& r)
+{
+    if (order != "random")
+        return square_row(order, n, row % square_rows(order, n));
+    std::vector<std::size_t> all(n);
+    std::iota(all.begin(), all.end(), 0);
+    shuffle(std::span(all), r);
+    return all;
+}
+
+// Returns the number of blocks of a run; without blocks all trials are one.
+std::size_t count_blocks(const run_definition& r)
+{
+    return r.blocks == "methods" ? r.methods.size() : r.blocks == "motions" ? r.motions.size() : 1;
+}
+
+bool is_in_block(const planned_trial& t, const run_definition& r, std::size_t i)
+{
+    if (r.blocks == "methods")
+        return t.method_1 == r.methods[i];
+    return r.blocks.empty() || t.motion == r.motions[i];
+}
+
+// Draws the order of the trials in a block.
+void shuffle_block(std::vector<planned_trial>& block, const run_definition& r, random_numbers& numbers)
+{
+    std::size_t draws = 0;
+    do {
+        if (++draws > most_draws(r.outline.trials))
+            throw error(
+                error_kind::bad_input, r.where,
+                fmt::format("no order of {} trials was found in which no motion comes {} times in a row",
+                            r.outline.trials, most_in_a_row + 1),
+                "several runs with fewer trials");
+        shuffle(std::span(block), numbers);
+    } while (r.motions.size() > 1 && r.blocks != "motions" && too_many_in_a_row(block));
+}
+
 constexpr double longest_stimulus_s = 600.0;
 
 // Returns the felt places at equal parts of the target's time. While nothing is felt, the last place counts,
@@ -179,9 +219,38 @@ std::uint64_t default_seed(std::string_view code)
     return std::uint64_t{d[0]} << 24 | std::uint64_t{d[1]} << 16 | std::uint64_t{d[2]} << 8 | d[3];
 }
 
-std::vector<std::size_t> run_order(std::size_t n, std::string_view code)
+std::size_t square_rows(std::string_view order, std::size_t n) noexcept
 {
-    const std::size_t rows = n % 2 == 0 ? n : 2 * n;
+    if (order == "random" || n < 2)
+        return 1;
+    return order == "williams" && n % 2 == 1 ? 2 * n : n;
+}
+
+std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row)
+{
+    // Williams: 0, 1, n - 1, 2, n - 2, ...: each difference once. The other rows are this one with 1, 2, ...
+    // added.
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t williams = i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : n - i / 2;
+        all.push_back(((order == "latin" ? i : williams) + row) % n);
+    }
+    if (row >= n)
+        std::reverse(all.begin(), all.end());
+    return all;
+}
+
+std::size_t count_rows(const experiment_definition& d)
+{
+    std::size_t blocks = 1;
+    for (const run_definition& r : d.runs)
+        blocks = std::lcm(blocks, square_rows(d.order, count_blocks(r)));
+    return square_rows(d.order, d.runs.size()) * blocks;
+}
+
+std::size_t default_row(const experiment_definition& d, std::string_view code)
+{
+    const std::size_t rows = count_rows(d);
     std::size_t row = default_seed(code) % rows;
     if (const std::size_t digits = code.find_last_not_of("0123456789") + 1; digits < code.size()) {
         std::size_t number = 0; // modulo rows: it may have any number of digits
@@ -189,33 +258,27 @@ std::vector<std::size_t> run_order(std::size_t n, std::string_view code)
             number = (number * 10 + static_cast<std::size_t>(c - '0')) % rows;
         row = (number + rows - 1) % rows;
     }
-    // 0, 1, n - 1, 2, n - 2, ...: each difference once. The other rows are this one with 1, 2, ... added.
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t first = i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : n - i / 2;
-        order.push_back((first + row) % n);
-    }
-    if (row >= n)
-        std::reverse(order.begin(), order.end());
-    return order;
+    return row + 1;
 }
 
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
-                      std::uint64_t seed)
+                      std::uint64_t seed, std::optional<std::size_t> row)
 {
     const run_definition& r = d.runs[run];
     random_numbers numbers(fmt::format("{}/{}/{}/{}", seed, d.name, code, r.outline.name));
-    run_sequence s{run, {}, draw_balanced(r, r.outline.trials, numbers)};
-    std::size_t draws = 0;
-    do {
-        if (++draws > most_draws(r.outline.trials))
-            throw error(
-                error_kind::bad_input, r.where,
-                fmt::format("no order of {} trials was found in which no motion comes {} times in a row",
-                            r.outline.trials, most_in_a_row + 1),
-                "several runs with fewer trials");
-        shuffle(std::span(s.trials), numbers);
-    } while (r.motions.size() > 1 && too_many_in_a_row(s.trials));
+    run_sequence s{run};
+    const std::vector<planned_trial> drawn = draw_balanced(r, r.outline.trials, numbers);
+    // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
+    const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
+    const std::size_t runs = square_rows(d.order, d.runs.size());
+    for (const std::size_t i :
+         make_order(d.order, count_blocks(r), own_row / runs + own_row % runs, numbers)) {
+        std::vector<planned_trial> block;
+        std::ranges::copy_if(drawn, std::back_inserter(block),
+                             [&](const planned_trial& t) { return is_in_block(t, r, i); });
+        shuffle_block(block, r, numbers);
+        s.trials.insert(s.trials.end(), block.begin(), block.end());
+    }
     s.practice = draw_balanced(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
     draw_rests(s.practice, d.rest, numbers);
@@ -224,11 +287,13 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
 }
 
 std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
-                                        std::uint64_t seed)
+                                        std::uint64_t seed, std::optional<std::size_t> row)
 {
+    random_numbers numbers(fmt::format("{}/{}/{}", seed, d.name, code));
+    const std::size_t own_row = row.value_or(default_row(d, code));
     std::vector<run_sequence> all;
-    for (const std::size_t run : run_order(d.runs.size(), code))
-        all.push_back(make_run(d, run, code, seed));
+    for (const std::size_t run : make_order(d.order, d.runs.size(), own_row - 1, numbers))
+        all.push_back(make_run(d, run, code, seed, own_row));
     return all;
 }
 

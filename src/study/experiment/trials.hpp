@@ -53,20 +53,32 @@ constexpr std::size_t most_draws(std::size_t trials) noexcept
 /// Returns the seed for a participant without one: the first four bytes of the code's SHA-256.
 std::uint64_t default_seed(std::string_view code);
 
-/// Returns the order of n runs: a row of the Williams square (two of them for an odd n), in which each run
-/// follows each other equally often. The row is the number at the code's end less 1, or without a number
-/// default_seed(), modulo the number of rows.
-std::vector<std::size_t> run_order(std::size_t n, std::string_view code);
+/// Returns the number of rows of the square for n runs or blocks; 1 if the order is random.
+std::size_t square_rows(std::string_view order, std::size_t n) noexcept;
+
+/// Returns a row of the square, from 0. williams: over all rows each of the n follows each other equally
+/// often. latin: a row is the one before, moved on by one. \pre `order` is not random.
+std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row);
+
+/// Returns the number of rows of a definition: over them each order of the runs meets each order of the
+/// blocks in a run.
+std::size_t count_rows(const experiment_definition& d);
+
+/// Returns the row of a participant, from 1: the number at the code's end, or without a number
+/// default_seed() plus 1; after the last row the first one comes again.
+std::size_t default_row(const experiment_definition& d, std::string_view code);
 
 /// Draws the trials of one run from the generator that "seed/experiment/code/run" seeds: each motion with
 /// each method, or with each pair of methods in each order, equally often as far as their number allows.
+/// `row` orders the blocks; none: default_row().
 /// \throws error (bad_input) if every order drawn has a motion four times in a row.
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
-                      std::uint64_t seed);
+                      std::uint64_t seed, std::optional<std::size_t> row = {});
 
-/// Draws all runs, in the participant's order. Throws as above.
+/// Draws all runs, in the participant's order; a random one is from the generator that "seed/experiment/code"
+/// seeds. Throws as above.
 std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
-                                        std::uint64_t seed);
+                                        std::uint64_t seed, std::optional<std::size_t> row = {});
 
 /// A trial of a run that is to come.
 struct pending_trial {
