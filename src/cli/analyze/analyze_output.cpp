@@ -276,8 +276,9 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
 }
 
 // Writes the model of Bradley and Terry: a column for each method but the first, 1 where it was felt first,
-// -1 where it was felt second. The intercept is the preference for the first interval.
-std::string write_worth_model(const study::run_outline& r)
+// -1 where it was felt second. The intercept is the preference for the first interval. `factors`: "1", or
+// those that the worths may depend on.
+std::string write_worth_model(const study::run_outline& r, const std::string& factors)
 {
     std::string others;
     for (std::size_t m = 1; m < r.methods.size(); ++m)
@@ -285,15 +286,18 @@ std::string write_worth_model(const study::run_outline& r)
     return fmt::format("glmer(chosen ~ worth{} + (1 + worth | participant), family = binomial, "
                        "data = within(subset(d, run == {}), "
                        "worth <- sapply(c({}), function(m) (method == m) - (other == m))))",
-                       r.motions.size() > 1 ? " + worth:motion" : "", nlohmann::ordered_json(r.name).dump(),
+                       factors == "1" ? "" : " + worth:" + factors, nlohmann::ordered_json(r.name).dump(),
                        others);
 }
 
 // The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
 // difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
-std::string write_model(const study::run_outline& r)
+std::string write_model(const study::run_outline& r, const std::vector<study::group_outline>& groups)
 {
-    const char* motion = r.motions.size() > 1 ? "motion" : "1";
+    std::string motion = r.motions.size() > 1 ? "motion" : "1";
+    // Groups that have all of the run are compared: of others the group cannot be told from what it lacks.
+    if (std::ranges::count_if(groups, [&](const auto& g) { return std::ranges::count(g.runs, r) != 0; }) > 1)
+        motion = motion == "1" ? "group" : "(group * motion)";
     const char* people = r.task != task_kind::choose && r.methods.size() > 1 ? "(1 + method | participant)"
                          : r.motions.size() > 1                              ? "(1 + motion | participant)"
                                                                              : "(1 | participant)";
@@ -303,7 +307,7 @@ std::string write_model(const study::run_outline& r)
     switch (r.task) {
     case task_kind::choose:
         if (has_worths(r))
-            return write_worth_model(r);
+            return write_worth_model(r, motion);
         return fmt::format("glmer(chosen ~ {} + order + {}, family = binomial, {})", motion, people, data);
     case task_kind::rate:
         return fmt::format("lmer(rating ~ {}{} + {}, {})", r.methods.size() > 1 ? "method * " : "", motion,
@@ -401,6 +405,23 @@ std::string name_column(const std::array<std::string, 3>& parts, std::set<std::s
     return unique;
 }
 
+// Returns the place of a name; the size where it is none of them.
+std::size_t find_place(const std::vector<std::string>& names, const std::string& name)
+{
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+}
+
+// Returns a trial of a group with the places of its motions and methods in the whole run.
+study::trial move_to(study::trial t, const study::run_outline& own, const study::run_outline& whole)
+{
+    t.motion = find_place(whole.motions, own.motions[t.motion]);
+    t.method_1 = find_place(whole.methods, own.methods[t.method_1]);
+    t.method_2 = find_place(whole.methods, own.methods[t.method_2]);
+    if (whole.task == task_kind::identify)
+        t.response = static_cast<unsigned>(find_place(whole.motions, own.motions[t.response]));
+    return t;
+}
+
 } // namespace
 
 void print_analysis_text(const study::analysis& a)
@@ -409,7 +430,7 @@ void print_analysis_text(const study::analysis& a)
         a.simulated ? ", SIMULATED: these are no people's answers" : "");
     std::size_t voids = 0;
     for (const study::run_analysis& r : a.runs)
-        voids += r.voids;
+        voids += r.group.empty() ? r.voids : 0;
     if (voids != 0)
         fmt::print("{} void, not counted\n", counted(voids, "trial"));
     for (const study::left_out& one : a.excluded)
@@ -445,18 +466,21 @@ void print_trials(const study::dataset& d)
                         "colClasses = c(participant = \"character\"))\n",
                         notes);
     for (const study::run_outline& r : d.experiment.runs)
-        text += fmt::format("# {}\n", write_model(r));
+        text += fmt::format("# {}\n", write_model(r, d.experiment.groups));
     std::vector<trial_column> columns(std::begin(trial_columns), std::end(trial_columns));
     if (std::ranges::none_of(d.experiment.runs, study::has_worths))
         std::erase_if(columns, [](const trial_column& c) { return c.for_worths; });
-    text += "participant";
+    const bool grouped = !d.experiment.groups.empty();
+    text += grouped ? "participant\tgroup" : "participant";
     for (const trial_column& c : columns)
         text += fmt::format("\t{}", c.name);
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i)
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k)
-            for (const study::trial& t : d.data[i][k].trials) {
+            for (const study::trial& own : d.data[i][k].trials) {
+                const study::trial t = move_to(own, find_run(d, i, k), d.experiment.runs[k]);
                 text += d.participants[i];
+                text += grouped ? "\t" + d.groups[i] : "";
                 for (const trial_column& c : columns)
                     text += "\t" + c.cell(t, d.experiment.runs[k]);
                 text += '\n';
@@ -466,7 +490,9 @@ void print_trials(const study::dataset& d)
 
 void print_wide(const study::dataset& d)
 {
+    const bool grouped = !d.experiment.groups.empty();
     std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
+    text += grouped ? ",group" : "";
     std::set<std::string> taken;
     for (const study::run_outline& r : d.experiment.runs)
         for (const std::string& method : study::row_methods(r))
@@ -475,12 +501,19 @@ void print_wide(const study::dataset& d)
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
+        text += grouped ? "," + nlohmann::ordered_json(d.groups[i]).dump() : ""; // quotes it
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
-            const study::run_outline& r = d.experiment.runs[k];
-            const auto cells = study::compute_cells(r, d.data[i][k].trials);
-            for (std::size_t row = 0; row < study::row_methods(r).size(); ++row)
-                for (std::size_t m = 0; m < r.motions.size(); ++m)
-                    text += cells ? fmt::format(",{}", (*cells)[row][m]) : ",";
+            const study::run_outline& own = find_run(d, i, k);
+            const std::vector<std::string> methods = study::row_methods(own);
+            const auto cells = study::compute_cells(own, d.data[i][k].trials);
+            for (const std::string& method : study::row_methods(d.experiment.runs[k]))
+                for (const std::string& motion : d.experiment.runs[k].motions) {
+                    const std::size_t row = find_place(methods, method);
+                    const std::size_t m = find_place(own.motions, motion);
+                    text += cells && row < methods.size() && m < own.motions.size()
+                                ? fmt::format(",{}", (*cells)[row][m])
+                                : ",";
+                }
         }
         text += '\n';
     }

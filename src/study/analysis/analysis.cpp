@@ -167,6 +167,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
         r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
+        if (find_run(d, i, which) != r.run)
+            continue; // the results of the group have it
         std::optional<cell_values> v = compute_cells(r.run, own.trials);
         if (!v) {
             r.missing.push_back({d.participants[i], own.trials.empty()
@@ -266,6 +268,22 @@ void warn_of_figures(analysis& a, const run_analysis& r)
         a.no_figures.push_back(r.run.name + ": one participant: tests need two");
 }
 
+// Adds the results of everybody, or of a group.
+void add_results(analysis& a, const dataset& d, const std::string& group)
+{
+    for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
+        if (d.experiment.runs[i].motions.empty())
+            continue; // the group lacks the run
+        run_analysis& r = a.runs.emplace_back(analyse_run(d, i));
+        r.whole = r.run.name;
+        r.group = group;
+        if (!group.empty())
+            r.run.name = name_result(r.whole, group);
+        warn_of_people(a, r, d, i);
+        warn_of_figures(a, r);
+    }
+}
+
 // Returns the value of a trial in its cell: a rating, or per cent.
 double score_trial(const trial& t, const run_outline& run)
 {
@@ -293,12 +311,15 @@ analysis analyse(const dataset& d)
     a.simulated = d.simulated;
     a.excluded = d.excluded;
     a.warnings = d.warnings;
-    for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
-        a.runs.push_back(analyse_run(d, i));
-        warn_of_people(a, a.runs.back(), d, i);
-        warn_of_figures(a, a.runs.back());
-    }
+    add_results(a, d, "");
+    for (const group_outline& g : d.experiment.groups)
+        add_results(a, select_group(d, g), g.name);
     return a;
+}
+
+std::string name_result(std::string_view run, std::string_view group)
+{
+    return fmt::format("{}, group {}", run, group);
 }
 
 bool has_worths(const run_outline& run) noexcept

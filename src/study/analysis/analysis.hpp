@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,10 @@ struct run_analysis {
     std::size_t voids = 0;              ///< of everybody who was selected
     std::size_t early = 0;              ///< answers marked early, of the same; they count
     response_times times = {};          ///< of the n
+    /// Group of the participants, whose name is in that of `run`, too. Empty: those whose group has all of
+    /// it.
+    std::string group = {};
+    std::string whole = {}; ///< name of the run without the group
 
     /// choose: per cent of trials in which the last method was chosen, against 50; of three methods or more
     /// by method: per cent of the trials with the method in which it was chosen, against 50.
@@ -67,6 +72,7 @@ struct analysis {
     std::size_t participants = 0;
     bool simulated = false;
     std::vector<left_out> excluded = {}; ///< by whoever asked for the analysis
+    /// Results of everybody, then of each group those of the runs that it has.
     std::vector<run_analysis> runs = {};
     std::vector<std::string> warnings = {};   ///< about files and participants
     std::vector<std::string> no_figures = {}; ///< why figures are missing
@@ -79,6 +85,9 @@ double chance(const run_outline& run) noexcept;
 bool has_worths(const run_outline& run) noexcept;
 
 analysis analyse(const dataset& d);
+
+/// Returns the name of the results of a group in a run.
+std::string name_result(std::string_view run, std::string_view group);
 
 /// Values by row (method; one row for choose between two) and motion.
 using cell_values = std::vector<std::vector<double>>;

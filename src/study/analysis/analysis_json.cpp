@@ -213,10 +213,12 @@ nlohmann::ordered_json make_analysis_json(const analysis& a)
 {
     json j{{"schema", "tactor-analysis/1"}, {"experiment", a.experiment}, {"participants", a.participants},
            {"simulated", a.simulated},      {"runs", json::object()},     {"void", json::object()}};
-    for (const run_analysis& r : a.runs) {
-        j["runs"][r.run.name] = run_json(r);
-        j["void"][r.run.name] = r.voids;
-    }
+    for (const run_analysis& r : a.runs)
+        if (r.group.empty()) {
+            j["runs"][r.whole] = run_json(r);
+            j["void"][r.whole] = r.voids;
+        } else
+            j["runs"][r.whole]["groups"][r.group] = run_json(r);
     j["warnings"] = a.warnings;
     for (const std::string& w : a.no_figures)
         j["warnings"].push_back(w);

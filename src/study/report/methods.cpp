@@ -443,6 +443,9 @@ json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
         {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
         {"choices",
          fact([](const run_definition& r) { return r.choices.empty() ? "none" : join(r.choices); })},
+        {"blocks", fact([](const run_definition& r) {
+             return r.blocks.empty() ? "none" : fmt::format("the {}, ordered like the runs", r.blocks);
+         })},
         {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
         {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
 }
@@ -484,8 +487,10 @@ json describe_session(const session_facts& s, const dataset& d)
 {
     json row{
         {"code", s.code}, {"days", days_text(s)}, {"mirrored", mirrored_text(s)}, {"walk", walk_text(s)}};
-    for (const char* key : {"order", "seed", "hand"})
+    for (const char* key : {"group", "order", "seed", "hand"})
         row[key] = fact_text(s, key);
+    if (const json_value at = s.facts()["order_row"]; at.there())
+        row["order"] = fmt::format("{} (row {})", fact_text(s, "order"), at.words());
     for (const char* key : {"display", "masking", "masker"})
         row[key] = stream_text(s, key);
     const auto at = s.facts()["consent"].text();
@@ -525,10 +530,26 @@ void add_rows(json& bradley_terry)
     bradley_terry["rows"] = std::move(rows);
 }
 
+// Adds the results of the groups, named like runs. Returns the outlines of all results.
+std::vector<run_outline> add_groups(json& runs, const experiment_outline& e)
+{
+    std::vector<run_outline> all = e.runs;
+    for (const group_outline& g : e.groups)
+        for (const run_outline& o : g.runs) {
+            if (o.motions.empty())
+                continue; // the group lacks the run
+            const json results = runs.at(o.name).at("groups").at(g.name);
+            all.push_back(o);
+            all.back().name = name_result(o.name, g.name);
+            runs[all.back().name] = results;
+        }
+    return all;
+}
+
 // Adds to each run what its tables need: names of motions, and lists of Tukey's comparisons.
 json describe_results(json runs, const dataset& d)
 {
-    for (const run_outline& o : d.experiment.runs) {
+    for (const run_outline& o : add_groups(runs, d.experiment)) {
         json& run = runs.at(o.name);
         if (run.at("n") == 0) // nobody answered all of it
             for (const char* key : {"preference", "chosen", "first_interval", "bradley_terry", "means",
@@ -606,6 +627,16 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                                                 plain_number(e.rest.least_s), plain_number(e.rest.most_s))
                                   : describe_pause(e.rest.least_s);
     });
+    all["order"] = definition([](const experiment_definition& e) {
+        if (e.order == "random")
+            return std::string("random, drawn for each participant");
+        return fmt::format("a row of a {}, chosen by the participant's code or by the experimenter",
+                           e.order == "latin" ? "cyclic Latin square" : "Williams square (Williams 1949)");
+    });
+    all["groups"] = json::array();
+    for (const group_outline& g : d.experiment.groups)
+        all["groups"].push_back({{"name", g.name}, {"runs", describe_group(g)}});
+    all["grouped"] = !d.experiment.groups.empty();
     all["runs"] = json::array();
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
         all["runs"].push_back(describe_run(f, d.experiment.runs[i], i));
