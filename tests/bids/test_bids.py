@@ -75,6 +75,10 @@ class Folders(ExperimentTest):
         path.write_text(path.read_text().replace("sub-01\tn/a\tn/a\tn/a", "sub-01\t31\tF\tR"))
         self.valid(["01"])
 
+    def test_groups(self):
+        self.grouped(("01", "palm"), ("02", "palm"))
+        self.valid(["01", "02"])
+
     def test_the_validator_finds_faults(self):
         self.simulate("01")
         good = self.dir / "study/sub-01/beh/sub-01_task-what_beh.tsv"

@@ -50,6 +50,18 @@ task = "identify"
 trials = 3
 methods = ["park"]
 """
+# Three groups: one has all, one two of the runs, one a single cell of one run.
+GROUPED = SMALL + """[[group]]
+name = "palm"
+[[group]]
+name = "arm"
+runs = ["which-one", "how good"]
+[[group]]
+name = "few"
+runs = ["how good"]
+motions = ["down"]
+methods = ["park"]
+"""
 DESK = """[array]
 name = "desk"
 grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
@@ -114,8 +126,14 @@ class ExperimentTest(ToolTest):
         args = ("experiment", definition or self.small(), "--participant", code, "-o", folder, "--simulate", spec, *more)
         return self.refused(status, *args, says=says) if status else self.ok(*args)
 
-    def analysis(self):
-        return json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+    def grouped(self, *people):
+        """Simulates a session of each participant: a code and a group."""
+        self.write("grouped.toml", GROUPED)
+        for code, group in people:
+            self.simulate(code, "--group", group, definition="grouped.toml")
+
+    def analysis(self, *args):
+        return json.loads(self.ok("analyze", "study", *args, "--format", "json").stdout)
 
     def rows(self, code, task, folder="study"):
         return read_table(self.dir / folder / f"sub-{code}/beh/sub-{code}_task-{task}_beh.tsv")

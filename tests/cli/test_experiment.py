@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """tactor experiment: the definition, the dry run, simulated sessions, the folder that they write, and --power."""
 import collections
+import csv
 import fcntl
 import hashlib
+import io
 import json
 import os
 import pathlib
@@ -10,7 +12,7 @@ import re
 import signal
 import unittest
 
-from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
+from experiments import COLUMNS, GROUPED, SMALL, ExperimentTest, contents, read_table
 from harness import ROOT, main, wav_bytes
 
 
@@ -34,7 +36,7 @@ class Definition(ExperimentTest):
     def test_wrong_options_are_refused(self):
         self.small()
         for args in ("", "--participant 01", "--participant P-1", "--participant=", "--display tv", "--seed 1.5", "--simulate sigma=x",
-                     "--format xml", "--simulate seed=1 --power 4 --check-noise --masker null", "--simulate seed=1 --power 4 --display page",
+                     "--dry-run --order 0", "--dry-run --order 7", "--dry-run --group palm", "--format xml", "--simulate seed=1 --power 4 --check-noise --masker null", "--simulate seed=1 --power 4 --display page",
                      "--simulate seed=1 --participant 01 -o study --format json", "--simulate seed=1 --dry-run -o study --resume"):
             self.refused(2, "experiment", "small.toml", *args.split())
         for name in ("park2061", "none.toml"):
@@ -477,6 +479,126 @@ class Folder(ExperimentTest):
         self.assertEqual(contents(self.dir / "study"), whole)
 
 
+class Orders(ExperimentTest):
+    def dry(self, *args):
+        return json.loads(self.ok("experiment", *args, "--dry-run", "--format", "json").stdout)
+
+    def test_a_replacement_takes_over_a_row_and_keeps_it(self):
+        self.simulate("02")
+        self.simulate("05", "--order", "2")
+        order = self.session("02")["order"]
+        self.assertEqual((self.session("05")["order"], self.session("05")["order_row"]), (order, 2))
+        self.assertIn("finished", self.simulate("05", "--resume", "--order", "2").stdout)
+        self.simulate("05", "--resume", status=2, says=('begun with order ["how good"',))
+        self.simulate("05", "--resume", "--order", "3", status=2, says=("begun with order_row 2, and now it is 3",))
+        self.simulate("02", "--resume", "--order", "3", status=2, says=("begun with order_row nothing",))
+        report = self.ok("report", "study").stdout
+        for text in (f"| {', '.join(order)} (row 2) |", f"| {', '.join(order)} |", "is a row of a Williams square (Williams 1949), chosen by"):
+            self.assertIn(text, report)
+
+    def test_the_row_of_a_code_is_listed(self):
+        self.assertEqual([self.dry(self.small(), "--participant", code)["order_row"] for code in ("01", "P07", "12")], [1, 1, 6])
+        self.assertIn("participant P08, row 2 of 6, seed", self.ok("experiment", "small.toml", "--participant", "P08", "--dry-run").stdout)
+
+    def test_latin_and_random_orders(self):
+        self.write("latin.toml", SMALL.replace("gap_s", 'order = "latin"\ngap_s'))
+        names = [[r["name"] for r in self.dry("latin.toml", "--order", n)["runs"]] for n in (1, 2, 3)]
+        self.assertEqual(names, [["which-one", "how good", "what"], ["how good", "what", "which-one"], ["what", "which-one", "how good"]])
+        self.write("random.toml", SMALL.replace("gap_s", 'order = "random"\ngap_s'))
+        self.refused(2, "experiment", "random.toml", "--dry-run", "--order", "2")
+        self.simulate("01", definition="random.toml")
+        self.assertIn("The order of the runs is random, drawn for each participant.", self.ok("report", "study").stdout)
+
+    def test_blocks_stand_together_and_a_session_keeps_their_order(self):
+        self.small(SMALL.replace("trials = 4\nscale", 'trials = 12\nblocks = "methods"\nscale'))
+        self.simulate("02", definition="small.toml")
+        self.assertEqual([r["method_1"] for r in self.rows("02", "howgood")], 6 * ["park"] + 6 * ["brush"])
+        self.simulate("02", "--resume", "--order", "8", definition="small.toml", status=2, says=("begun with order_row 2, and now it is 8",))
+        self.assertIn("- Blocks: the methods, ordered like the runs", self.ok("report", "study").stdout)
+
+
+class Groups(ExperimentTest):
+    def test_a_group_has_its_runs_motions_and_methods_and_is_recorded(self):
+        self.grouped(("01", "palm"), ("02", "arm"), ("03", "few"))
+        study = self.dir / "study"
+        self.assertEqual([p["group"] for p in read_table(study / "participants.tsv")], ["palm", "arm", "few"])
+        levels = json.loads((study / "participants.json").read_text())["group"]["Levels"]
+        self.assertEqual((list(levels), levels["few"]), (["palm", "arm", "few"], "how good: motions down, methods park"))
+        self.assertEqual(json.loads((study / "task-howgood_beh.json").read_text())["group"]["Description"], "Group of the participant")
+        self.assertEqual((self.session("02")["group"], self.session("02")["order"]), ("arm", ["how good", "which-one"]))
+        for code, group, motions, methods in (("01", "palm", {"to the right", "down"}, {"brush", "park"}), ("03", "few", {"down"}, {"park"})):
+            rows = self.rows(code, "howgood")
+            self.assertEqual(sorted(rows[0]), sorted([*COLUMNS, "group"]))
+            self.assertEqual([{r[c] for r in rows} for c in ("group", "motion", "method_1")], [{group}, motions, methods])
+        self.assertEqual({s["motion"] for s in self.session("03")["stimuli"]}, {"down"})
+
+    def test_what_does_not_fit_the_groups_is_refused(self):
+        self.grouped(("01", "palm"))
+        more = {"definition": "grouped.toml", "status": 2}
+        self.simulate("02", **more, says=("--group", "one of palm, arm, few"))
+        self.simulate("02", "--group", "leg", **more)
+        self.simulate("01", "--resume", "--group", "arm", **more, says=('begun with group "palm", and now it is "arm"',))
+        people = self.dir / "study/participants.tsv"
+        people.write_text(people.read_text() + "sub-02\t30\tn/a\tn/a\tarm\n")  # a list made before
+        self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is of group "arm", not "palm"',))
+        self.grouped(("02", "arm"))
+        file = self.dir / "study/sourcedata/sub-01/session.json"
+        file.write_text(file.read_text().replace('"group": "palm"', '"group": "leg"'))
+        self.refused(2, "analyze", "study")
+
+    def test_each_group_has_the_results_of_a_study_of_its_own(self):
+        people = [("01", "palm"), ("02", "palm"), ("03", "arm"), ("04", "arm"), ("05", "few"), ("06", "few")]
+        self.grouped(*people)
+        told = self.analysis()
+        self.assertFalse([w for w in told["warnings"] if "left out" in w])
+        told = told["runs"]
+        self.assertEqual({name: (run["n"], list(run["groups"])) for name, run in told.items()},
+                         {"which-one": (4, ["palm", "arm"]), "how good": (4, ["palm", "arm", "few"]), "what": (2, ["palm"])})
+        for group in ("palm", "arm"):
+            alone = self.analysis("--participants", ",".join(c for c, g in people if g == group))["runs"]
+            for name, run in told.items():
+                if group in run["groups"]:
+                    self.assertEqual(run["groups"][group], {k: v for k, v in alone[name].items() if k != "groups"})
+        few = told["how good"]["groups"]["few"]
+        means = [sum(int(r["rating"]) for r in self.rows(code, "howgood")) / 4 for code in ("05", "06")]
+        self.assertEqual((few["n"], list(few["means"]), few["paired"]), (2, ["park"], None))
+        self.assertAlmostEqual(few["means"]["park"]["motion"]["down"]["mean"], sum(means) / 2, 12)
+        self.assertIn("how good, group few: rate, 2 participants, 8 trials", self.ok("analyze", "study", "-o", "a.svg").stdout)
+        self.assertIn('data-title="how good, group few (n = 2)"', (self.dir / "a.svg").read_text())
+        rows = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
+        self.assertEqual([(r["participant_id"][4:], r["group"]) for r in rows], people)
+        self.assertEqual({c for c, v in rows[4].items() if v}, {"participant_id", "simulated", "group", "how_good.park.down"})
+        self.assertEqual([float(r["how_good.park.down"]) for r in rows[4:]], means)
+
+    def test_tables_for_r_and_the_report_state_the_group(self):
+        self.grouped(("01", "palm"), ("02", "arm"), ("03", "few"))
+        lines = self.ok("analyze", "study", "--format", "tsv").stdout.splitlines()
+        self.assertIn('# lmer(rating ~ method * (group * motion) + (1 + method | participant), data = subset(d, run == "how good"))', lines)
+        self.assertIn('# glmer(correct ~ motion + (1 + motion | participant), family = binomial, data = subset(d, run == "what"))', lines)
+        head, *rows = (line.split("\t") for line in lines if line[0] != "#")
+        rows = [dict(zip(head, row)) for row in rows]
+        self.assertEqual({(r["group"], r["run"], r["motion"], r["method"]) for r in rows if r["participant"] == "03"},
+                         {("few", "how good", "down", "park")})
+        report = self.ok("report", "study").stdout
+        for text in ("- Group few: how good: motions down, methods park\n", "| sub-03 | few |", "### how good, group few (SIMULATED)\n",
+                     "| participant | group | days (UTC) |"):
+            self.assertIn(text, report)
+
+    def test_two_of_three_methods_are_chosen_from_in_a_group(self):
+        third = SMALL.replace("[[run]]", '[[method]]\nname = "linear"\nphantom = "linear"\n[[run]]', 1)
+        self.write("grouped.toml", third + '[[group]]\nname = "two"\nmethods = ["park", "linear"]\n[[group]]\nname = "all"\n')
+        for code in ("01", "02"):
+            self.simulate(code, "--group", "two", definition="grouped.toml")
+        run = self.analysis()["runs"]["which-one"]
+        self.assertEqual((run["n"], list(run["chosen"]), run["groups"]["two"]["method"]), (0, ["brush", "park", "linear"], "linear"))
+        lines = self.ok("analyze", "study", "--format", "tsv").stdout.splitlines()
+        head, *rows = (line.split("\t") for line in lines if line[0] != "#")
+        rows = [dict(zip(head, row)) for row in rows if row[head.index("run")] == "which-one"]
+        self.assertEqual([(r["method"], r["other"], r["chosen"]) for r in rows],
+                         [(r["method_1"], r["method_2"], "1" if r["response"] == "1" else "0") for code in ("01", "02") for r in self.rows(code, "whichone")
+                          if r["void"] == "false"])
+
+
 class Power(ExperimentTest):
     SPEC = ("--simulate", "seed=4,sigma=6")
 
@@ -533,7 +655,7 @@ class Power(ExperimentTest):
         self.write("bad.toml", "[experiment]\n")
         for args in (*(f"--power={n}" for n in ("1", "0", "-3", "1001", "12,", "", "twelve", "12;14", "2.5", "99999999999999999999999", "8,12,8")),
                      *(f"--power 8 --studies={n}" for n in ("0", "-1", "1000001", "many")),
-                     *(f"--power 8 {more}" for more in ("--participant 01", "-o study", "--resume", "--dry-run", "--print"))):
+                     *(f"--power 8 {more}" for more in ("--participant 01", "-o study", "--resume", "--order 2", "--dry-run", "--print"))):
             self.assertEqual(self.refused(2, "experiment", "park2016", *args.split(), *self.SPEC).stdout, "")
         for args in ("park2016 --power 8", "park2016 --studies 8 --dry-run", "bad.toml --power 8 --simulate seed=4"):
             self.assertEqual(self.refused(2, "experiment", *args.split()).stdout, "")

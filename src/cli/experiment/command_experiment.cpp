@@ -263,7 +263,7 @@ int run(const experiment_options& o, settings& s)
                      : o.simulate ? study::audience::observer
                                   : study::audience::person;
     const study::prepared_experiment p =
-        study::prepare({o.definition, o.participant, o.seed, who, o.hand}, s);
+        study::prepare({o.definition, o.participant, o.seed, who, o.hand, o.group, o.row}, s);
     say_warnings(p.warnings);
     if (!o.power.empty())
         return print_power(p, o);

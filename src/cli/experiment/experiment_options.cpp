@@ -190,8 +190,8 @@ void add_power_options(CLI::App& command, experiment_options& o)
                  "print how often simulated studies of N participants find a significant difference",
                  [&o](const std::string& t) { o.power = participants_in(t); });
     power->needs(command.get_option("--simulate"));
-    for (const char* other : {"--participant", "--output", "--resume", "--display", "--page", "--keypad",
-                              "--masker", "--check-noise", "--print", "--dry-run"})
+    for (const char* other : {"--participant", "--output", "--resume", "--order", "--display", "--page",
+                              "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
         power->excludes(command.get_option(other));
     add_text(command, "--studies", "K",
              fmt::format("--power: number of simulated studies (default {})", default_studies),
@@ -225,6 +225,13 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
              [&o](const std::string& t) {
                  o.hand = choose("--hand", t, {"left", "right"}) == 0 ? study::hand_kind::left
                                                                       : study::hand_kind::right;
+             });
+    command.add_option("--group", o.group, "the participant's group, of a definition with groups")
+        ->type_name("NAME");
+    add_text(command, "--order", "N",
+             "row of the orders, such as that of a replaced participant (default: by the code)",
+             [&o](const std::string& t) { // prepare() knows how many there are
+                 o.row = static_cast<std::size_t>(options::parse_whole("--order", t, {1, 1000000}, ""));
              });
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
@@ -278,6 +285,8 @@ void print_dry_run_json(const study::prepared_experiment& p)
     const study::experiment_definition& d = p.definition;
     j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
     j["participant"] = p.participant;
+    j["group"] = files::or_null(d.group);
+    j["order_row"] = p.row;
     j["seed"] = p.seed;
     j["array"] = p.where.tactors.name;
     j["level"] = study::level_facts(p.render);
@@ -298,8 +307,9 @@ void print_dry_run_json(const study::prepared_experiment& p)
 void print_dry_run_text(const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
-    say(stdout, "{}: {}\nparticipant {}, seed {}, array {}, level {}\n", d.name, d.title, p.participant,
-        p.seed, p.where.tactors.name, level_text(p.render));
+    say(stdout, "{}: {}\nparticipant {}{}, row {} of {}, seed {}, array {}, level {}\n", d.name, d.title,
+        p.participant, d.group.empty() ? "" : ", group " + d.group, p.row, study::count_rows(d), p.seed,
+        p.where.tactors.name, level_text(p.render));
     for (const study::method_definition& m : d.methods)
         if (m.has_level())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 #include <tactor/version.hpp>
@@ -86,6 +87,36 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
     for (method_definition& m : d.methods)
         if (m.drawn)
             exchange(*m.drawn, "method", m.name);
+}
+
+// Leaves the runs of a group, with its motions and methods.
+void keep_group(experiment_definition& d, const std::string& name)
+{
+    const std::vector<group_outline>& groups = d.outline.groups;
+    if (name.empty() && groups.empty())
+        return;
+    const auto own = std::ranges::find(groups, name, &group_outline::name);
+    if (own == groups.end()) {
+        std::vector<std::string> names;
+        for (const group_outline& g : groups)
+            names.push_back(g.name);
+        throw error(error_kind::bad_input, "--group",
+                    name.empty() ? "the definition has groups, and none is named"
+                                 : fmt::format("there is no group \"{}\"", name),
+                    names.empty() ? "leave it out" : fmt::format("one of {}", fmt::join(names, ", ")));
+    }
+    d.group = name;
+    for (std::size_t i = 0; i < d.runs.size(); ++i) {
+        run_definition& r = d.runs[i];
+        r.outline = own->runs[i];
+        std::erase_if(r.motions, [&](std::size_t place) {
+            return std::ranges::count(r.outline.motions, d.motions[place].name) == 0;
+        });
+        std::erase_if(r.methods, [&](std::size_t place) {
+            return std::ranges::count(r.outline.methods, d.methods[place].name) == 0;
+        });
+    }
+    std::erase_if(d.runs, [](const run_definition& r) { return r.motions.empty(); });
 }
 
 // Checks that no limit changes a trial on an array that has rested: it would always be void.
@@ -300,6 +331,7 @@ private:
 prepared_experiment prepare(const session_request& r, session::settings& s)
 {
     experiment_definition d = load_definition(r.definition);
+    keep_group(d, r.group);
     if (!s.array_name)
         s.array_name = d.array;
     session::environment e = session::read_environment(s);
@@ -314,7 +346,11 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     // --dry-run needs no participant.
     const std::string code = r.participant.empty() ? "01" : r.participant;
     const std::uint64_t seed = r.seed.value_or(d.seed.value_or(default_seed(code)));
-    auto runs = make_sequence(d, code, seed);
+    const std::size_t row = r.row.value_or(default_row(d, code));
+    if (row > count_rows(d))
+        throw error(error_kind::bad_input, "--order", fmt::format("{} is out of range", row),
+                    fmt::format("1 to {}", count_rows(d)));
+    auto runs = make_sequence(d, code, seed, row);
     stimulus_set stimuli(d, e.tactors, render);
     if (r.who != audience::observer)
         for (unsigned i = 0; i < e.tactors.tactors.size(); ++i)
@@ -344,7 +380,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             std::move(stimuli),
             std::move(warnings),
             std::move(doubts),
-            r.hand};
+            r.hand,
+            row};
 }
 
 std::string_view to_string(hand_kind h) noexcept
@@ -441,9 +478,14 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["simulated"] = simulate.has_value();
     j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
     j["seed"] = p.seed;
+    // These are absent where they say nothing: sessions of older versions go on.
+    if (!d.group.empty())
+        j["group"] = d.group;
+    if (p.row != default_row(d, p.participant) ||
+        std::ranges::any_of(d.runs, [](const auto& r) { return !r.blocks.empty(); }))
+        j["order_row"] = p.row;
     j["order"] = order;
     j["level"] = level_facts(p.render);
-    // These are absent where they say nothing: sessions of older versions go on.
     if (p.hand)
         j["hand"] = std::string(to_string(*p.hand));
     if (d.rest.is_random())
@@ -473,6 +515,7 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     trial_row row;
     row.trial = which.trial;
     row.attempt = which.attempt;
+    row.group = d.group;
     row.duration_s = static_cast<double>(p.stimuli.frames(t)) / p.render.rate;
     row.motion = d.motions[t.motion].name;
     row.method_1 = d.methods[t.method_1].name;

@@ -41,7 +41,9 @@ struct session_request {
     std::string participant = {};           ///< empty only of a dry run
     std::optional<std::uint64_t> seed = {}; ///< else that of the definition, else one of the participant's
     audience who = audience::person;
-    std::optional<hand_kind> hand = {}; ///< none: not said
+    std::optional<hand_kind> hand = {};  ///< none: not said
+    std::string group = {};              ///< of the definition's groups; empty: none is named
+    std::optional<std::size_t> row = {}; ///< of the orders, from 1; none: default_row()
 };
 
 struct prepared_experiment {
@@ -57,13 +59,15 @@ struct prepared_experiment {
     std::vector<std::string> warnings;
     std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
     std::optional<hand_kind> hand = {};          ///< motions that say so are mirrored for a left one
+    std::size_t row = 1;                         ///< of the orders, from 1
 
     /// Returns the run at a place in the session's order.
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }
 };
 
-/// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, a stimulus
-/// cannot be planned or played, or a session with a person has no thresholds.
+/// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, the group
+/// or row is not the definition's, a stimulus cannot be planned or played, or a session with a person has no
+/// thresholds.
 prepared_experiment prepare(const session_request& r, session::settings& s);
 
 /// Makes the score of one tactor at the carrier of the definition's first method. \throws error (bad_input)
