@@ -221,7 +221,7 @@ class Schemas(ToolTest):
                     for key in list(inner):
                         inside = re.sub(r"^(plans|comparisons)\[\]\.?", "", f"{place}.{key}".lstrip("."))
                         kept = inner.pop(key)
-                        optional = inside in OPTIONAL.get(name.replace("s/", "/"), ()) or place in MAPS
+                        optional = inside in (OPTIONAL.get(name) or OPTIONAL.get(name.replace("s/", "/"), ())) or place in MAPS
                         self.assertEqual(valid(changed), optional, f"{name}: {place} without {key}")
                         inner[key] = {"another": "type"}
                         self.assertFalse(valid(changed), f"{name}: {place}.{key} of another type")

@@ -473,12 +473,15 @@ struct quest_bounds {
 TEST_CASE("thresholds with lapses by QUEST+, of 30 trials or until their deviation is small")
 {
     for (const quest_bounds& b : {
-             quest_bounds{30, {}, 1.0, 0.00, 1.0, 2.0, 0.05},
-             quest_bounds{30, {}, 1.0, 0.05, 1.0, 2.5, 0.05},
-             quest_bounds{30, {}, 2.0, 0.05, 1.0, 2.5, 0.05},
-             quest_bounds{30, {}, 6.0, 0.05, 3.0, 4.5, 0.25},
-             quest_bounds{200, 1.2, 2.0, 0.05, 1.0, 2.0, 0.02},
-             quest_bounds{200, 1.2, 6.0, 0.05, 3.0, 2.5, 0.10},
+             quest_bounds{30, {}, 1.0, 0.00, 1.0, 1.2, 0.02},
+             quest_bounds{30, {}, 2.0, 0.00, 1.0, 1.8, 0.03},
+             quest_bounds{30, {}, 6.0, 0.00, 1.0, 3.5, 0.15},
+             quest_bounds{30, {}, 1.0, 0.05, 0.5, 1.6, 0.03},
+             quest_bounds{30, {}, 2.0, 0.05, 0.5, 2.2, 0.04},
+             quest_bounds{30, {}, 6.0, 0.05, 2.3, 3.8, 0.20},
+             quest_bounds{200, 1.2, 1.0, 0.05, 0.5, 1.2, 0.02},
+             quest_bounds{200, 1.2, 2.0, 0.05, 0.5, 1.4, 0.02},
+             quest_bounds{200, 1.2, 6.0, 0.05, 1.2, 2.2, 0.03},
          }) {
         const errors e = measure_by_quest(
             {.participant = "sim", .trials = b.trials, .stop_sd_db = b.stop_sd_db}, b.spread_db, b.lapse);
