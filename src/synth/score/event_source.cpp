@@ -360,18 +360,6 @@ void event_source::begin_items()
     }
 }
 
-/// Goes on to the next part of a joined score; false if there is none.
-bool event_source::begin_part() noexcept
-{
-    if (next_part_ == piece_->parts.size())
-        return false;
-    const score_part& next = piece_->parts[next_part_++];
-    part_ = next.made.get();
-    shift_ = next.start;
-    next_item_ = 0;
-    return true;
-}
-
 /// Takes the first event off the heap.
 void event_source::move_on()
 {
@@ -405,8 +393,12 @@ const drive_event* event_source::peek()
     if (popped_)
         move_on();
     begin_items();
-    while (heap_.empty() && begin_part())
+    for (; heap_.empty() && next_part_ < piece_->parts.size(); ++next_part_) {
+        part_ = piece_->parts[next_part_].made.get();
+        shift_ = piece_->parts[next_part_].start;
+        next_item_ = 0;
         begin_items();
+    }
     return heap_.empty() ? nullptr : &heap_.front()->event();
 }
 

@@ -92,7 +92,6 @@ public:
 private:
     void move_on();
     void begin_items();
-    bool begin_part() noexcept;
     void release(expander* e) noexcept;
 
     // Items that have begun are expanders in a heap; the score knows how many that are at most.
