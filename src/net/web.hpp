@@ -76,7 +76,8 @@ public:
 private:
     void take(listener::socket_type s);
 
-    boost::asio::io_context io_{1};
+    // Without the hint of one thread, which would put its own messages behind those of other threads.
+    boost::asio::io_context io_;
     owned_fd fd_;
     page_document document_;
     handlers calls_;

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Web pages and peers that may ask, listening sockets, and Base64.
+// Web pages and peers that may ask, the order of a page's messages, listening sockets, and Base64.
 #include <cerrno>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -20,6 +25,7 @@
 #include "net/access.hpp"
 #include "net/listen.hpp"
 #include "net/rpc.hpp"
+#include "net/web.hpp"
 
 namespace web_access_test {
 
@@ -205,6 +211,32 @@ TEST_CASE("a peer's address is told without its port")
     CHECK(peer_address(s.native_handle()).empty()); // not connected
     s.connect({boost::asio::ip::make_address(at.host), at.port});
     CHECK(peer_address(s.native_handle()) == "127.0.0.1");
+}
+
+TEST_CASE("a page gets the messages of all threads in the order in which they were sent")
+{
+    owned_fd listening = listen_tcp({}, "tcp");
+    const std::string address = local_address(listening.get());
+    const host_and_port at = parse_host(address, "tcp");
+    page_server page(std::move(listening), {},
+                     {[&page](page_server::visitor v, std::string_view) {
+                          page.send(v, "first");
+                          std::thread([&page, v] { page.send(v, "second"); }).join();
+                          return true;
+                      },
+                      [](page_server::visitor) {}});
+    boost::asio::io_context io;
+    boost::beast::websocket::stream<boost::asio::ip::tcp::socket> browser(io);
+    browser.next_layer().connect({boost::asio::ip::make_address(at.host), at.port});
+    browser.handshake(address, "/rpc");
+    browser.write(boost::asio::buffer(std::string("{}")));
+    std::vector<std::string> heard;
+    for (int i = 0; i < 2; ++i) {
+        boost::beast::flat_buffer message;
+        browser.read(message);
+        heard.push_back(boost::beast::buffers_to_string(message.data()));
+    }
+    CHECK(heard == std::vector<std::string>{"first", "second"});
 }
 
 TEST_CASE("bytes become base64 and come back, as RFC 4648 says")
