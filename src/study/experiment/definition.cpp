@@ -171,8 +171,6 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_bytes_of_text = std::size_t{1} << 20;
-
 struct extent {
     const fs::path* folder = nullptr; ///< of files that the array and the motions name; null: leave them out
     bool outline_only = false;        ///< pass over all else, as other programs may write it
@@ -308,22 +306,6 @@ masking_definition read_masking(const toml_table& root)
     if (noise != "none")
         m.noise = std::move(o);
     return m;
-}
-
-page_words read_page(const toml_table& root)
-{
-    page_words words;
-    const auto t = root.table("page", "[page]", "[page]");
-    if (!t)
-        return words;
-    std::vector<std::string_view> known;
-    for (const page_word& w : page_words_in_english())
-        known.push_back(w.key);
-    t->only(known);
-    for (const std::string_view key : known)
-        if (const auto text = t->text(key))
-            words.set(key, *text);
-    return words;
 }
 
 // Returns true if left hands get the motion mirrored.
@@ -572,54 +554,6 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     return d;
 }
 
-constexpr std::array english{
-    page_word{"language", "en"},
-    page_word{"agree", "Do you agree?"},
-    page_word{"yes", "Yes"},
-    page_word{"no", "No"},
-    page_word{"walk", "Each place vibrates once, in turn."},
-    page_word{"felt", "Did you feel it?"},
-    page_word{"again", "Once more"},
-    page_word{"back", "The one before"},
-    page_word{"begin", "Begin"},
-    page_word{"practice", "Practice"},
-    page_word{"part", "Part"},
-    page_word{"target", "Watch how it moves."},
-    page_word{"stimulus", "Attend to your hand."},
-    page_word{"rest", "A break"},
-    page_word{"pause", "A pause"},
-    page_word{"wait", "One moment, please."},
-    page_word{"over", "That was all. Thank you."},
-    page_word{"elsewhere", "This session goes on in another window."},
-    page_word{"offline", "There is no connection. Please tell the experimenter."},
-    page_word{"confirm", "Confirm"},
-    page_word{"full_screen", "Full screen"},
-    // On a terminal only.
-    page_word{"or", "or"},
-    page_word{"to", "to"},
-    page_word{"any_key_begins", "Any key begins."},
-    page_word{"any_key_ends", "Any key ends."},
-    page_word{"trial", "Trial"},
-    page_word{"repeated", "again"},
-    page_word{"later", "Once more, later."},
-    page_word{"no_answer", "That is no answer"},
-    // On the page of calibrate only.
-    page_word{"calibrate_choose",
-              "There are two intervals, one of which vibrates. Which one? Guess where you do not know."},
-    page_word{"calibrate_interval", "Interval"},
-    page_word{"calibrate_which", "Which one vibrated?"},
-    page_word{"calibrate_right", "That was right."},
-    page_word{"calibrate_wrong", "That was wrong."},
-    page_word{"calibrate_adjust", "Something vibrates again and again. Set it so that you just feel it."},
-    page_word{"calibrate_set", "Set it so that you just feel it."},
-    page_word{"calibrate_much_weaker", "Much weaker"},
-    page_word{"calibrate_weaker", "Weaker"},
-    page_word{"calibrate_stronger", "Stronger"},
-    page_word{"calibrate_much_stronger", "Much stronger"},
-    page_word{"calibrate_that_is_it", "That is it"},
-    page_word{"calibrate_not_felt", "Not felt at any level"},
-};
-
 } // namespace
 
 std::string in_definition_words(std::string_view hint, bool own_level)
@@ -657,39 +591,8 @@ experiment_definition load_definition(const std::string& name_or_file)
     if (!fs::exists(name_or_file, ignored) && name_or_file.find_first_of("./") == std::string::npos)
         throw error(error_kind::bad_input, "experiment", fmt::format("there is no '{}'", name_or_file),
                     fmt::format("{}, or a file", shipped_experiment));
-    const detail::whole_text text = detail::read_text_file(name_or_file, most_bytes_of_text);
+    const detail::whole_text text = detail::read_text_file(name_or_file, most_definition_bytes);
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
-}
-
-std::span<const page_word> page_words_in_english()
-{
-    return english;
-}
-
-std::string page_words::operator[](std::string_view key) const
-{
-    if (const auto own = own_.find(key); own != own_.end())
-        return own->second;
-    return std::string(std::ranges::find(english, key, &page_word::key)->english);
-}
-
-std::vector<std::string_view> page_words::missing() const
-{
-    std::vector<std::string_view> all;
-    for (const page_word& w : english)
-        if (!own_.empty() && !own_.contains(w.key))
-            all.push_back(w.key);
-    return all;
-}
-
-page_words load_page_words(const std::string& file)
-{
-    const detail::whole_text text = detail::read_text_file(file, most_bytes_of_text);
-    const toml::table document = detail::parse_toml(text, file);
-    const toml_table root(document, "the file", file);
-    if (!root.has("page"))
-        root.fail("there is no [page]", "a definition of an experiment with the participant's words");
-    return read_page(root);
 }
 
 std::string missing_words(const experiment_definition& d)

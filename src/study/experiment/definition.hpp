@@ -6,10 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,35 +15,10 @@
 
 #include "options/option.hpp"
 #include "study/data/dataset.hpp"
+#include "study/experiment/page_words.hpp"
 #include "study/masking/masking.hpp"
 
 namespace tactor::study {
-
-/// A text of the participant's page or terminal besides the definition's questions.
-struct page_word {
-    std::string_view key;
-    std::string_view english;
-};
-
-/// Returns all of them in English, for a definition that does not give them.
-std::span<const page_word> page_words_in_english();
-
-/// [page] of a definition: the words in the participant's language.
-class page_words {
-public:
-    /// \pre `key` is one of page_words_in_english().
-    std::string operator[](std::string_view key) const;
-    void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
-    /// Lists the keys that stay English although others were set.
-    std::vector<std::string_view> missing() const;
-
-private:
-    std::map<std::string, std::string, std::less<>> own_;
-};
-
-/// Reads [page] of a definition; passes over all else in it. \throws error (bad_input) with line and column,
-/// also if there is no [page].
-page_words load_page_words(const std::string& file);
 
 /// [masking]: noise from loudspeakers or headphones, so that nobody hears the array.
 struct masking_definition {

@@ -19,7 +19,7 @@
 #include "net/listen.hpp"
 #include "net/web.hpp"
 #include "rt/event_fd.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/experiment/page_words.hpp"
 
 namespace tactor::study {
 

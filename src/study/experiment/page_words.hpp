@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// [page] of a definition: the words of the participant's page and terminal, in the participant's language.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactor::detail {
+class toml_table;
+}
+
+namespace tactor::study {
+
+/// Length of a definition, at most.
+inline constexpr std::size_t most_definition_bytes = std::size_t{1} << 20;
+
+/// A text of the participant's page or terminal besides the definition's questions.
+struct page_word {
+    std::string_view key;
+    std::string_view english;
+};
+
+/// Returns all of them in English, for a definition that does not give them.
+std::span<const page_word> page_words_in_english();
+
+/// [page] of a definition: the words in the participant's language.
+class page_words {
+public:
+    /// \pre `key` is one of page_words_in_english().
+    std::string operator[](std::string_view key) const;
+    void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
+    /// Lists the keys that stay English although others were set.
+    std::vector<std::string_view> missing() const;
+
+private:
+    std::map<std::string, std::string, std::less<>> own_;
+};
+
+/// Reads [page] of a document. \throws error (bad_input) with line and column.
+page_words read_page(const detail::toml_table& root);
+
+/// Reads [page] of a definition; passes over all else in it. \throws error (bad_input) with line and column,
+/// also if there is no [page].
+page_words load_page_words(const std::string& file);
+
+} // namespace tactor::study
