@@ -31,12 +31,24 @@
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_files.hpp"
 #include "study/calibrate/person.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/experiment/page_words.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/masking/masking.hpp"
 
 namespace tactor::cli {
 namespace {
+
+// An option that not every method has.
+struct method_option {
+    const char* name;
+    bool of_staircase;
+    bool of_quest;
+};
+
+constexpr method_option all_method_options[] = {{"--rule", true, false},      {"--steps", true, false},
+                                                {"--reversals", true, false}, {"--discard", true, false},
+                                                {"--feedback", true, true},   {"--practice", true, true},
+                                                {"--trials", false, true},    {"--stop-sd", false, true}};
 
 struct calibrate_options {
     study::calibration_settings settings; ///< as far as the options say it
@@ -50,7 +62,7 @@ struct calibrate_options {
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
-    std::vector<std::string> method_options; ///< options from the command line that not every method has
+    std::vector<method_option> method_options; ///< those that the command line gives
     bool has_start = false; ///< the command line gives the start level, which no ceiling may lower
     bool resume = false;
 };
@@ -170,7 +182,7 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
     if (l.max_drive_s >= l.window_s)
         return;
     const double leak = l.max_drive_s / (l.window_s - l.max_drive_s);
-    const bool steady = c.method == study::calibration_method::adjustment;
+    const bool steady = !asks(c.method);
     if (c.interval_s > l.max_drive_s + rounding_s ||
         (steady && c.interval_s > leak * study::interval_gap_s + rounding_s))
         refuse_option("--interval",
@@ -195,9 +207,8 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
         c, "--method", "staircase|quest|adjustment",
         "ask about two intervals, by a staircase (default) or QUEST+, or let the participant set a level",
         [&s](const std::string& t) {
-            using enum study::calibration_method;
-            constexpr study::calibration_method all[] = {staircase, quest, adjustment};
-            s.method = all[choose("--method", t, {"staircase", "quest", "adjustment"})];
+            s.method = static_cast<study::calibration_method>(
+                choose("--method", t, {"staircase", "quest", "adjustment"})); // in the enum's order
         });
     add_text(c, "--tactors", "LIST", "tactors to measure, in this order, such as 0,3-5 (default all)",
              [&o](const std::string& t) { o.tactors = t; });
@@ -245,17 +256,13 @@ void settle_names(calibrate_options& o)
 void check_method(const calibrate_options& o)
 {
     using enum study::calibration_method;
-    constexpr std::string_view names[] = {"a staircase", "an adjustment", "QUEST+"}; // in the enum's order
-    for (const std::string& name : o.method_options) {
-        const bool is_of_quest = name == "--trials" || name == "--stop-sd";
-        const bool is_shared = name == "--feedback" || name == "--practice";
-        const study::calibration_method own = is_of_quest ? quest : staircase;
-        if (o.settings.method != own && !(is_shared && o.settings.method == quest))
-            refuse_option(
-                name,
-                fmt::format("{} does not have that", names[static_cast<std::size_t>(o.settings.method)]),
-                fmt::format("leave it out, or use --method {}", to_string(own)));
-    }
+    constexpr std::string_view names[] = {"a staircase", "QUEST+", "an adjustment"}; // in the enum's order
+    const study::calibration_method m = o.settings.method;
+    for (const method_option& one : o.method_options)
+        if (!(m == staircase ? one.of_staircase : m == quest && one.of_quest))
+            refuse_option(one.name, fmt::format("{} does not have that", names[static_cast<std::size_t>(m)]),
+                          fmt::format("leave it out, or use --method {}",
+                                      to_string(one.of_staircase ? staircase : quest)));
 }
 
 void check_calibrate_options(const calibrate_options& o, const settings& s)
@@ -533,10 +540,9 @@ int run_calibrate(command_line& line)
                     "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
                     "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
     line.parse();
-    for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice",
-                             "--trials", "--stop-sd"})
-        if (line.app.count(name) > 0)
-            o.method_options.emplace_back(name);
+    for (const method_option& one : all_method_options)
+        if (line.app.count(one.name) > 0)
+            o.method_options.push_back(one);
     return calibrate(s, o);
 }
 

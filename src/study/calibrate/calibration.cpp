@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -27,10 +26,11 @@ constexpr double halves_may_differ_db = 2.0;
 
 constexpr double series_from_db = 15.0;
 
+constexpr double guess_chance = 0.5; // of two intervals
+
 // QUEST+: levels and thresholds stand 1 dB apart, thresholds as far above the ceiling as says "not felt".
 constexpr int levels_db = 80;
 constexpr int above_ceiling_db = 10;
-constexpr double guess_chance = 0.5;
 // Right answers of a tactor, without a wrong one, that do not come from the skin.
 constexpr std::size_t too_many_right = 20;
 // The first tactor's threshold is expected below the start level, within some 20 dB; each other's near to
@@ -280,7 +280,7 @@ void calibration::make_trial()
     trial_.ceiling_dbfs = settings_.ceilings_dbfs[place_];
     trial_.place = place_ + 1;
     trial_.on_tactor = answered_ + 1;
-    if (settings_.method == calibration_method::adjustment) {
+    if (!asks(settings_.method)) {
         const double last = series_dbfs_.empty() ? settings_.start_dbfs() : series_dbfs_.back();
         const double by = series_dbfs_.size() % 2 == 0 ? series_from_db : -series_from_db;
         trial_.level_dbfs = std::clamp(last + by, floor_dbfs, trial_.ceiling_dbfs);
@@ -297,10 +297,10 @@ calibration_record calibration::answer(const calibration_answer& a)
 {
     calibration_record r{.trial = trial_, .response_time_s = a.response_time_s, .onset_frame = a.onset_frame};
     ++given_;
-    if (settings_.method == calibration_method::adjustment)
-        after_series(a, r);
-    else
+    if (asks(settings_.method))
         after_interval(a, r);
+    else
+        after_series(a, r);
     if (!done())
         make_trial();
     return r;
@@ -411,9 +411,8 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
 double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs)
 {
     if (o.spread_db == 0.0) // a step
-        return level_dbfs < threshold_dbfs ? 0.5 : 1.0 - o.lapse;
-    const double z = (level_dbfs - threshold_dbfs) / o.spread_db;
-    return 0.5 + (0.5 - o.lapse) * 0.5 * std::erfc(-z / std::numbers::sqrt2);
+        return level_dbfs < threshold_dbfs ? guess_chance : 1.0 - o.lapse;
+    return normal_chance(level_dbfs, {threshold_dbfs, o.spread_db, o.lapse}, guess_chance);
 }
 
 observer::observer(observer_settings o, const calibration_settings& s)

@@ -114,11 +114,16 @@ private:
     std::optional<staircase_end> end_ = {};
 };
 
-enum class calibration_method { staircase, adjustment, quest };
+enum class calibration_method { staircase, quest, adjustment };
 constexpr std::string_view to_string(calibration_method m) noexcept
 {
-    constexpr std::string_view names[] = {"staircase", "adjustment", "quest"};
+    constexpr std::string_view names[] = {"staircase", "quest", "adjustment"};
     return names[static_cast<std::size_t>(m)];
+}
+/// Returns true if a method asks which of two intervals vibrated.
+constexpr bool asks(calibration_method m) noexcept
+{
+    return m != calibration_method::adjustment;
 }
 
 /// Pause between the intervals of a trial, and ramps at their ends, s.

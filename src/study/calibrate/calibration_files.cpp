@@ -29,6 +29,7 @@
 #include "files/setup_text.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/text_table.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 namespace {
@@ -157,7 +158,7 @@ std::string threshold_text(const tactor_threshold& t, calibration_method m)
     add(s, "sd_db", t.sd_db);
     add(s, "posterior_sd_db", t.posterior_sd_db);
     s += fmt::format("trials = {}\n", t.trials);
-    if (m != calibration_method::adjustment)
+    if (asks(m))
         s += fmt::format("reversals_dbfs = [{}]\n", fmt::join(t.reversals_dbfs, ", "));
     add(s, "check_right", t.check_right);
     add(s, "check_below_right", t.check_below_right);
@@ -283,8 +284,8 @@ void calibration_log::append(const calibration_record& r)
 std::string settings_text(const calibration_settings& s)
 {
     const bool stairs = s.method == calibration_method::staircase;
-    const bool asks = s.method != calibration_method::adjustment;
     const auto if_stairs = [&](nlohmann::ordered_json v) { return stairs ? std::move(v) : nullptr; };
+    const auto if_asked = [&](nlohmann::ordered_json v) { return asks(s.method) ? std::move(v) : nullptr; };
     nlohmann::ordered_json j{{"participant", s.participant},
                              {"method", std::string(to_string(s.method))},
                              {"rule", if_stairs(rule_name(s))},
@@ -296,8 +297,8 @@ std::string settings_text(const calibration_settings& s)
                              {"steps_db", if_stairs(s.staircase.steps_db)},
                              {"reversals", if_stairs(s.staircase.reversals)},
                              {"discard", if_stairs(s.staircase.discard)},
-                             {"feedback", asks ? nlohmann::ordered_json(s.feedback) : nullptr},
-                             {"practice", asks ? nlohmann::ordered_json(s.practice) : nullptr},
+                             {"feedback", if_asked(s.feedback)},
+                             {"practice", if_asked(s.practice)},
                              {"masker", s.masker.empty() ? "none" : s.masker},
                              {"masker_pcm", s.masker.empty() ? "none" : s.masker_pcm},
                              {"seed", s.seed},
@@ -335,7 +336,7 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
     if (s.method == calibration_method::staircase)
         t += fmt::format("rule = \"{}\"\n", rule_name(s));
     t += fmt::format("carrier_hz = {}\ninterval_s = {}\n", s.carrier_hz, s.interval_s);
-    if (s.method != calibration_method::adjustment)
+    if (asks(s.method))
         t += fmt::format("feedback = {}\n", s.feedback);
     t += fmt::format(
         "masker = {}\ndate = {}\nseed = {}\nsimulated = {}\n",
@@ -421,17 +422,16 @@ std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_
     for (const tactor_spec& t : a.tactors)
         if (all.push_back(threshold_at(t, s.carrier_hz)); all.back())
             felt.push_back(*all.back());
-    std::ranges::sort(felt);
-    const double median = felt.empty() ? 0.0 : (felt[(felt.size() - 1) / 2] + felt[felt.size() / 2]) / 2.0;
+    const double usual_dbfs = median(std::move(felt)).value_or(0.0);
     std::vector<doubtful_threshold> doubtful;
     for (unsigned i = 0; i < all.size(); ++i) {
         if (!all[i])
             continue;
         const auto own = std::ranges::find(measured, i, &tactor_threshold::tactor);
-        if (const double above = *all[i] - median; above > most_above_median_db)
+        if (const double above = *all[i] - usual_dbfs; above > most_above_median_db)
             doubtful.push_back(
                 {i, fmt::format("it is {:.1f} dB above the median of the array's ({:.1f} dBFS)", above,
-                                median)});
+                                usual_dbfs)});
         else if (own != measured.end() && own->check_below_right.value_or(0) >= too_many_below)
             doubtful.push_back({i, fmt::format("{} of {} answers 6 dB below it were right, after a second "
                                                "staircase too",

@@ -101,16 +101,16 @@ given_stimulus person::play(const calibration_trial& t, const score& s,
 
 void person::begin()
 {
-    const bool asks = settings_.method != calibration_method::adjustment;
+    const bool choice = asks(settings_.method);
     on_page({.name = "introduce",
-             .text = words_[asks ? "calibrate_choose" : "calibrate_adjust"],
+             .text = words_[choice ? "calibrate_choose" : "calibrate_adjust"],
              .choices = {words_["begin"]},
              .keys = " "});
     session::show(
-        asks ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
-             : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
-               "is it;\n"
-               "n: not felt at any level.\n");
+        choice ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
+               : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
+                 "is it;\n"
+                 "n: not felt at any level.\n");
     if (!keys_.has_keys())
         return;
     session::show(page_ != nullptr ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
