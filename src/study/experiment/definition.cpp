@@ -169,6 +169,15 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
     return places;
 }
 
+template <class T>
+std::vector<std::string> names_at(const std::vector<std::size_t>& places, const std::vector<T>& all)
+{
+    std::vector<std::string> names;
+    for (const std::size_t i : places)
+        names.push_back(all[i].name);
+    return names;
+}
+
 namespace fs = std::filesystem;
 
 struct extent {
@@ -412,10 +421,8 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     read_scale(t, o);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
-    for (const std::size_t i : r.motions)
-        o.motions.push_back(d.motions[i].name);
-    for (const std::size_t i : r.methods)
-        o.methods.push_back(d.methods[i].name);
+    o.motions = names_at(r.motions, d.motions);
+    o.methods = names_at(r.methods, d.methods);
     check_cells(t, o);
     return r;
 }
@@ -476,18 +483,18 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
 group_outline read_group(const toml_table& t, const experiment_definition& d)
 {
     group_outline g{name_in(t, "name"), d.outline.runs};
-    const auto keep = [&](std::vector<std::string>& names, std::string_view key, const auto& all) {
-        const std::vector<std::size_t> kept = places_in(t, key, all);
-        std::erase_if(names, [&](const std::string& name) {
-            return std::ranges::none_of(kept, [&](std::size_t i) { return all[i].name == name; });
-        });
+    const auto keep = [](std::vector<std::string>& names, const std::vector<std::string>& kept) {
+        std::erase_if(names,
+                      [&kept](const std::string& name) { return std::ranges::count(kept, name) == 0; });
     };
     const std::vector<std::size_t> runs = places_in(t, "runs", d.outline.runs);
+    const std::vector<std::string> motions = names_at(places_in(t, "motions", d.motions), d.motions);
+    const std::vector<std::string> methods = names_at(places_in(t, "methods", d.methods), d.methods);
     for (std::size_t i = 0; i < g.runs.size(); ++i) {
         run_outline& r = g.runs[i];
-        keep(r.motions, "motions", d.motions);
-        keep(r.methods, "methods", d.methods);
-        if (std::ranges::find(runs, i) != runs.end())
+        keep(r.motions, motions);
+        keep(r.methods, methods);
+        if (std::ranges::count(runs, i) != 0)
             check_cells(t, r);
         else
             r.motions.clear();

@@ -400,12 +400,9 @@ std::set<std::string> list_notes(const study_facts& f)
 std::string describe_task(const run_outline& r)
 {
     const std::string methods = join(r.methods);
-    if (has_worths(r))
-        return fmt::format("two stimuli of one motion, by two of {}, one after the other; one was chosen",
-                           methods);
     if (r.task == task_kind::choose)
-        return fmt::format("two stimuli of one motion, by {} and by {}, one after the other; one was chosen",
-                           r.methods[0], r.methods[1]);
+        return fmt::format("two stimuli of one motion, by {}, one after the other; one was chosen",
+                           has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
     if (r.task == task_kind::rate)
         return fmt::format("one stimulus ({}), rated from {}", methods, rating_range(r));
     return fmt::format("one stimulus ({}); one of {} was named", methods,

@@ -106,15 +106,14 @@ void keep_group(experiment_definition& d, const std::string& name)
                     names.empty() ? "leave it out" : fmt::format("one of {}", fmt::join(names, ", ")));
     }
     d.group = name;
+    const auto keep = [](std::vector<std::size_t>& places, const auto& all, const auto& names) {
+        std::erase_if(places, [&](std::size_t i) { return std::ranges::count(names, all[i].name) == 0; });
+    };
     for (std::size_t i = 0; i < d.runs.size(); ++i) {
         run_definition& r = d.runs[i];
         r.outline = own->runs[i];
-        std::erase_if(r.motions, [&](std::size_t place) {
-            return std::ranges::count(r.outline.motions, d.motions[place].name) == 0;
-        });
-        std::erase_if(r.methods, [&](std::size_t place) {
-            return std::ranges::count(r.outline.methods, d.methods[place].name) == 0;
-        });
+        keep(r.motions, d.motions, r.outline.motions);
+        keep(r.methods, d.methods, r.outline.methods);
     }
     std::erase_if(d.runs, [](const run_definition& r) { return r.motions.empty(); });
 }
