@@ -20,6 +20,7 @@
 namespace tactor::cli {
 namespace {
 
+using json = nlohmann::ordered_json;
 using study::task_kind;
 
 std::string value_text(std::optional<double> v)
@@ -42,13 +43,9 @@ std::string interval_text(const std::optional<study::interval>& i)
     return i ? fmt::format("{:.2f} ... {:.2f}", i->first, i->second) : "-";
 }
 
-// An interval from t knows no bounds of the values.
 std::string interval_text(const std::optional<study::interval>& i, const study::interval& possible)
 {
-    if (!i)
-        return "-";
-    return interval_text(
-        study::interval{std::max(i->first, possible.first), std::min(i->second, possible.second)});
+    return i ? interval_text(study::cut_to(*i, possible)) : "-";
 }
 
 // Needs a test that has a t.
@@ -282,12 +279,11 @@ std::string write_worth_model(const study::run_outline& r, const std::string& fa
 {
     std::string others;
     for (std::size_t m = 1; m < r.methods.size(); ++m)
-        others += (m > 1 ? ", " : "") + nlohmann::ordered_json(r.methods[m]).dump();
+        others += (m > 1 ? ", " : "") + json(r.methods[m]).dump();
     return fmt::format("glmer(chosen ~ worth{} + (1 + worth | participant), family = binomial, "
                        "data = within(subset(d, run == {}), "
                        "worth <- sapply(c({}), function(m) (method == m) - (other == m))))",
-                       factors == "1" ? "" : " + worth:" + factors, nlohmann::ordered_json(r.name).dump(),
-                       others);
+                       factors == "1" ? "" : " + worth:" + factors, json(r.name).dump(), others);
 }
 
 // The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
@@ -302,8 +298,7 @@ std::string write_model(const study::run_outline& r, const std::vector<study::gr
                          : r.motions.size() > 1                              ? "(1 + motion | participant)"
                                                                              : "(1 | participant)";
     // R reads the texts of JSON.
-    const std::string data =
-        fmt::format("data = subset(d, run == {})", nlohmann::ordered_json(r.name).dump());
+    const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
     switch (r.task) {
     case task_kind::choose:
         if (has_worths(r))
@@ -501,7 +496,7 @@ void print_wide(const study::dataset& d)
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
-        text += grouped ? "," + nlohmann::ordered_json(d.groups[i]).dump() : ""; // quotes it
+        text += grouped ? "," + json(d.groups[i]).dump() : ""; // quotes it
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
             const study::run_outline& own = find_run(d, i, k);
             const std::vector<std::string> methods = study::row_methods(own);

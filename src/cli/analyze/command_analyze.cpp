@@ -90,16 +90,14 @@ struct analyze_options {
     study::selection who;
 };
 
-// Returns the ends of an error bar. An interval from t knows no bounds of the values: it is cut.
+// Returns the ends of an error bar.
 std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind,
                                          const study::interval& possible)
 {
     if (kind == error_bars::se)
         return t.se ? std::optional(study::interval{*t.mean - *t.se, *t.mean + *t.se}) : std::nullopt;
     const std::optional<study::interval>& i = kind == error_bars::within ? t.ci_within : t.ci;
-    if (!i)
-        return {};
-    return study::interval{std::max(i->first, possible.first), std::min(i->second, possible.second)};
+    return i ? std::optional(study::cut_to(*i, possible)) : std::nullopt;
 }
 
 plot::bar_series make_bars(const std::string& name, const study::by_motion& b, error_bars kind,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
@@ -81,7 +82,7 @@ std::vector<comparison> compare_motions(const by_motion& b, const effect& e)
     return tukey(means, b.all.n, e.ms_error, e.df2);
 }
 
-// Returns the number of rows of a run's cells.
+// Returns the number of rows of a run's cells: those of its last methods.
 std::size_t count_rows(const run_outline& run)
 {
     return run.task == task_kind::choose && !has_worths(run) ? 1 : run.methods.size();
@@ -358,9 +359,7 @@ std::optional<cell_values> compute_cells(const run_outline& run, const std::vect
 
 std::vector<std::string> row_methods(const run_outline& run)
 {
-    if (run.task == task_kind::choose && !has_worths(run))
-        return {run.methods.back()};
-    return run.methods;
+    return {run.methods.end() - static_cast<std::ptrdiff_t>(count_rows(run)), run.methods.end()};
 }
 
 double rounding_in(const run_outline& run) noexcept
@@ -381,6 +380,11 @@ std::optional<double> compared_value(const run_outline& run, const cell_values& 
 interval possible_values(const run_outline& run)
 {
     return run.task == task_kind::rate ? interval{run.lowest_rating(), run.scale} : per_cents;
+}
+
+interval cut_to(const interval& i, const interval& possible)
+{
+    return {std::max(i.first, possible.first), std::min(i.second, possible.second)};
 }
 
 } // namespace tactor::study

@@ -116,4 +116,7 @@ std::size_t chosen_method(const trial& t) noexcept;
 inline constexpr interval per_cents{0.0, 100.0};
 interval possible_values(const run_outline& run);
 
+/// Cuts an interval from t, which knows no bounds of the values, to what is possible.
+interval cut_to(const interval& i, const interval& possible);
+
 } // namespace tactor::study

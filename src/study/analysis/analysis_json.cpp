@@ -20,21 +20,24 @@ json interval_json(const std::optional<interval>& i)
     return i ? json::array({i->first, i->second}) : json(nullptr);
 }
 
-json test_json(const t_test& t)
-{
-    return {{"mean", or_null(t.mean)},   {"se", or_null(t.se)},
-            {"ci", interval_json(t.ci)}, {"ci_within", interval_json(t.ci_within)},
-            {"t", or_null(t.t)},         {"df", or_null(t.df)},
-            {"p", or_null(t.p)},         {"p_signflip", or_null(t.p_signflip)},
-            {"d", or_null(t.d)},         {"d_ci", interval_json(t.d_ci)}};
-}
-
 json mean_json(const t_test& t)
 {
     return {{"mean", or_null(t.mean)},
             {"se", or_null(t.se)},
             {"ci", interval_json(t.ci)},
             {"ci_within", interval_json(t.ci_within)}};
+}
+
+json test_json(const t_test& t)
+{
+    json j = mean_json(t);
+    j.update({{"t", or_null(t.t)},
+              {"df", or_null(t.df)},
+              {"p", or_null(t.p)},
+              {"p_signflip", or_null(t.p_signflip)},
+              {"d", or_null(t.d)},
+              {"d_ci", interval_json(t.d_ci)}});
+    return j;
 }
 
 // Returns a measure over all motions and for each, with its tests or without.
