@@ -162,6 +162,52 @@ TEST_CASE("epsilons of Greenhouse and Geisser and of Huynh and Feldt are those o
     CHECK(!huynh_feldt(0.5, 2.0, 1.0));         // two people
 }
 
+TEST_CASE("groups of people are those of R, also of unequal sizes")
+{
+    // R 4.2.2, car: Anova(lm(values ~ group), type = 3) with contr.sum
+    const cell_table row{reactions, 1, 6};
+    struct expected {
+        const effect& e;
+        double df1;
+        double df2;
+        double f;
+        double p;
+    };
+    const auto hold = [](const expected& x) {
+        CHECK(x.e.df1 == x.df1);
+        CHECK(x.e.df2 == x.df2);
+        CHECK(*x.e.f == doctest::Approx(x.f).epsilon(1e-9));
+        CHECK(*x.e.p / x.p == doctest::Approx(1.0).epsilon(1e-8));
+    };
+    const mixed_anova equal = analyse_groups(row, {0, 1, 0, 1, 0, 1, 0, 1, 0, 1});
+    hold({equal.group, 1, 8, 1.1781338360, 3.093579514e-01});
+    hold({equal.within.second, 5, 40, 34.9614791988, 1.381609258e-13});
+    hold({equal.by_group.second, 5, 40, 0.2742681048, 9.245245497e-01});
+    CHECK(*equal.within.second.epsilon_gg == doctest::Approx(0.4690617118).epsilon(1e-9));
+    CHECK(*equal.within.second.epsilon_hf == doctest::Approx(0.6758203247).epsilon(1e-9));
+    CHECK(*equal.by_group.second.p_gg == doctest::Approx(7.960833824e-01).epsilon(1e-8));
+    CHECK(*equal.by_group.second.p_hf == doctest::Approx(8.645649356e-01).epsilon(1e-8));
+    CHECK(*equal.group.eta2_partial == doctest::Approx(37500.0 / (37500.0 + 254640.0)));
+    CHECK(*equal.by_group.second.eta2_generalised ==
+          doctest::Approx(5340.0 / (5340.0 + 254640.0 + 155760.0)));
+
+    const std::vector<std::size_t> three{0, 0, 0, 0, 1, 1, 1, 2, 2, 2};
+    const mixed_anova unequal = analyse_groups(row, three);
+    hold({unequal.group, 2, 7, 0.6421511039, 5.545585088e-01});
+    hold({unequal.within.second, 5, 35, 31.8745069578, 4.307495449e-12});
+    hold({unequal.by_group.second, 10, 35, 0.4142658799, 9.303360841e-01});
+    CHECK(*unequal.by_group.second.epsilon_hf == doctest::Approx(0.8341145604).epsilon(1e-9));
+    CHECK(*unequal.by_group.second.p_gg == doctest::Approx(8.365007771e-01).epsilon(1e-8));
+    CHECK(*unequal.by_group.second.mauchly_p == doctest::Approx(0.3125051581).epsilon(1e-8));
+
+    const mixed_anova two = analyse_groups({reactions, 2, 3}, three);
+    hold({two.within.first, 1, 7, 28.7943573668, 1.045964745e-03});
+    hold({two.by_group.first, 2, 7, 0.5841379310, 5.826218292e-01});
+    hold({two.within.interaction, 2, 14, 36.2727272727, 2.898587448e-06});
+    hold({two.by_group.second, 4, 14, 0.3207836457, 8.593664950e-01});
+    CHECK(*two.by_group.interaction.p_gg == doctest::Approx(9.552355906e-01).epsilon(1e-8));
+}
+
 TEST_CASE("intervals within participants are those of Cousineau with the correction of Morey")
 {
     // Loftus and Masson 1994, table 2; R 4.2.2: qt(0.975, 9) sd / sqrt(10) sqrt(3 / 2) of the values less

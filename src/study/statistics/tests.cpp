@@ -117,37 +117,56 @@ matrix kronecker(const matrix& a, const matrix& b)
     return c;
 }
 
-// The sums of squares of an effect, and the cross products of the participants' differences.
+// The sums of squares of an effect, of its interaction with groups and of its error, and the cross products
+// of the participants' differences within groups.
 struct parts {
     double effect = 0.0;
+    double by_group = 0.0;
     double error = 0.0;
     matrix cross;
 };
 
-parts project(const cell_table& t, const matrix& c)
+// `groups`: of each participant, from 0; none is empty.
+parts project(const cell_table& t, const matrix& c, const std::vector<std::size_t>& groups)
 {
-    const auto n = static_cast<double>(t.values.size());
+    std::vector<double> n(1 + *std::max_element(groups.begin(), groups.end()), 0.0);
+    for (const std::size_t g : groups)
+        n[g] += 1.0;
     matrix z;
-    std::vector<double> mean(c.size(), 0.0);
-    for (const auto& row : t.values) {
+    matrix means(n.size(), std::vector<double>(c.size(), 0.0));
+    for (std::size_t i = 0; i < t.values.size(); ++i) {
         std::vector<double> on;
         for (std::size_t k = 0; k < c.size(); ++k) {
             double sum = 0.0;
-            for (std::size_t i = 0; i < row.size(); ++i)
-                sum += c[k][i] * row[i];
+            for (std::size_t j = 0; j < t.values[i].size(); ++j)
+                sum += c[k][j] * t.values[i][j];
             on.push_back(sum);
-            mean[k] += sum / n;
+            means[groups[i]][k] += sum / n[groups[i]];
         }
         z.push_back(on);
     }
     parts s;
     s.cross.assign(c.size(), std::vector<double>(c.size(), 0.0));
-    for (const auto& on : z)
+    for (std::size_t i = 0; i < z.size(); ++i)
         for (std::size_t k = 0; k < c.size(); ++k)
             for (std::size_t l = 0; l < c.size(); ++l)
-                s.cross[k][l] += (on[k] - mean[k]) * (on[l] - mean[l]);
+                s.cross[k][l] += (z[i][k] - means[groups[i]][k]) * (z[i][l] - means[groups[i]][l]);
+    // Type III: the effect is of the mean of all groups' means, each with the same weight.
+    const auto all = static_cast<double>(z.size());
+    double inverse = 0.0;
+    for (const double one : n)
+        inverse += all / one;
+    const auto count = static_cast<double>(n.size());
     for (std::size_t k = 0; k < c.size(); ++k) {
-        s.effect += n * mean[k] * mean[k];
+        double mean = 0.0;
+        double of_all = 0.0;
+        for (std::size_t g = 0; g < n.size(); ++g) {
+            mean += means[g][k] / count;
+            of_all += n[g] / all * means[g][k];
+        }
+        s.effect += all * count * count / inverse * mean * mean;
+        for (std::size_t g = 0; g < n.size(); ++g)
+            s.by_group += n[g] * (means[g][k] - of_all) * (means[g][k] - of_all);
         s.error += s.cross[k][k];
     }
     return s;
@@ -179,34 +198,36 @@ double p_of_f(double f, double df1, double df2)
         boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
 }
 
-effect judge(const parts& s, const cell_table& t, double all_error)
+// Judges a sum of squares with `df1` against the error of these parts.
+effect judge(double squares, std::size_t df1, const parts& s, const cell_table& t, std::size_t groups,
+             double all_error)
 {
     effect e;
     const std::size_t n = t.values.size();
-    const auto df1 = static_cast<double>(s.cross.size());
-    if (s.cross.empty() || n < 2)
+    if (df1 == 0 || n <= groups)
         return e;
-    e.df1 = df1;
-    e.df2 = df1 * static_cast<double>(n - 1);
+    e.df1 = static_cast<double>(df1);
+    e.df2 = static_cast<double>(s.cross.size() * (n - groups));
     if (s.error <= nothing(t)) {
         e.ms_error = 0.0;
         return e;
     }
     e.ms_error = s.error / e.df2;
-    e.f = s.effect / df1 / *e.ms_error;
+    e.f = squares / e.df1 / *e.ms_error;
     e.p = p_of_f(*e.f, e.df1, e.df2);
-    e.eta2_partial = s.effect / (s.effect + s.error);
-    e.eta2_generalised = s.effect / (s.effect + all_error);
+    e.eta2_partial = squares / (squares + s.error);
+    e.eta2_generalised = squares / (squares + all_error);
     if (s.cross.size() < 2)
         return e;
     e.epsilon_gg = greenhouse_geisser(s.cross);
     e.p_gg = p_of_f(*e.f, *e.epsilon_gg * e.df1, *e.epsilon_gg * e.df2);
-    e.epsilon_hf = huynh_feldt(*e.epsilon_gg, e.df1, static_cast<double>(n - 1));
+    e.epsilon_hf =
+        huynh_feldt(*e.epsilon_gg, static_cast<double>(s.cross.size()), static_cast<double>(n - groups));
     if (e.epsilon_hf) {
         const double epsilon = std::min(1.0, *e.epsilon_hf);
         e.p_hf = p_of_f(*e.f, epsilon * e.df1, epsilon * e.df2);
     }
-    if (const auto m = mauchly(s.cross, n - 1, t.first_levels * t.second_levels)) {
+    if (const auto m = mauchly(s.cross, n - groups, t.first_levels * t.second_levels)) {
         e.mauchly_w = m->w;
         e.mauchly_p = m->p;
     }
@@ -475,18 +496,32 @@ interval binomial_interval(std::size_t hits, std::size_t n)
             binomial_distribution<double, in_double>::find_upper_bound_on_p(trials, successes, tail)};
 }
 
-anova repeated_measures(const cell_table& t)
+mixed_anova analyse_groups(const cell_table& t, const std::vector<std::size_t>& groups)
 {
     if (t.values.size() < 2)
         return {};
     const matrix first = contrasts(t.first_levels);
     const matrix second = contrasts(t.second_levels);
-    const parts a = project(t, kronecker(first, average(t.second_levels)));
-    const parts b = project(t, kronecker(average(t.first_levels), second));
-    const parts ab = project(t, kronecker(first, second));
-    const parts participants = project(t, kronecker(average(t.first_levels), average(t.second_levels)));
+    const auto split = [&](const matrix& x, const matrix& y) { return project(t, kronecker(x, y), groups); };
+    const parts a = split(first, average(t.second_levels));
+    const parts b = split(average(t.first_levels), second);
+    const parts ab = split(first, second);
+    const parts participants = split(average(t.first_levels), average(t.second_levels));
     const double all_error = participants.error + a.error + b.error + ab.error;
-    return {judge(a, t, all_error), judge(b, t, all_error), judge(ab, t, all_error)};
+    const std::size_t count = 1 + *std::max_element(groups.begin(), groups.end());
+    const auto within = [&](const parts& s) {
+        return judge(s.effect, s.cross.size(), s, t, count, all_error);
+    };
+    const auto by_group = [&](const parts& s) {
+        return judge(s.by_group, (count - 1) * s.cross.size(), s, t, count, all_error);
+    };
+    return {
+        by_group(participants), {within(a), within(b), within(ab)}, {by_group(a), by_group(b), by_group(ab)}};
+}
+
+anova repeated_measures(const cell_table& t)
+{
+    return analyse_groups(t, std::vector<std::size_t>(t.values.size(), 0)).within;
 }
 
 double greenhouse_geisser(const matrix& cross)

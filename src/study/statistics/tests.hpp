@@ -115,13 +115,27 @@ struct anova {
 /// Computes both main effects and their interaction; of a factor with one level nothing.
 anova repeated_measures(const cell_table& t);
 
+struct mixed_anova {
+    effect group;
+    anova within;
+    anova by_group; ///< interactions of the effects within participants with the group
+};
+
+/// Computes the effects of groups of participants and of both factors within participants, with sums of
+/// squares of type III: an effect within participants is that of the mean of the groups' means, whatever
+/// their sizes. Errors and epsilons come from the covariance within groups; eta squared counts groups as
+/// assigned, not found. `groups`: of each participant, from 0; none is empty. Nothing where no group has two
+/// participants.
+mixed_anova analyse_groups(const cell_table& t, const std::vector<std::size_t>& groups);
+
 /// Returns epsilon of Greenhouse and Geisser (1959), 1 / rows ... 1, from the cross products of orthonormal
 /// contrasts (at least two; not all 0).
 double greenhouse_geisser(const std::vector<std::vector<double>>& cross);
 
 /// Returns epsilon of Huynh and Feldt (1976) as R does, from that of Greenhouse and Geisser for an effect
-/// with `df1`: ((df + 1) df1 epsilon - 2) / (df1 (df - df1 epsilon)), `df`: participants - 1, all of one
-/// group. It may be above 1. Nothing where the divisor is 0, as with two participants.
+/// with `df1` contrasts: ((df + 1) df1 epsilon - 2) / (df1 (df - df1 epsilon)), `df`: participants - groups,
+/// as in R 4.2 (not Lecoutre's correction). It may be above 1. Nothing where the divisor is 0, as with two
+/// participants.
 std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df);
 
 struct mauchly_test {
@@ -131,8 +145,8 @@ struct mauchly_test {
 
 /// Computes Mauchly's test (1940) of equal variance of the differences between levels, with the correction to
 /// the second order that R has, in mauchly.test() and in car: one of its terms counts all `cells` of the
-/// design, not the contrasts. `df`: participants - 1. Nothing where df is less than the number of contrasts,
-/// or the matrix is singular.
+/// design, not the contrasts. `df`: participants - groups. Nothing where df is less than the number of
+/// contrasts, or the matrix is singular.
 std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cross, std::size_t df,
                                     std::size_t cells);
 
