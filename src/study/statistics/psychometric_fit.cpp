@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "study/statistics/psychometric_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include <boost/math/policies/policy.hpp>
+#include <boost/math/special_functions/erf.hpp>
+
+#include "study/random/random.hpp"
+
+namespace tactor::study {
+namespace {
+
+// In double: as in tests.cpp.
+using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+struct sigmoid_value {
+    double below; // S(z)
+    double above; // 1 - S(z), which has digits where S is near 1
+    double slope; // dS / dz
+    double bend;  // d2S / dz2
+};
+
+sigmoid_value evaluate(sigmoid kind, double z)
+{
+    if (kind == sigmoid::normal) {
+        const double density = std::exp(-z * z / 2.0) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+        return {0.5 * std::erfc(-z / std::numbers::sqrt2), 0.5 * std::erfc(z / std::numbers::sqrt2), density,
+                -z * density};
+    }
+    const double below = 1.0 / (1.0 + std::exp(-z));
+    const double above = 1.0 / (1.0 + std::exp(z));
+    return {below, above, below * above, below * above * (above - below)};
+}
+
+double normal_quantile(double share)
+{
+    return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * share, in_double());
+}
+
+// Returns the x where F is `level`, if any.
+std::optional<double> find_x(double level, const psychometric& p, const psychometric_family& f)
+{
+    const double s = (level - f.guess) / (1.0 - f.guess - p.lapse);
+    if (s <= 0.0 || s >= 1.0)
+        return {};
+    const double z = f.kind == sigmoid::normal ? normal_quantile(s) : std::log(s / (1.0 - s));
+    return p.threshold + p.slope * z;
+}
+
+// The stimuli are -1 to 1 here: z = a + b x.
+struct point {
+    double a;
+    double b;
+    double lapse;
+};
+
+// The log-likelihood without binomial coefficients, and its derivatives by a, b and the lapse.
+struct likelihood {
+    double log = 0.0;
+    std::array<double, 3> gradient = {};
+    std::array<std::array<double, 3>, 3> information = {};
+
+    double determinant() const // of a and b
+    {
+        const auto& i = information;
+        return i[0][0] * i[1][1] - i[0][1] * i[0][1];
+    }
+    bool singular() const
+    {
+        return !(information[0][0] > 0.0 && determinant() > 1e-12 * information[0][0] * information[1][1]);
+    }
+};
+
+// Computes the information that was observed, or that is expected.
+likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_family& f, const point& p,
+                    bool expected = false)
+{
+    likelihood all;
+    const double height = 1.0 - f.guess - p.lapse;
+    for (const auto& [x, trials, answers] : blocks) {
+        const sigmoid_value s = evaluate(f.kind, p.a + p.b * x);
+        const double yes = std::max(f.guess + height * s.below, 1e-150);
+        const double no = std::max(p.lapse + height * s.above, 1e-150);
+        const auto n = static_cast<double>(trials);
+        const auto k = static_cast<double>(answers);
+        all.log += k * std::log(yes) + (n - k) * std::log(no);
+        const double score = k / yes - (n - k) / no;
+        const double weight = expected ? n / (yes * no) : k / (yes * yes) + (n - k) / (no * no);
+        const double bent = expected ? 0.0 : score;
+        const std::array<double, 3> by{height * s.slope, height * s.slope * x, -s.below};
+        const double aa = height * s.bend;
+        const std::array<std::array<double, 3>, 3> second{
+            {{aa, aa * x, -s.slope}, {aa * x, aa * x * x, -s.slope * x}, {-s.slope, -s.slope * x, 0.0}}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            all.gradient[i] += score * by[i];
+            for (std::size_t j = 0; j < 3; ++j)
+                all.information[i][j] += weight * by[i] * by[j] - bent * second[i][j];
+        }
+    }
+    return all;
+}
+
+// Returns the move to the best point within the bounds of the lapse if the information were constant. Nothing
+// if there is no best one; if the answers say nothing on the lapse, it stays.
+std::optional<point> find_move(const likelihood& l, double lapse, double most_lapse, bool expected)
+{
+    if (l.singular())
+        return {};
+    const auto& i = l.information;
+    const auto solve = [&](double u, double v) {
+        return std::array{(i[1][1] * u - i[0][1] * v) / l.determinant(),
+                          (i[0][0] * v - i[0][1] * u) / l.determinant()};
+    };
+    const auto free = solve(l.gradient[0], l.gradient[1]);
+    const auto by_lapse = solve(i[0][2], i[1][2]);
+    const double rest = i[2][2] - i[0][2] * by_lapse[0] - i[1][2] * by_lapse[1];
+    double moved = 0.0;
+    if (rest > 1e-12 * i[2][2])
+        moved = std::clamp((l.gradient[2] - i[0][2] * free[0] - i[1][2] * free[1]) / rest, -lapse,
+                           most_lapse - lapse);
+    else if (most_lapse > 0.0 && !expected)
+        return {};
+    return point{free[0] - by_lapse[0] * moved, free[1] - by_lapse[1] * moved, moved};
+}
+
+struct summit {
+    point at;
+    double log;
+    bool step = false; // the slope may be any large one
+};
+
+// Climbs by Newton's method, or Fisher's scoring where that does not lead up; halves a move until it does not
+// lead down. Nothing if the answers do not rise.
+std::optional<summit> climb(const std::vector<answer_block>& blocks, const psychometric_family& f, point p)
+{
+    likelihood here = evaluate(blocks, f, p);
+    for (int i = 0; i < 200; ++i) {
+        auto move = find_move(here, p.lapse, f.most_lapse, false);
+        if (!move) {
+            here = evaluate(blocks, f, p, true);
+            move = find_move(here, p.lapse, f.most_lapse, true);
+        }
+        const auto& up = here.gradient;
+        // The square of the move in standard errors.
+        if (!move || up[0] * move->a + up[1] * move->b + up[2] * move->lapse < 1e-16) {
+            // The slope is more than a thousandth of its standard error.
+            const bool known = move && p.b * p.b * here.determinant() > 1e-6 * here.information[0][0];
+            const bool step = !known && p.b > 1.0 && std::abs(p.a) < p.b;
+            return p.b > 0.0 && (known || step) ? std::optional(summit{p, here.log, step}) : std::nullopt;
+        }
+        double part = 1.0;
+        for (;; part /= 2.0) {
+            const point next{p.a + part * move->a, p.b + part * move->b,
+                             std::clamp(p.lapse + part * move->lapse, 0.0, f.most_lapse)};
+            const likelihood there = evaluate(blocks, f, next);
+            if (there.log >= here.log - 1e-13 * std::abs(here.log)) {
+                p = next;
+                here = there;
+                break;
+            }
+            if (part < 1e-12)
+                return {};
+        }
+    }
+    return {};
+}
+
+// Returns the highest of the summits above the starts: with lapses and a guess there may be several.
+std::optional<summit> find_summit(const std::vector<answer_block>& blocks, const psychometric_family& f,
+                                  const std::vector<point>& starts)
+{
+    std::optional<summit> best;
+    for (const point& start : starts)
+        if (const auto s = climb(blocks, f, start); s && (!best || s->log > best->log))
+            best = s;
+    return best;
+}
+
+// Blocks with stimuli from -1 to 1.
+struct scaled_blocks {
+    explicit scaled_blocks(std::span<const answer_block> given) : all(given.begin(), given.end())
+    {
+        const auto [least, most] =
+            std::ranges::minmax_element(given, std::less<>(), [](const answer_block& b) { return b.x; });
+        middle = (least->x + most->x) / 2.0;
+        half = (most->x - least->x) / 2.0;
+        for (answer_block& block : all)
+            block.x = (block.x - middle) / half;
+    }
+    std::vector<answer_block> all;
+    double middle = 0.0;
+    double half = 0.0;
+};
+
+// Returns the highest log-likelihood of all functions.
+double saturated(const std::vector<answer_block>& blocks)
+{
+    double sum = 0.0;
+    for (const answer_block& block : blocks)
+        for (const std::size_t count : {block.k, block.n - block.k})
+            if (count > 0)
+                sum += static_cast<double>(count) *
+                       std::log(static_cast<double>(count) / static_cast<double>(block.n));
+    return sum;
+}
+
+psychometric_fit describe(const scaled_blocks& blocks, const psychometric_family& f, const summit& best)
+{
+    psychometric_fit fit;
+    fit.parameters = {blocks.middle - blocks.half * best.at.a / best.at.b, blocks.half / best.at.b,
+                      best.at.lapse};
+    fit.step = best.step;
+    fit.deviance = std::max(0.0, 2.0 * (saturated(blocks.all) - best.log));
+    if (f.guess > 0.0)
+        return fit;
+    fit.pse = find_x(0.5, fit.parameters, f);
+    if (const auto high = find_x(0.75, fit.parameters, f))
+        fit.jnd = (*high - *find_x(0.25, fit.parameters, f)) / 2.0;
+    return fit;
+}
+
+// Returns the 95 % interval from values of `times` simulations: percentiles, moved by Efron's (1987) bias.
+std::optional<interval> percentiles(std::vector<double> values, std::size_t times, double bias = 0.0)
+{
+    const auto n = static_cast<double>(values.size());
+    if (values.empty() || n < 0.95 * static_cast<double>(times))
+        return {};
+    std::sort(values.begin(), values.end());
+    const auto at = [&](double z) {
+        const double share = evaluate(sigmoid::normal, 2.0 * bias + z).below;
+        const double place = std::clamp(share * (n + 1.0) - 1.0, 0.0, n - 1.0);
+        const auto i = static_cast<std::size_t>(place);
+        const double next = values[std::min(i + 1, values.size() - 1)];
+        return values[i] + (place - static_cast<double>(i)) * (next - values[i]);
+    };
+    const double z = normal_quantile(0.975);
+    return interval{at(-z), at(z)};
+}
+
+} // namespace
+
+double chance(double x, const psychometric& p, const psychometric_family& f)
+{
+    return f.guess + (1.0 - f.guess - p.lapse) * evaluate(f.kind, (x - p.threshold) / p.slope).below;
+}
+
+std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> blocks,
+                                                 const psychometric_family& f)
+{
+    if (blocks.empty())
+        return {};
+    const scaled_blocks scaled(blocks);
+    if (!(scaled.half > 0.0))
+        return {};
+    std::vector<point> starts;
+    for (const double lapse : {0.0, f.most_lapse / 2.0, f.most_lapse}) {
+        std::optional<summit> best;
+        for (double threshold = -1.0; threshold < 1.1; threshold += 0.2)
+            for (double b = 0.5; b < static_cast<double>(blocks.size()); b *= 2.0) {
+                const point p{-b * threshold, b, lapse};
+                if (const double log = evaluate(scaled.all, f, p).log; !best || log > best->log)
+                    best = summit{p, log};
+            }
+        starts.push_back(best->at);
+    }
+    const auto best = find_summit(scaled.all, f, starts);
+    if (!best)
+        return {};
+    psychometric_fit fit = describe(scaled, f, *best);
+    if (fit.step)
+        fit.jnd.reset();
+    return fit;
+}
+
+psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> blocks,
+                                              const psychometric_family& f, const psychometric_fit& fit,
+                                              std::string_view seed, std::size_t times)
+{
+    psychometric_bootstrap result;
+    if (fit.step)
+        return result;
+    random_numbers r(seed);
+    scaled_blocks scaled(blocks);
+    const auto& [threshold, slope, found_lapse] = fit.parameters;
+    std::vector<point> starts;
+    for (const double lapse : {0.0, f.most_lapse / 2.0, f.most_lapse})
+        starts.push_back({(scaled.middle - threshold) / slope, scaled.half / slope, lapse});
+    std::vector<double> thresholds;
+    std::vector<double> pses;
+    std::vector<double> jnds;
+    double as_large = 1.0;
+    double less_jnd = 0.5;
+    for (std::size_t i = 0; i < times; ++i) {
+        for (std::size_t j = 0; j < blocks.size(); ++j) {
+            const double yes = chance(blocks[j].x, fit.parameters, f);
+            scaled.all[j].k = 0;
+            for (std::size_t trial = 0; trial < blocks[j].n; ++trial)
+                scaled.all[j].k += r.unit() < yes ? 1 : 0;
+        }
+        const auto best = find_summit(scaled.all, f, starts);
+        if (!best)
+            continue;
+        const psychometric_fit again = describe(scaled, f, *best);
+        thresholds.push_back(again.parameters.threshold);
+        if (again.pse)
+            pses.push_back(*again.pse);
+        if (again.jnd && fit.jnd) {
+            jnds.push_back(*again.jnd);
+            less_jnd += *again.jnd < *fit.jnd ? 1.0 : 0.0;
+        }
+        // Rounding must not make equal answers fit better.
+        as_large += again.deviance >= fit.deviance - 1e-9 * (1.0 + fit.deviance) ? 1.0 : 0.0;
+    }
+    const auto share = [](double count, const std::vector<double>& all) {
+        return count / static_cast<double>(all.size() + 1);
+    };
+    result.threshold = percentiles(thresholds, times);
+    result.pse = percentiles(pses, times);
+    result.jnd = percentiles(jnds, times, normal_quantile(share(less_jnd, jnds)));
+    if (result.threshold)
+        result.p_gof = share(as_large, thresholds);
+    result.failed = times - thresholds.size();
+    return result;
+}
+
+} // namespace tactor::study

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// Psychometric fits against published and recomputed values. Prints how many of the
+// 95 % intervals of simulated studies hold the truth; of 1,000 studies with TACTOR_SOAK=whole:
+//   build-tests/tests/study/test-study -tc="*hold the truth*"
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "rounds.hpp"
+#include "study/random/random.hpp"
+#include "study/statistics/psychometric_fit.hpp"
+
+namespace tactor::study::test_psychometric {
+namespace {
+
+std::vector<answer_block> blocks(const std::vector<double>& x, std::size_t n,
+                                 const std::vector<std::size_t>& k)
+{
+    std::vector<answer_block> all;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        all.push_back({x[i], n, k[i]});
+    return all;
+}
+
+std::vector<double> steps(double from, double step, int count)
+{
+    std::vector<double> all;
+    for (int i = 0; i < count; ++i)
+        all.push_back(from + i * step);
+    return all;
+}
+
+void check(const psychometric_fit& fit, double threshold, double slope, double deviance)
+{
+    CHECK(fit.parameters.threshold == doctest::Approx(threshold).epsilon(1e-6));
+    CHECK(fit.parameters.slope == doctest::Approx(slope).epsilon(1e-6));
+    CHECK(fit.deviance == doctest::Approx(deviance).epsilon(1e-6));
+    CHECK(!fit.step);
+}
+
+constexpr psychometric_family without_lapse{sigmoid::normal, 0.0, 0.0};
+constexpr psychometric_family two_choices{sigmoid::normal, 0.5, 0.06};
+const std::vector<double> seven = steps(-3.0, 1.0, 7);
+
+TEST_CASE("psignifit's standard set")
+{
+    const auto standard =
+        blocks({1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3, 5e-3, 6e-3, 7e-3, 8e-3, 10e-3}, 90,
+               {45, 50, 44, 44, 52, 53, 62, 64, 76, 79, 88, 90, 90});
+    // Maximum likelihood, recomputed; psignifit's own estimates have priors.
+    const auto normal = *fit_psychometric(standard, two_choices);
+    check(normal, 4.647817e-3, 1.416257e-3, 5.93281305);
+    CHECK(normal.parameters.lapse == 0.0);
+    CHECK(!normal.pse);
+    CHECK(!normal.jnd);
+    check(*fit_psychometric(standard, {sigmoid::logistic, 0.5, 0.06}), 4.633233e-3, 0.817966e-3, 7.09527732);
+    const auto b = bootstrap_psychometric(standard, two_choices, normal, "standard");
+    CHECK(b.threshold->first < 4.647817e-3);
+    CHECK(b.threshold->second > 4.647817e-3);
+    CHECK(!b.pse);
+    CHECK(*b.p_gof > 0.5);
+}
+
+TEST_CASE("ten levels without lapses")
+{
+    const std::vector<double> x = steps(0.25, 1.0 / 6.0, 10);
+    check(*fit_psychometric(blocks(x, 10, {0, 2, 2, 3, 7, 7, 8, 8, 9, 10}), without_lapse), 0.89892610,
+          0.43599963, 4.80985865);
+    check(*fit_psychometric(blocks(x, 10, {4, 6, 3, 8, 7, 5, 8, 9, 9, 10}), {sigmoid::normal, 0.5, 0.0}),
+          1.19192848, 0.34540835, 8.21836510);
+    check(*fit_psychometric(blocks(x, 10, {5, 5, 5, 6, 5, 7, 9, 9, 8, 10}), {sigmoid::logistic, 0.5, 0.0}),
+          1.18866409, 0.22919598, 4.12493144);
+}
+
+TEST_CASE("lapses move threshold and slope: Wichmann and Hill's example")
+{
+    const auto eight = blocks(steps(0.0, 60.0, 8), 20, {0, 0, 4, 18, 20, 20, 19, 20});
+    const auto without = *fit_psychometric(eight, without_lapse);
+    check(without, 151.05117661, 57.17587294, 20.89300909);
+    CHECK(*without.pse == doctest::Approx(151.05117661));
+    CHECK(*without.pse + *without.jnd == doctest::Approx(189.6157169).epsilon(1e-7)); // 75 %
+    const auto lapsing = *fit_psychometric(eight, {});
+    check(lapsing, 142.97789392, 27.07164535, 2.86498355);
+    CHECK(lapsing.parameters.lapse == doctest::Approx(0.01257566).epsilon(1e-6));
+    CHECK(chance(162.0596614, lapsing.parameters, {}) == doctest::Approx(0.75).epsilon(1e-8));
+    CHECK(chance(*lapsing.pse, lapsing.parameters, {}) == doctest::Approx(0.5).epsilon(1e-12));
+    CHECK(*bootstrap_psychometric(eight, without_lapse, without, "eight").p_gof < 0.01);
+    CHECK(*bootstrap_psychometric(eight, {}, lapsing, "eight").p_gof > 0.1);
+}
+
+TEST_CASE("fits are those of R's glm")
+{
+    // quickpsy's data (MIT): answers of three people to two kinds of pairs; deviance of single trials.
+    // R 4.2.2 with epsilon = 1e-15: glm's own stops at four digits of the slope.
+    struct person {
+        std::size_t n;
+        std::vector<std::size_t> k;
+        double threshold;
+        double slope;
+        double deviance;
+    };
+    for (const person& p : {
+             person{40, {2, 0, 1, 13, 32, 37, 36, 37}, -70.21747454, 78.48148496, 215.97694667},
+             person{40, {1, 2, 10, 30, 37, 39, 40, 39}, -121.05530691, 61.72233903, 169.35076620},
+             person{20, {0, 1, 2, 10, 18, 18, 20, 19}, -92.53564315, 67.18117328, 93.11075222},
+             person{20, {0, 2, 8, 14, 20, 20, 20, 19}, -130.26832709, 66.13319715, 88.73178550},
+             person{20, {0, 1, 3, 6, 16, 18, 20, 19}, -81.37293191, 69.24385978, 97.23446619},
+             person{20, {1, 5, 8, 8, 18, 19, 20, 20}, -124.61735425, 78.89946578, 111.64255683},
+         }) {
+        std::vector<answer_block> trials;
+        for (std::size_t i = 0; i < p.k.size(); ++i)
+            for (std::size_t j = 0; j < p.n; ++j)
+                trials.push_back({-250.0 + 50.0 * static_cast<double>(i), 1, j < p.k[i] ? 1U : 0U});
+        check(*fit_psychometric(trials, without_lapse), p.threshold, p.slope, p.deviance);
+    }
+    check(*fit_psychometric(blocks(seven, 20, {1, 0, 4, 9, 14, 20, 18}), {sigmoid::logistic, 0.0, 0.0}),
+          0.205460721435, 0.821995249432, 9.576427891255);
+}
+
+TEST_CASE("answers that are flat or fall have no fit; a step has a threshold alone")
+{
+    for (const auto& k : std::vector<std::vector<std::size_t>>{{10, 10, 10, 10, 10, 10, 10},
+                                                               {19, 18, 15, 10, 5, 2, 0},
+                                                               {0, 0, 0, 0, 0, 0, 0},
+                                                               {20, 20, 20, 20, 20, 20, 20},
+                                                               {20, 10, 0, 0, 0, 10, 20}})
+        CHECK(!fit_psychometric(blocks(seven, 20, k), {}));
+    CHECK(!fit_psychometric(blocks(seven, 20, {8, 9, 10, 10, 7, 8, 9}), two_choices));
+    CHECK(!fit_psychometric({}, {}));
+    CHECK(!fit_psychometric(blocks({1.0}, 20, {5}), {}));
+
+    const auto step = blocks(seven, 20, {0, 0, 0, 0, 20, 20, 20});
+    const auto fit = *fit_psychometric(step, {});
+    CHECK(fit.step);
+    CHECK(*fit.pse == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(!fit.jnd);
+    CHECK(!bootstrap_psychometric(step, {}, fit, "step").pse);
+    const auto through = *fit_psychometric(blocks(seven, 20, {0, 0, 0, 7, 20, 20, 20}), {});
+    CHECK(through.step);
+    CHECK(std::abs(*through.pse) < 0.1);
+
+    // A slope near 0: many simulated sets fall.
+    const auto shallow = blocks(seven, 20, {10, 9, 10, 11, 10, 10, 11});
+    const auto none = bootstrap_psychometric(shallow, {}, *fit_psychometric(shallow, {}), "shallow");
+    CHECK(none.failed > 100);
+    CHECK(!none.pse);
+    CHECK(!none.p_gof);
+}
+
+TEST_CASE("a text seeds the bootstrap")
+{
+    const auto answers = blocks(seven, 20, {0, 1, 3, 10, 17, 19, 20});
+    const auto fit = *fit_psychometric(answers, {});
+    const auto b = bootstrap_psychometric(answers, {}, fit, "one");
+    CHECK(b.pse == bootstrap_psychometric(answers, {}, fit, "one").pse);
+    CHECK(b.pse != bootstrap_psychometric(answers, {}, fit, "two").pse);
+    CHECK(b.failed == 0);
+    CHECK(b.jnd->first < *fit.jnd);
+    CHECK(b.jnd->second > *fit.jnd);
+}
+
+TEST_CASE("intervals of the pse hold the truth in 95 % of simulated studies")
+{
+    const int studies = test::rounds(96, 1000);
+    const psychometric truth{0.3, 1.0, 0.02};
+    const double pse = 0.325581; // where 0.98 Phi(x - 0.3) is 0.5
+    const double jnd = 0.690998;
+    for (const std::size_t n : {20U, 40U}) {
+        random_numbers r(fmt::format("{} trials", n));
+        int hold = 0;
+        int hold_jnd = 0;
+        for (int i = 0; i < studies; ++i) {
+            auto answers = blocks(seven, n, std::vector<std::size_t>(7, 0));
+            for (answer_block& block : answers)
+                for (std::size_t j = 0; j < n; ++j)
+                    block.k += r.unit() < chance(block.x, truth, {}) ? 1 : 0;
+            const auto b = bootstrap_psychometric(answers, {}, *fit_psychometric(answers, {}),
+                                                  std::to_string(i), test::whole() ? 2000 : 400);
+            hold += b.pse && b.pse->first <= pse && pse <= b.pse->second ? 1 : 0;
+            hold_jnd += b.jnd && b.jnd->first <= jnd && jnd <= b.jnd->second ? 1 : 0;
+        }
+        fmt::print("{} trials for each of 7 values: of {} intervals {} hold the pse, {} the jnd\n", n,
+                   studies, hold, hold_jnd);
+        CHECK(hold >= studies * (test::whole() ? 93 : 85) / 100);
+        CHECK(hold <= studies * (test::whole() ? 97 : 100) / 100);
+    }
+}
+
+} // namespace
+} // namespace tactor::study::test_psychometric
