@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Psychometric fits against published and recomputed values. Prints how many of the
+// Psychometric fits and sensitivities against published and recomputed values. Prints how many of the
 // 95 % intervals of simulated studies hold the truth; of 1,000 studies with TACTOR_SOAK=whole:
 //   build-tests/tests/study/test-study -tc="*hold the truth*"
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "rounds.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/psychometric_fit.hpp"
+#include "study/statistics/signal_detection.hpp"
 
 namespace tactor::study::test_psychometric {
 namespace {
@@ -188,6 +189,30 @@ TEST_CASE("intervals of the pse hold the truth in 95 % of simulated studies")
         CHECK(hold >= studies * (test::whole() ? 93 : 85) / 100);
         CHECK(hold <= studies * (test::whole() ? 97 : 100) / 100);
     }
+}
+
+TEST_CASE("sensitivities")
+{
+    const sensitivity corrected = yes_no(corrected_rate(20, 25), corrected_rate(0, 25));
+    CHECK(corrected.dprime == doctest::Approx(2.87099636).epsilon(1e-8));
+    CHECK(corrected.c == doctest::Approx(0.63440365).epsilon(1e-8));
+    struct rates {
+        double hits;
+        double false_alarms;
+        double dprime;
+    };
+    for (const rates& e :
+         {rates{0.642, 0.3, 1.95061531}, rates{0.6, 0.2, 2.16161569}, rates{0.75, 0.3, 2.40588626},
+          rates{0.8, 0.4, 2.34964949}, rates{0.9, 0.3, 3.27489950}, rates{0.99, 0.01, 6.93272545}})
+        CHECK(same_different(e.hits, e.false_alarms).dprime == doctest::Approx(e.dprime).epsilon(2e-9));
+    CHECK(same_different(0.642, 0.3).c ==
+          doctest::Approx(1.46573816).epsilon(1e-8)); // sqrt 2 times Phi^-1(0.85)
+    CHECK(same_different(0.2, 0.3).dprime == 0.0);
+    const std::vector<double> values{1, 2, 4, 4, 9};
+    CHECK(*stevens_exponent(values, std::vector<double>{2, 3, 9, 10, 20}) ==
+          doctest::Approx(1.118728530988).epsilon(1e-11)); // R's lm
+    CHECK(!stevens_exponent(values, std::vector<double>{2, 3, 0, 10, 20}));
+    CHECK(!stevens_exponent(std::vector<double>{3, 3}, std::vector<double>{1, 2}));
 }
 
 } // namespace
