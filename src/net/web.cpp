@@ -35,7 +35,9 @@ constexpr std::size_t read_at_once = 16U << 10;
 // WebSockets of a page: its own, its reloads and a few visitors by mistake.
 constexpr std::size_t most_visitors = 16;
 constexpr std::size_t most_connections = 32;
-constexpr message_limits page_limits{.message_bytes = 4096, .message_s = 10.0, .waiting_bytes = 1U << 20};
+// A message may have a text of 2,000 characters, each up to six bytes in JSON.
+constexpr message_limits page_limits{
+    .message_bytes = 16U << 10, .message_s = 10.0, .waiting_bytes = 1U << 20};
 
 std::string_view view(boost::string_view s)
 {

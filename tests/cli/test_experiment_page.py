@@ -236,7 +236,7 @@ class OnceAndNoMore(PageTest):
 
     def test_nonsense_is_refused(self):
         s = self.start()
-        for kind, text, code in ((TEXT, b"{", 1008), (TEXT, b'{"answer":-1,"ask":1}', 1008), (BINARY, b"{}", 1003), (TEXT, b" " * 5000, 1009)):
+        for kind, text, code in ((TEXT, b"{", 1008), (TEXT, b'{"answer":-1,"ask":1}', 1008), (BINARY, b"{}", 1003), (TEXT, b" " * 17000, 1009)):
             p = s.participant()
             p.until("consent")
             p.frame(kind, text)

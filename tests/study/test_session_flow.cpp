@@ -285,6 +285,68 @@ TEST_CASE("answers without keys have numbers: their places from 1, on a line fro
     }
 }
 
+TEST_CASE("a number is entered within its bounds")
+{
+    page_dialogue d(json::object());
+    static_cast<void>(d.hear(1, hello, 0));
+    const page_screen s{.name = "question", .entry = entry_kind::number, .lowest = 0, .greatest = 24};
+    CHECK(only(d.show(s, 0), 1)["entry"] == json{{"lowest", 0}, {"greatest", 24}});
+    CHECK_FALSE(d.press('1', 0).answer); // no key is a whole number
+    CHECK_FALSE(d.hear(1, answer(1, 25), 0).answer);
+    const auto text = d.hear(1, R"({"ask":1,"text":"24"})", 0);
+    CHECK_FALSE(text.answer);
+    CHECK(only(text.replies, 1)["ask"] == 1);
+    const auto least = d.hear(1, answer(1, 0), 0);
+    CHECK(least.answer.has_value());
+    CHECK(least.number == 0);
+    CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
+    static_cast<void>(d.show(s, 0));
+    CHECK(d.hear(1, answer(2, 24), 0).number == 24);
+}
+
+TEST_CASE("a text is entered up to its length, and without control characters")
+{
+    page_dialogue d(json::object());
+    static_cast<void>(d.hear(1, hello, 0));
+    const auto enter = [&d](const std::string& text) {
+        static_cast<void>(d.show({.name = "question", .entry = entry_kind::text}, 0));
+        unsigned ask = 0;
+        for (const auto& m : d.hear(1, hello, 0).replies)
+            ask = json::parse(m.text).value("ask", 0U);
+        return d.hear(1, json{{"ask", ask}, {"text", text}}.dump(), 0);
+    };
+    CHECK(enter("").text == "");
+    CHECK(enter("na\u00efve\r\nor\t\x07not\x7f").text == "na\u00efve\nor not");
+    std::string longest;
+    for (std::size_t i = 0; i < most_text_characters; ++i)
+        longest += "\u00e9";
+    CHECK(enter(longest).text == longest);
+    const auto refused = enter(longest + "e");
+    CHECK_FALSE(refused.answer);
+    CHECK(only(refused.replies, 1)["ask"] != 0);
+    CHECK_FALSE(d.hear(1, answer(4, 1), 0).answer);
+    CHECK(tidy_text("\xc3") == std::nullopt);
+}
+
+TEST_CASE("a text is typed up to Enter, a character at a time")
+{
+    const auto typed = [](const std::string& keys) {
+        typed_text text;
+        std::size_t taken = 0;
+        while (taken < keys.size() && !text.take(keys[taken]))
+            ++taken;
+        CHECK_MESSAGE(taken + 1 == keys.size(), keys);
+        return text.text();
+    };
+    CHECK(typed("\n") == "");
+    CHECK(typed("quiet, then p\r") == "quiet, then p");
+    CHECK(typed("a\u00e9\x7f\xe2\x82\xac\b\b\bb\n") == "b");
+    CHECK(typed("a\x1b[Ab\x1b[3~c\x1bOPd\x07\n") == "abcd");
+    CHECK(typed("a\xff"
+                "b\n") == "ab");
+    CHECK(typed(std::string(most_text_characters, 'a') + "a\n").size() == most_text_characters);
+}
+
 TEST_CASE("a past question takes no answer")
 {
     page_dialogue d(json::object());
@@ -319,7 +381,7 @@ TEST_CASE("nonsense is refused")
 {
     page_dialogue d(json::object());
     for (const char* text :
-         {"", "7", "[]", "{}", "{", R"({"answer":0})", R"({"answer":1.5,"ask":1})", "\xff"})
+         {"", "7", "[]", "{}", "{", R"({"answer":-1})", R"({"answer":1.5,"ask":1})", R"({"text":1})", "\xff"})
         CHECK_FALSE_MESSAGE(d.hear(1, text, 0).understood, text);
 }
 

@@ -69,10 +69,25 @@ std::optional<operator_key> find_operator_key(char c)
 session_key make_key(std::string text, bool is_key)
 {
     session_key k{.text = std::move(text), .is_key = is_key, .at_ns = rt::monotonic_ns()};
+    if (!is_key) {
+        k.entered = k.text;
+        std::erase_if(k.text, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    }
     if (k.text.size() == 1)
         k.command = find_operator_key(k.text.front());
     k.answer = detail::number_in<unsigned>(k.text);
     return k;
+}
+
+// Shows what a key has changed in a text that somebody types.
+void echo(const std::string& typed, std::size_t bytes_before)
+{
+    if (typed.size() > bytes_before)
+        session::show(typed.substr(bytes_before));
+    if (typed.size() < bytes_before) {
+        std::fputs("\b \b", stdout); // show() would escape it
+        session::flush_output();
+    }
 }
 
 } // namespace
@@ -91,9 +106,8 @@ std::optional<char> find_answer(std::uint16_t code) noexcept
 
 std::optional<unsigned> typed_number::take(char key)
 {
-    constexpr std::size_t most_digits = 3;
     constexpr char backspace = '\x7f';
-    if (key >= '0' && key <= '9' && digits_.size() < most_digits)
+    if (key >= '0' && key <= '9' && digits_.size() < most_digits_)
         digits_ += key;
     else if ((key == backspace || key == '\b') && !digits_.empty())
         digits_.pop_back();
@@ -211,8 +225,6 @@ std::optional<std::string> session_keys::typed()
         return std::nullopt;
     std::string line = text_.substr(0, end);
     text_.erase(0, end == text_.npos ? end : end + (terminal_ ? 0 : 1));
-    if (!terminal_)
-        std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
     return line;
 }
 
@@ -261,7 +273,8 @@ std::optional<session_key> session_keys::poll_page()
     const auto a = page_->poll();
     if (!a)
         return {};
-    return session_key{.text = std::string(1, a->key), .answer = a->number, .at_ns = a->at_ns};
+    return session_key{
+        .text = std::string(1, a->key), .answer = a->number, .entered = a->text, .at_ns = a->at_ns};
 }
 
 session_key session_keys::wait(const std::string& subject, bool repeated)
@@ -290,12 +303,26 @@ session_key session_keys::wait_for_number(typed_number& number)
         k.answer = number.take(!k.from_keypad ? key : key == 'a' ? '\n' : key == 'n' ? '0' : key);
         if (k.answer)
             return k;
-        if (digits.size() > before)
-            session::show(digits.substr(before));
-        if (digits.size() < before) {
-            std::fputs("\b \b", stdout); // show() would escape it
-            session::flush_output();
+        echo(digits, before);
+    }
+}
+
+session_key session_keys::wait_for_text(typed_text& text)
+{
+    for (;;) {
+        session_key k = wait("the session", true);
+        if (k.from_keypad)
+            continue;
+        if (page_ != nullptr)
+            return k;
+        k.command.reset();
+        const std::size_t before = text.text().size();
+        if (k.is_key && !text.take(k.text.front())) {
+            echo(text.text(), before);
+            continue;
         }
+        k.entered = tidy_text(k.is_key ? text.text() : *k.entered);
+        return k;
     }
 }
 

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "core/owned.hpp"
+#include "study/session/entry.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/stage.hpp"
 
@@ -27,15 +28,17 @@ std::optional<char> find_answer(std::uint16_t code) noexcept;
 /// Greatest number of answers that have a key each.
 inline constexpr unsigned most_keys = 9;
 
-/// A number of up to three digits that somebody types. A value without a terminal.
+/// A number that somebody types. A value without a terminal.
 class typed_number {
 public:
+    explicit typed_number(std::size_t most_digits = 3) : most_digits_(most_digits) {}
     /// Takes a key: a digit, backspace or Enter; ignores others. Returns the number at Enter, and then begins
     /// anew.
     std::optional<unsigned> take(char key);
     const std::string& digits() const noexcept { return digits_; }
 
 private:
+    std::size_t most_digits_;
     std::string digits_ = {};
 };
 
@@ -99,8 +102,9 @@ enum class operator_key {
 struct session_key {
     std::string text = {}; ///< without blanks; empty for a command from a terminal beside a page
     std::optional<operator_key> command = {};
-    std::optional<unsigned> answer = {}; ///< the number that this is, or that of the page's answer
-    bool is_key = false;                 ///< of a terminal or a keypad: a number may have more digits
+    std::optional<unsigned> answer = {};     ///< the number that this is, or that of the page's answer
+    std::optional<std::string> entered = {}; ///< a line with its blanks; a text from the page
+    bool is_key = false;                     ///< of a terminal or a keypad: a number may have more digits
     bool from_keypad = false;
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };
@@ -136,6 +140,10 @@ public:
     /// Waits for a number, or for a command. Shows the digits as keys type them; lines and the page give the
     /// whole number. Throws as wait().
     session_key wait_for_number(typed_number& number);
+    /// Waits for `entered`, a tidy text; if the key has none, the participant's text was refused. Waits for
+    /// the experimenter's commands, too, if there is a page: else what somebody types is text. Shows the text
+    /// as keys type it. Throws as wait().
+    session_key wait_for_text(typed_text& text);
     /// Returns true if nothing more can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
     /// Drops keys that were pressed on a keypad up to now.

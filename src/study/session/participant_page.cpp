@@ -11,11 +11,12 @@ namespace {
 
 using ordered = nlohmann::ordered_json;
 
-// Returns a member that is a whole number; 0 for anything else.
-std::uint64_t whole_number(const ordered& j, const char* key)
+// Returns a member that is a whole number.
+std::optional<std::uint64_t> whole_number(const ordered& j, const char* key)
 {
     const auto found = j.find(key);
-    return found != j.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
+    return found != j.end() && found->is_number_unsigned() ? std::optional(found->get<std::uint64_t>())
+                                                           : std::nullopt;
 }
 
 ordered points_list(const std::vector<point>& path)
@@ -56,6 +57,10 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["choices"] = screen_.choices;
     if (screen_.visual)
         j["visual"] = true;
+    if (screen_.entry == entry_kind::text)
+        j["entry"] = {{"most", most_text_characters}};
+    if (screen_.entry == entry_kind::number)
+        j["entry"] = {{"lowest", screen_.lowest}, {"greatest", screen_.greatest}};
     if (screen_.where)
         j["progress"] = {{"run", screen_.where->run},
                          {"runs", screen_.where->runs},
@@ -83,7 +88,7 @@ std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int6
 {
     screen_ = std::move(s);
     since_ns_ = now_ns;
-    open_ = !screen_.choices.empty();
+    open_ = !screen_.choices.empty() || screen_.entry != entry_kind::none;
     if (open_)
         ++asked_;
     if (!theirs_)
@@ -112,16 +117,29 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
         h.replies.push_back({from, state(now_ns)});
         return h;
     }
-    const std::uint64_t choice = whole_number(received, "answer");
-    if (choice == 0)
+    const auto text_entered = received.find("text");
+    const bool is_text = text_entered != received.end() && text_entered->is_string();
+    const std::optional<std::uint64_t> number = whole_number(received, "answer");
+    if (!is_text && !number)
         return {.understood = false};
     if (theirs_ != from)
         return h; // the page knows that another one took its place
-    if (!open_ || whole_number(received, "ask") != asked_ || choice > screen_.choices.size()) {
-        h.replies.push_back({from, state(now_ns)});
-        return h;
+    if (open_ && whole_number(received, "ask") == asked_) {
+        if (number > 0U && number <= screen_.choices.size())
+            return take(*number - 1);
+        const bool is_number = screen_.entry == entry_kind::number && number && *number >= screen_.lowest &&
+                               *number <= screen_.greatest;
+        if (screen_.entry == entry_kind::text && is_text)
+            h.text = tidy_text(text_entered->get_ref<const std::string&>());
+        if (is_number || h.text) {
+            open_ = false;
+            h.answer = '\0';
+            h.number = is_number ? static_cast<unsigned>(*number) : 0;
+            return h;
+        }
     }
-    return take(choice - 1);
+    h.replies.push_back({from, state(now_ns)});
+    return h;
 }
 
 page_dialogue::heard page_dialogue::press(char key, std::int64_t now_ns)
@@ -201,7 +219,7 @@ void participant_page::take(const page_dialogue::heard& h, std::int64_t now_ns)
     send(h.replies);
     if (!h.answer)
         return;
-    answer_ = {*h.answer, h.number, now_ns};
+    answer_ = {*h.answer, h.number, h.text, now_ns};
     answered_.signal();
 }
 

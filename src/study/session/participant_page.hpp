@@ -20,6 +20,7 @@
 #include "net/web.hpp"
 #include "rt/event_fd.hpp"
 #include "study/experiment/page_words.hpp"
+#include "study/session/entry.hpp"
 
 namespace tactor::study {
 
@@ -41,7 +42,10 @@ struct page_screen {
     std::string question = {};
     std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
     std::string keys = {};                 ///< a key for each choice, or none
-    bool visual = false; ///< the choices are places on a line, from 0 on, and have no numbers
+    bool visual = false;                 ///< the choices are places on a line, from 0 on, and have no numbers
+    entry_kind entry = entry_kind::none; ///< in place of choices
+    unsigned lowest = 1;                 ///< of a number that is entered
+    unsigned greatest = 999;
     std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
     unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
     unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
@@ -71,10 +75,11 @@ public:
         bool understood = true; ///< else the visitor is to be sent away
         std::vector<message> replies = {};
         std::optional<char> answer = {}; ///< its key, or 0; each question has one at most
-        unsigned number = 0;             ///< of the answer: its place from 1, or from 0 if visual
+        unsigned number = 0; ///< of the answer: its place from 1, or from 0 if visual; or the one entered
+        std::optional<std::string> text = {}; ///< that was entered, tidy
     };
     /// Takes a message. A page that says {"hello":true} is the participant's from then on;
-    /// {"ask":N,"answer":CHOICE} answers.
+    /// {"ask":N,"answer":CHOICE or number} and {"ask":N,"text":TEXT} answer.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
 
     /// Takes a key of a keypad for the page: that of a choice, or its number.
@@ -100,7 +105,8 @@ private:
 struct page_answer {
     char key = 0; ///< of the choice; 0: it has none
     unsigned number = 0;
-    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC at its arrival
+    std::optional<std::string> text = {}; ///< that was entered
+    std::int64_t at_ns = 0;               ///< CLOCK_MONOTONIC at its arrival
 };
 
 /// The page's server. A separate thread serves the sockets; these functions are for the session's thread.

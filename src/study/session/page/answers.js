@@ -47,18 +47,33 @@ function make_line({choices, visual}, word, answer) {
   return [mark, make("span", {id: "low"}, describe(0)), make("span", {id: "high"}, describe(choices.length - 1)), number, confirm];
 }
 
+// Makes a place for a number or a text, and a button that answers.
+function make_entry({greatest, lowest, most}, word, answer) {
+  const confirm = make("button", {type: "button", onclick: () => answer(most ? place.value : Number(place.value))}, word);
+  const look = () => {
+    if (!most) place.value = place.value.replace(/\D/g, "");
+    const fits = most || place.value && place.value >= lowest && place.value <= greatest;
+    by_id("answers").classList.toggle("unset", !fits);
+    confirm.disabled = place.disabled || !fits;
+  };
+  const place = most ? make("textarea", {rows: 5, maxlength: most, "aria-labelledby": "question"})
+    : make("input", {inputmode: "numeric", maxlength: String(greatest).length, autocomplete: "off", "aria-labelledby": "question", oninput: look,
+      onkeydown: e => { if (e.key === "Enter" && !e.repeat) confirm.click(); }});
+  return [place, confirm];
+}
+
 let kept = ""; // what the buttons show
 let focused = -1;
 
 // Shows the buttons of a screen. Those of the same question stay, with the keyboard's focus.
 export function show_answers(s, tactors, word, answer) {
-  const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen]);
-  const kind = choices.length ? find_kind(s) : "", on_line = kind === "line";
-  if (now !== kept || !choices.length) {
+  const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen, s.entry, s.question]);
+  const kind = choices.length ? find_kind(s) : s.entry ? "entry" : "", on_line = kind === "line";
+  if (now !== kept || !kind) {
     kept = now;
     all.closest("main").scrollTop = 0;
-    focused = on_line ? 0 : -1; // so that arrows set the mark
-    all.className = on_line ? "line unset" : kind;
+    focused = on_line || s.entry ? 0 : -1; // so that arrows set the mark, and keys type
+    all.className = on_line || s.entry && !s.entry.most ? `${kind} unset` : kind;
     const set = (name, value) => all.style.setProperty(name, value), n = choices.length;
     const on_phone = n < 5 && n !== 3 ? 2 : 3;
     set("--n", n);
@@ -66,7 +81,7 @@ export function show_answers(s, tactors, word, answer) {
     set("--across-phone", on_phone);
     all.classList.toggle("long", n > 7);
     all.classList.toggle("slim", on_phone > 2);
-    all.replaceChildren(...on_line ? make_line(s, word, answer) : choices.map((label, i) => {
+    all.replaceChildren(...on_line ? make_line(s, word, answer) : s.entry ? make_entry(s.entry, word, answer) : choices.map((label, i) => {
       const b = make_button(s, label, i, tactors);
       b.addEventListener("click", () => answer(i + 1));
       return b;

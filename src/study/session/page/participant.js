@@ -41,7 +41,7 @@ function show(s) {
   const looks = document.querySelector("main").classList;
   looks.value = s.screen;
   looks.toggle("alone", ALONE.includes(s.screen));
-  looks.toggle("replies", Boolean(s.choices || s.stimuli || s.screen === "walk")); // or a place for them
+  looks.toggle("replies", Boolean(s.choices || s.entry || s.stimuli || s.screen === "walk")); // or a place for them
   by_id("text").textContent = s.screen === "elsewhere" ? words.elsewhere : s.text ?? "";
   by_id("text").tabIndex = s.screen === "consent" ? 0 : -1; // a long one is scrolled
   by_id("question").textContent = s.question ?? "";
@@ -89,8 +89,8 @@ function show_left(left_s, lasts_s) {
 }
 
 function answer(choice) {
-  if (!state.ask || choice > state.choices.length || socket.readyState !== WebSocket.OPEN) return;
-  socket.send(JSON.stringify({ask: state.ask, answer: choice}));
+  if (!state.ask || choice > state.choices?.length || socket.readyState !== WebSocket.OPEN) return;
+  socket.send(JSON.stringify({ask: state.ask, [typeof choice === "string" ? "text" : "answer"]: choice}));
   state.ask = 0; // the next message shows whether the answer arrived
   enable_answers(false);
   mark_answer(choice);
