@@ -2,6 +2,7 @@
 // Packets of OSC: their values, and their faults.
 #include "net/osc.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>

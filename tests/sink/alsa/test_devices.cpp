@@ -78,10 +78,10 @@ std::string message(Call call)
     return {};
 }
 
-std::string refused(const std::string& definitions)
+std::string refused(const std::string& texts)
 {
     return message([&] {
-        return open_alsa({.pcm = "t", .channels = 2, .config_text = "pcm.n { type null }\n" + definitions});
+        return open_alsa({.pcm = "t", .channels = 2, .config_text = "pcm.n { type null }\n" + texts});
     });
 }
 
