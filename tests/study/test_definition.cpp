@@ -298,7 +298,7 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + line + "labels = [\"a\"]\n", "e.toml:18:", "labels has 1 text for");
     says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n", "e.toml:18:", "at most 2");
     says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n",
-         "e.toml:17:", "choices is of runs that choose (leave it out, or task = \"choose\")");
+         "e.toml:17:", "choices is not of runs that rate (leave it out)");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
          "e.toml:17:", "choices has 1 text (one for each of the two answers)");
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n", "e.toml:17:", "at most 2");
@@ -366,8 +366,8 @@ TEST_CASE("ratings begin with 1, on a visual analogue scale with 0")
 
 TEST_CASE("faults have their line")
 {
-    const auto with = [](const std::string& run) {
-        return outline_refusal(outline_head + "[[run]]\n" + run);
+    const auto with = [](const std::string& keys) {
+        return outline_refusal(outline_head + "[[run]]\n" + keys);
     };
     CHECK(with("task = \"rate\"\n").find("[[run]] has no name") != std::string::npos);
     CHECK(with("name = \"-\"\ntask = \"rate\"\n").find("no letter or digit") != std::string::npos);

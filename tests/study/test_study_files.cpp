@@ -71,14 +71,17 @@ TEST_CASE("text is appended, and a missing file is reported")
 
 TEST_CASE("a table of an older version has no column early")
 {
+    const run_outline none;
     trial_row row;
     row.trial = 1;
     row.early = true;
-    const named_cells cells = make_cells(row);
+    const named_cells cells = make_cells(row, {&none});
     named_cells older = cells;
     std::erase_if(older, [](const auto& c) { return c.first == "early"; });
-    const auto read = [](const named_cells& c) {
-        return read_rows(text_table("t.tsv", text_table("", header_line(c)).with_line(c))).front().early;
+    const auto read = [&none](const named_cells& c) {
+        return read_rows(text_table("t.tsv", text_table("", header_line(c)).with_line(c)), none)
+            .front()
+            .early;
     };
     CHECK(read(cells) == true);
     CHECK(read(older) == std::nullopt);

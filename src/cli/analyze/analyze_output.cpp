@@ -212,6 +212,44 @@ void print_identify(const study::run_analysis& r)
     }
 }
 
+// Names a figure with the value against which it is tested, if any.
+std::string figure_text(const study::run_outline& run, std::string_view figure, bool is_main)
+{
+    const auto against = study::measured_against(run);
+    const std::string name = figure == "dprime" ? "d'" : std::string(figure);
+    return is_main && against ? fmt::format("{} against {}", name, *against) : name;
+}
+
+void print_measures(const study::run_analysis& r)
+{
+    if (!r.run.vary.empty())
+        say(stdout, "  {} {}{}\n", r.run.vary,
+            r.run.task == task_kind::adaptive ? "by procedure" : "over values",
+            r.run.standard ? fmt::format(", standard {}", *r.run.standard) : "");
+    for (const study::measured_condition& c : r.measures) {
+        if (!c.name.empty())
+            say(stdout, "  {}\n", c.name);
+        for (std::size_t k = 0; k < c.figures.size(); ++k) {
+            const auto& [figure, t] = c.figures[k];
+            say(stdout, "  {:<22} {:>8} (se {}), 95 % {}{}\n", figure_text(r.run, figure, k == 0),
+                value_text(t.mean), value_text(t.se), interval_text(t.ci),
+                k == 0 && t.t && study::measured_against(r.run) ? ", " + t_text(t) : "");
+        }
+        if (!c.name.empty())
+            continue;
+        const std::size_t w = widest(r.codes);
+        for (std::size_t i = 0; i < r.codes.size(); ++i) {
+            std::string row;
+            for (const auto& [figure, value] : study::list_measures(r.run, c.people[i]))
+                row += fmt::format("  {} {}", figure, value_text(value));
+            if (const auto& b = c.people[i].bootstrap; b.p_gof)
+                row += fmt::format("  pse {}  fit p {}", interval_text(b.pse ? b.pse : b.threshold),
+                                   p_text(b.p_gof));
+            say(stdout, "    sub-{:<{}}{}\n", r.codes[i], w, row);
+        }
+    }
+}
+
 // Prints the median response time, and the conditions with the shortest and the longest.
 void print_times(const study::response_times& t)
 {
@@ -267,6 +305,9 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
     case task_kind::identify:
         print_identify(r);
         break;
+    default:
+        print_measures(r);
+        break;
     }
     if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
@@ -294,9 +335,11 @@ std::string write_model(const study::run_outline& r, const std::vector<study::gr
     // Groups that have all of the run are compared: of others the group cannot be told from what it lacks.
     if (std::ranges::count_if(groups, [&](const auto& g) { return std::ranges::count(g.runs, r) != 0; }) > 1)
         motion = motion == "1" ? "group" : "(group * motion)";
-    const char* people = r.task != task_kind::choose && r.methods.size() > 1 ? "(1 + method | participant)"
-                         : r.motions.size() > 1                              ? "(1 + motion | participant)"
-                                                                             : "(1 | participant)";
+    const bool has_method =
+        r.task != task_kind::choose && r.task != task_kind::same_different && r.methods.size() > 1;
+    const char* people = has_method             ? "(1 + method | participant)"
+                         : r.motions.size() > 1 ? "(1 + motion | participant)"
+                                                : "(1 | participant)";
     // R reads the texts of JSON.
     const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
     switch (r.task) {
@@ -305,21 +348,39 @@ std::string write_model(const study::run_outline& r, const std::vector<study::gr
             return write_worth_model(r, motion);
         return fmt::format("glmer(chosen ~ {} + order + {}, family = binomial, {})", motion, people, data);
     case task_kind::rate:
-        return fmt::format("lmer(rating ~ {}{} + {}, {})", r.methods.size() > 1 ? "method * " : "", motion,
-                           people, data);
+        return fmt::format("lmer(rating ~ {}{} + {}, {})", has_method ? "method * " : "", motion, people,
+                           data);
+    case task_kind::estimate:
+        return fmt::format("lmer(log(estimate) ~ {} * {}{} + {}, {})", r.on_db_axis ? "value" : "log(value)",
+                           has_method ? "method * " : "", motion, people, data);
     case task_kind::identify:
+        return fmt::format("glmer(correct ~ {}{} + {}, family = binomial, {})", has_method ? "method * " : "",
+                           motion, people, data);
+    default:
         break;
     }
-    return fmt::format("glmer(correct ~ {}{} + {}, family = binomial, {})",
-                       r.methods.size() > 1 ? "method * " : "", motion, people, data);
+    // Its slope over the values, or over whether there was a signal, is what the run is about.
+    return fmt::format("glmer(positive ~ {} * {}{} + {}, family = binomial(\"probit\"), {})",
+                       r.vary.empty() ? "signal" : "value", has_method ? "method * " : "", motion, people,
+                       data);
 }
 
 // A column of the trials.
 struct trial_column {
     const char* name;
     std::string (*cell)(const study::trial& t, const study::run_outline& r);
-    bool for_worths = false; ///< only in studies with a choice among three methods or more
+    bool (*needed)(const study::run_outline& r) noexcept = nullptr; ///< by a run; null: in all studies
 };
+
+bool is_measured(const study::run_outline& r) noexcept
+{
+    return find_task(r.task).measures;
+}
+
+bool has_values(const study::run_outline& r) noexcept
+{
+    return !r.vary.empty();
+}
 
 // Returns the method that a trial of choose asks about: the last of two; of three or more the one felt first.
 std::size_t asked_method(const study::trial& t, const study::run_outline& r)
@@ -343,7 +404,7 @@ constexpr trial_column trial_columns[] = {
                     ? "n/a"
                     : r.methods[t.method_1 == asked_method(t, r) ? t.method_2 : t.method_1];
      },
-     true},
+     study::has_worths},
     {"order",
      [](const auto& t, const auto& r) -> std::string {
          return r.task != task_kind::choose ? "n/a" : t.method_1 == asked_method(t, r) ? "0.5" : "-0.5";
@@ -364,6 +425,26 @@ constexpr trial_column trial_columns[] = {
      [](const auto& t, const auto& r) -> std::string {
          return r.task != task_kind::identify ? "n/a" : t.response == t.motion ? "1" : "0";
      }},
+    {"value",
+     [](const auto& t, const auto& r) -> std::string {
+         return r.vary.empty() || !t.signal ? "n/a" : fmt::format("{}", t.value);
+     },
+     has_values},
+    {"signal",
+     [](const auto& t, const auto& r) -> std::string {
+         return !is_measured(r) ? "n/a" : t.signal ? "1" : "0";
+     },
+     is_measured},
+    {"positive",
+     [](const auto& t, const auto& r) -> std::string {
+         return !is_measured(r) || r.task == task_kind::estimate ? "n/a" : t.positive ? "1" : "0";
+     },
+     is_measured},
+    {"estimate",
+     [](const auto& t, const auto& r) {
+         return r.task == task_kind::estimate ? fmt::format("{}", t.response) : "n/a";
+     },
+     [](const study::run_outline& r) noexcept { return r.task == task_kind::estimate; }},
     {"response_time",
      [](const auto& t, const auto&) {
          return t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a";
@@ -374,13 +455,16 @@ constexpr trial_column trial_columns[] = {
      }},
 };
 
-// Returns a name for a column that SPSS, JASP and R take as it is: RUN.METHOD.MOTION of at most 64 letters,
-// digits, dots and underscores, with a letter first and no dot last. Adds it to `taken`, where no two differ
-// in case only.
-std::string name_column(const std::array<std::string, 3>& parts, std::set<std::string>& taken)
+// Returns a name for a column that SPSS, JASP and R take as it is: RUN.METHOD.MOTION or RUN.FIGURE of at most
+// 64 letters, digits, dots and underscores, with a letter first and no dot last. Adds it to `taken`, where no
+// two differ in case only.
+std::string name_column(const std::vector<std::string>& parts, std::set<std::string>& taken)
 {
     constexpr std::size_t longest = 60; // leaves room for a number
-    const bool fits = parts[0].size() + parts[1].size() + parts[2].size() + 2 < longest;
+    std::size_t length = parts.size() - 1;
+    for (const std::string& part : parts)
+        length += part.size();
+    const bool fits = length < longest;
     std::string name;
     for (const std::string& part : parts) {
         name += name.empty() ? "" : ".";
@@ -432,7 +516,9 @@ void print_analysis_text(const study::analysis& a)
         say(stdout, "excluded: sub-{} ({})\n", one.participant, one.why);
     for (const study::run_analysis& r : a.runs)
         print_run(a, r);
-    if (std::ranges::any_of(a.runs, [](const auto& r) { return r.n != 0 && r.run.task != task_kind::rate; }))
+    if (std::ranges::any_of(a.runs, [](const auto& r) {
+            return r.n != 0 && r.run.task != task_kind::rate && !is_measured(r.run);
+        }))
         fmt::print("\n{}", wrapped("Columns: ", column_legend));
 }
 
@@ -463,8 +549,9 @@ void print_trials(const study::dataset& d)
     for (const study::run_outline& r : d.experiment.runs)
         text += fmt::format("# {}\n", write_model(r, d.experiment.groups));
     std::vector<trial_column> columns(std::begin(trial_columns), std::end(trial_columns));
-    if (std::ranges::none_of(d.experiment.runs, study::has_worths))
-        std::erase_if(columns, [](const trial_column& c) { return c.for_worths; });
+    std::erase_if(columns, [&](const trial_column& c) {
+        return c.needed != nullptr && std::ranges::none_of(d.experiment.runs, c.needed);
+    });
     const bool grouped = !d.experiment.groups.empty();
     text += grouped ? "participant\tgroup" : "participant";
     for (const trial_column& c : columns)
@@ -483,22 +570,34 @@ void print_trials(const study::dataset& d)
     fmt::print("{}", text);
 }
 
-void print_wide(const study::dataset& d)
+void print_wide(const study::dataset& d, study::sigmoid kind)
 {
     const bool grouped = !d.experiment.groups.empty();
     std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
     text += grouped ? ",group" : "";
     std::set<std::string> taken;
-    for (const study::run_outline& r : d.experiment.runs)
+    for (const study::run_outline& r : d.experiment.runs) {
+        if (is_measured(r)) {
+            for (const auto& [figure, none] : study::list_measures(r, {}))
+                text += "," + name_column({r.name, std::string(figure)}, taken);
+            continue;
+        }
         for (const std::string& method : study::row_methods(r))
             for (const std::string& motion : r.motions)
                 text += "," + name_column({r.name, method, motion}, taken);
+    }
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
         text += grouped ? "," + json(d.groups[i]).dump() : ""; // quotes it
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
             const study::run_outline& own = find_run(d, i, k);
+            if (is_measured(own)) {
+                const auto measured = study::measure_trials(own, d.data[i][k].trials, kind, "");
+                for (const auto& [figure, value] : study::list_measures(own, measured))
+                    text += value ? fmt::format(",{}", *value) : ",";
+                continue;
+            }
             const std::vector<std::string> methods = study::row_methods(own);
             const auto cells = study::compute_cells(own, d.data[i][k].trials);
             for (const std::string& method : study::row_methods(d.experiment.runs[k]))

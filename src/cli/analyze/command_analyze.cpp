@@ -86,6 +86,7 @@ struct analyze_options {
     std::string folder;
     std::string format = "text";
     error_bars bars = error_bars::se;
+    study::sigmoid function = study::sigmoid::normal;
     picture_options picture{.width_mm = 170.0};
     study::selection who;
 };
@@ -139,6 +140,8 @@ plot::bar_panel make_panel(const study::run_analysis& r, error_bars kind)
         p.level = study::chance(r.run);
         p.y_to = 100.0;
         break;
+    default:
+        break;
     }
     for (std::size_t m = 0; m < r.run.methods.size(); ++m)
         p.series.push_back(make_bars(r.run.methods[m], r.cells[m], kind, possible));
@@ -157,7 +160,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
                          all_error_bars[static_cast<std::size_t>(kind)].second);
     f.across = a.simulated ? "simulated" : "";
     for (const study::run_analysis& r : a.runs) {
-        if (r.n == 0)
+        if (r.n == 0 || find_task(r.run.task).measures)
             continue;
         f.panels.push_back(make_panel(r, kind));
         for (std::size_t m = 0; m < r.confusion.size(); ++m)
@@ -183,7 +186,7 @@ void draw(const analyze_options& o, const study::analysis& a)
 int analyze(const analyze_options& o)
 {
     const study::dataset d = study::read_dataset(o.folder, o.who);
-    const study::analysis a = study::analyse(d);
+    const study::analysis a = study::analyse(d, o.function);
     if (!o.picture.file.empty())
         draw(o, a);
     print_warnings(a);
@@ -192,7 +195,7 @@ int analyze(const analyze_options& o)
     else if (o.format == "tsv")
         print_trials(d);
     else if (o.format == "wide")
-        print_wide(d);
+        print_wide(d, o.function);
     else
         print_analysis_text(a);
     return status_ok;
@@ -246,6 +249,10 @@ int run_analyze(command_line& line)
                  for (const auto& [name, note] : all_error_bars)
                      names.emplace_back(name);
                  o.bars = static_cast<error_bars>(choose("--bars", t, names));
+             });
+    add_text(c, "--function", "normal|logistic",
+             "shape of the psychometric functions (default normal, cumulative)", [&o](const std::string& t) {
+                 o.function = static_cast<study::sigmoid>(choose("--function", t, {"normal", "logistic"}));
              });
     add_picture_options(c, o.picture, "170, the width of a page");
     c.footer("tactor analyze study\n"

@@ -104,6 +104,11 @@ std::vector<std::size_t> participants_in(std::string_view text)
 
 std::string comparison_text(const study::run_outline& r)
 {
+    if (find_task(r.task).measures) {
+        const auto against = study::measured_against(r);
+        return against ? fmt::format("{}, t against {}", study::list_measures(r, {}).front().first, *against)
+                       : "no standard: nothing to compare with";
+    }
     switch (r.task) {
     case study::task_kind::choose:
         return fmt::format("{} chosen{}, t against 50 %", r.methods.back(),
@@ -112,7 +117,7 @@ std::string comparison_text(const study::run_outline& r)
         return r.methods.size() < 2
                    ? std::string("one method: nothing to compare")
                    : fmt::format("{} less {}, paired t", r.methods.back(), r.methods.front());
-    case study::task_kind::identify:
+    default:
         break;
     }
     return fmt::format("{} correct, t against {:.2f} %", r.methods.back(), study::chance(r));
@@ -311,7 +316,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         p.participant, d.group.empty() ? "" : ", group " + d.group, p.row, study::count_rows(d), p.seed,
         p.where.tactors.name, level_text(p.render));
     for (const study::method_definition& m : d.methods)
-        if (m.has_level())
+        if (m.has_level() && !m.is_variant())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
         const study::trial_row r = study::planned_row(p, t, {});

@@ -157,12 +157,22 @@ response_times summarise_times(const run_outline& run, const std::vector<const r
     return all;
 }
 
-run_analysis analyse_run(const dataset& d, std::size_t which)
+// Measures a run of participants, each with a trial that counts.
+void add_measures(run_analysis& r, const std::vector<person_trials>& people, sigmoid kind)
+{
+    r.measures = measure_run(r.run, people, kind);
+    for (const person_trials& p : people)
+        r.codes.push_back(p.code);
+}
+
+run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
 {
     run_analysis r;
     r.run = d.experiment.runs[which];
+    const bool measures = find_task(r.run.task).measures;
     std::vector<cell_values> all;
     std::vector<const run_data*> data;
+    std::vector<person_trials> people;
     std::vector<double> first;
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
@@ -170,21 +180,30 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
         r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
         if (find_run(d, i, which) != r.run)
             continue; // the results of the group have it
-        std::optional<cell_values> v = compute_cells(r.run, own.trials);
-        if (!v) {
+        std::optional<cell_values> v;
+        if (!measures)
+            v = compute_cells(r.run, own.trials);
+        if (measures ? own.trials.empty() : !v) {
             r.missing.push_back({d.participants[i], own.trials.empty()
                                                         ? "no trial that counts"
                                                         : "no trial that counts in some of the cells"});
             continue;
         }
         r.trials += own.trials.size();
-        all.push_back(*std::move(v));
         data.push_back(&own);
+        people.push_back({d.participants[i], &own.trials});
+        if (measures)
+            continue;
+        all.push_back(*std::move(v));
         const auto first_chosen = std::ranges::count(own.trials, 1U, &trial::response);
         first.push_back(100.0 * static_cast<double>(first_chosen) / static_cast<double>(own.trials.size()));
     }
-    r.n = all.size();
+    r.n = people.size();
     r.times = summarise_times(r.run, data);
+    if (measures) {
+        add_measures(r, people, kind);
+        return r;
+    }
     analyse_values(r, all);
     if (r.run.task == task_kind::choose)
         r.first_interval = test_mean(first, 50.0);
@@ -265,17 +284,23 @@ void warn_of_figures(analysis& a, const run_analysis& r)
             if (c.test.n > 1 && !c.test.t)
                 warn(fmt::format("{}, {} - {}", r.run.methods[row], r.run.motions[c.a], r.run.motions[c.b]),
                      "no variance over participants, so no t test");
+    for (const measured_condition& c : r.measures)
+        for (std::size_t i = 0; i < c.people.size(); ++i)
+            for (const auto& [figure, value] : list_measures(r.run, c.people[i]))
+                if (!value)
+                    warn(fmt::format("{}sub-{}, {}", c.name.empty() ? "" : c.name + ", ", r.codes[i], figure),
+                         "the answers do not determine it");
     if (r.n == 1)
         a.no_figures.push_back(r.run.name + ": one participant: tests need two");
 }
 
 // Adds the results of everybody, or of a group.
-void add_results(analysis& a, const dataset& d, const std::string& group)
+void add_results(analysis& a, const dataset& d, const std::string& group, sigmoid kind)
 {
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
         if (d.experiment.runs[i].motions.empty())
             continue; // the group lacks the run
-        run_analysis& r = a.runs.emplace_back(analyse_run(d, i));
+        run_analysis& r = a.runs.emplace_back(analyse_run(d, i, kind));
         r.whole = r.run.name;
         r.group = group;
         if (!group.empty())
@@ -304,7 +329,7 @@ double chance(const run_outline& run) noexcept
                                          : 100.0 / static_cast<double>(run.motions.size());
 }
 
-analysis analyse(const dataset& d)
+analysis analyse(const dataset& d, sigmoid kind)
 {
     analysis a;
     a.experiment = d.experiment.name;
@@ -312,9 +337,9 @@ analysis analyse(const dataset& d)
     a.simulated = d.simulated;
     a.excluded = d.excluded;
     a.warnings = d.warnings;
-    add_results(a, d, "");
+    add_results(a, d, "", kind);
     for (const group_outline& g : d.experiment.groups)
-        add_results(a, select_group(d, g), g.name);
+        add_results(a, select_group(d, g), g.name, kind);
     return a;
 }
 

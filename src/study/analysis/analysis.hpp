@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "study/analysis/measures.hpp"
 #include "study/data/dataset.hpp"
 #include "study/statistics/bradley_terry.hpp"
 #include "study/statistics/tests.hpp"
@@ -63,6 +64,9 @@ struct run_analysis {
     std::vector<std::vector<comparison>> pairs = {};
     /// identify: pairs of motions by method, participants' per cents correct against each other.
     std::vector<std::vector<paired_comparison>> paired_motions = {};
+    /// Tasks that measure: all trials, then each condition, if there are several.
+    std::vector<measured_condition> measures = {};
+    std::vector<std::string> codes = {}; ///< of the participants in them
     /// identify: answers by method, motion and motion answered, all participants.
     std::vector<std::vector<std::vector<std::size_t>>> confusion = {};
 };
@@ -84,7 +88,8 @@ double chance(const run_outline& run) noexcept;
 /// Tests whether a run chooses among three methods or more: each has a row of cells and a worth.
 bool has_worths(const run_outline& run) noexcept;
 
-analysis analyse(const dataset& d);
+/// `kind`: of the psychometric functions.
+analysis analyse(const dataset& d, sigmoid kind = sigmoid::normal);
 
 /// Returns the name of the results of a group in a run.
 std::string name_result(std::string_view run, std::string_view group);

@@ -179,6 +179,85 @@ void add_identify(json& j, const run_analysis& r)
     }
 }
 
+json psychometric_json(const run_outline& run, const measured_condition& c,
+                       const std::vector<std::string>& codes)
+{
+    json people = json::object();
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        const person_measures& m = c.people[i];
+        json blocks = json::array();
+        for (const answer_block& b : m.blocks)
+            blocks.push_back({{"value", b.x}, {"n", b.n}, {"positive", b.k}});
+        people[codes[i]] = {{"alpha", m.fit ? json(m.fit->parameters.threshold) : json(nullptr)},
+                            {"beta", m.fit ? json(m.fit->parameters.slope) : json(nullptr)},
+                            {"lapse", m.fit ? json(m.fit->parameters.lapse) : json(nullptr)},
+                            {"guess", m.guess},
+                            {"pse", m.fit ? or_null(m.fit->pse) : json(nullptr)},
+                            {"jnd", m.fit ? or_null(m.fit->jnd) : json(nullptr)},
+                            {"threshold", m.fit ? json(m.fit->parameters.threshold) : json(nullptr)},
+                            {"ci",
+                             {{"pse", interval_json(m.bootstrap.pse)},
+                              {"jnd", interval_json(m.bootstrap.jnd)},
+                              {"threshold", interval_json(m.bootstrap.threshold)}}},
+                            {"deviance", m.fit ? json(m.fit->deviance) : json(nullptr)},
+                            {"p_gof", or_null(m.bootstrap.p_gof)},
+                            {"answers", std::move(blocks)}};
+    }
+    json j{{"axis", run.on_db_axis ? "dB" : "linear"},
+           {"participants", std::move(people)},
+           {"mean", json::object()}};
+    for (const auto& [figure, t] : c.figures)
+        if (figure != "dprime" && figure != "c") {
+            j["mean"][std::string(figure)] = or_null(t.mean);
+            j["tests"][std::string(figure)] = test_json(t);
+        }
+    return j;
+}
+
+json dprime_json(const measured_condition& c, const std::vector<std::string>& codes)
+{
+    json people = json::object();
+    for (std::size_t i = 0; i < codes.size(); ++i)
+        if (const auto& d = c.people[i].detected)
+            people[codes[i]] = {{"hits", d->hits},
+                                {"false_alarms", d->false_alarms},
+                                {"dprime", d->found.dprime},
+                                {"c", d->found.c}};
+    json j{{"participants", std::move(people)}};
+    for (const auto& [figure, t] : c.figures)
+        if (figure == "dprime")
+            j.update(test_json(t));
+    return j;
+}
+
+json exponent_json(const measured_condition& c, const std::vector<std::string>& codes)
+{
+    json people = json::object();
+    for (std::size_t i = 0; i < codes.size(); ++i)
+        people[codes[i]] = or_null(c.people[i].exponent);
+    json j{{"participants", std::move(people)}};
+    j.update(test_json(c.figures.front().second));
+    return j;
+}
+
+// Adds the results of a task that measures; those of each condition under "by".
+void add_measures(json& j, const run_analysis& r)
+{
+    const auto add = [&](json& to, const measured_condition& c) {
+        if (r.run.task == task_kind::estimate)
+            to["exponent"] = exponent_json(c, r.codes);
+        if (!r.run.vary.empty() && r.run.task != task_kind::estimate)
+            to["psychometric"] = psychometric_json(r.run, c, r.codes);
+        if (r.run.catches || r.run.task == task_kind::same_different)
+            to["dprime"] = dprime_json(c, r.codes);
+    };
+    if (!r.run.vary.empty())
+        j["vary"] = r.run.vary;
+    j["against"] = or_null(measured_against(r.run));
+    for (const measured_condition& c : r.measures)
+        add(c.name.empty() ? j : j["by"][c.name], c);
+}
+
 json times_json(const response_times& t)
 {
     json j{{"median_s", or_null(t.median_s)}, {"by", json::object()}};
@@ -199,6 +278,9 @@ json run_json(const run_analysis& r)
         break;
     case task_kind::identify:
         add_identify(j, r);
+        break;
+    default:
+        add_measures(j, r);
         break;
     }
     j["trials"] = r.trials;

@@ -153,7 +153,7 @@ std::vector<trial_row> session_store::rows(const run_definition& r) const
         return {};
     const text_table t = read_trials(table(r));
     read_run(t, r.outline); // refuses what the analysis would refuse
-    return read_rows(t);
+    return read_rows(t, r.outline);
 }
 
 std::vector<trial_row> session_store::practice_rows(const run_definition& r) const
@@ -163,7 +163,7 @@ std::vector<trial_row> session_store::practice_rows(const run_definition& r) con
     if (!is_on_disk(practice))
         return own;
     const text_table t = read_trials(practice);
-    std::vector<trial_row> all = read_rows(t);
+    std::vector<trial_row> all = read_rows(t, r.outline);
     for (std::size_t i = 0; i < t.rows(); ++i)
         if (t.need(i, "run") == r.outline.name)
             own.push_back(std::move(all[i]));
@@ -196,13 +196,16 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
             folder_.add_participant();
             folder_.add_scan(scan_name(r), acq_time);
         }
-        write_line(file, make_cells(row));
+        write_line(file, make_cells(row, {&r.outline}));
     });
 }
 
 void session_store::append_practice(const run_definition& r, const trial_row& row)
 {
-    named_cells cells = make_cells(row);
+    std::vector<const run_outline*> all; // whose practice has one table
+    for (const run_definition* one : runs_)
+        all.push_back(&one->outline);
+    named_cells cells = make_cells(row, all);
     cells.insert(cells.begin(), {"run", r.outline.name});
     keep([&] { write_line(source_ / "practice.tsv", cells); });
 }

@@ -136,7 +136,7 @@ std::string task_text(const run_definition& r, bool simulated, bool has_groups)
     if (!r.labels.empty())
         j["Labels"] = r.labels;
     for (const trial_column& c : trial_columns)
-        if (c.use != column_use::groups || has_groups)
+        if (has_column(r.outline, c.use, has_groups))
             j[std::string(c.name)] = column_json(c.meaning, c.unit);
     j["response"] = column_json(fmt::format(fmt::runtime(task.response), rating_range(r.outline)));
     if (!r.choices.empty())

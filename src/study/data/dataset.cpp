@@ -210,12 +210,55 @@ unsigned read_rating(const text_table& t, std::size_t row, const run_outline& ru
     return rating ? *rating : *response;
 }
 
+// Reads the answer 1 or 2.
+unsigned read_one_of_two(const text_table& t, std::size_t row)
+{
+    const auto response = t.whole(row, "response", 1, 2);
+    if (!response)
+        t.refuse(row, "there is no response", "a trial that counts has one");
+    return *response;
+}
+
+// Reads a trial of a task that measures; sets the method that the definition has.
+void read_measure(trial& r, const text_table& t, std::size_t row, const run_outline& run)
+{
+    const bool standard_first = run.standard && t.need(row, "method_1") == standard_name;
+    r.signal = !run.catches || t.need(row, "method_1") != catch_name;
+    if (r.signal)
+        r.method_1 = find_place(t, row, standard_first ? "method_2" : "method_1", run.methods);
+    if (run.task == task_kind::same_different) {
+        r.method_2 = find_place(t, row, "method_2", run.methods);
+        r.signal = r.method_1 != r.method_2;
+    } else if (run.standard && !standard_first && t.need(row, "method_2") != standard_name) {
+        t.refuse(row, "no stimulus is the standard", "one of each trial is");
+    }
+    if (!run.vary.empty() && r.signal) {
+        const auto value = t.number(row, "value");
+        if (!value)
+            t.refuse(row, "there is no value", "the value of the comparison");
+        r.value = *value;
+    }
+    if (run.task == task_kind::estimate) {
+        const auto number = t.whole(row, "intensity_estimate", 1, most_estimate);
+        if (!number)
+            t.refuse(row, "there is no estimate", "a trial that counts has one");
+        r.response = *number;
+        return;
+    }
+    r.response = read_one_of_two(t, row);
+    r.positive = is_positive(run, t.need(row, "method_1"), r.response);
+}
+
 trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
 {
     trial r;
     r.motion = find_place(t, row, "motion", run.motions);
-    r.method_1 = find_place(t, row, "method_1", run.methods);
     r.response_time_s = t.number(row, "response_time");
+    if (find_task(run.task).measures) {
+        read_measure(r, t, row, run);
+        return r;
+    }
+    r.method_1 = find_place(t, row, "method_1", run.methods);
     if (run.task == task_kind::rate) {
         r.response = read_rating(t, row, run);
     } else if (run.task == task_kind::identify) {
@@ -224,10 +267,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
         r.method_2 = find_place(t, row, "method_2", run.methods);
         if (r.method_1 == r.method_2)
             t.refuse(row, "both stimuli are of one method", "choose compares two");
-        const auto response = t.whole(row, "response", 1, 2);
-        if (!response)
-            t.refuse(row, "there is no response", "a trial that counts has one");
-        r.response = *response;
+        r.response = read_one_of_two(t, row);
     }
     return r;
 }
@@ -391,7 +431,7 @@ session_data read_session(const std::filesystem::path& file)
     return s;
 }
 
-const std::array<trial_column, 19> trial_columns{{
+const std::array<trial_column, 22> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration", "From the first frame of the first stimulus to the last of the last, the gap included", "s",
@@ -410,6 +450,11 @@ const std::array<trial_column, 19> trial_columns{{
     {"early", "Whether the answer came sooner after the stimulus than min_response_s; n/a without an answer",
      "", &trial_row::early, column_use::nobody},
     {"rating", "The rating; n/a where nothing is rated", "", &trial_row::rating},
+    {"value", "Value of what the run varies, of the comparison; n/a in a trial without a stimulus", "",
+     &trial_row::value, column_use::values},
+    {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::tracks, 1},
+    {"intensity_estimate", "The number that the participant gave", "", &trial_row::intensity_estimate,
+     column_use::numbers},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void, column_use::analysis},
     {"xruns", "Gaps in the sound while the stimuli played, as the device tells them", "", &trial_row::xruns},
@@ -420,25 +465,48 @@ const std::array<trial_column, 19> trial_columns{{
     {"plan_2", "SHA-256 of the second stimulus' plan", "", &trial_row::plan_2},
 }};
 
-named_cells make_cells(const trial_row& r)
+bool has_column(const run_outline& run, column_use use, bool has_groups) noexcept
+{
+    switch (use) {
+    case column_use::groups:
+        return has_groups;
+    case column_use::values:
+        return !run.vary.empty();
+    case column_use::tracks:
+        return run.task == task_kind::adaptive;
+    case column_use::numbers:
+        return run.task == task_kind::estimate;
+    default:
+        return true;
+    }
+}
+
+named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs)
 {
     named_cells cells;
     for (const trial_column& c : trial_columns)
-        if (c.use != column_use::groups || !r.group.empty())
+        if (std::ranges::any_of(runs, [&](auto* run) { return has_column(*run, c.use, !r.group.empty()); }))
             cells.emplace_back(c.name, std::visit([&](auto member) { return written(r.*member); }, c.member));
     return cells;
 }
 
-std::vector<trial_row> read_rows(const text_table& t)
+std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
 {
     for (const trial_column& c : trial_columns)
-        if (c.use == column_use::analysis || c.use == column_use::session)
+        if (c.use != column_use::nobody && has_column(run, c.use, false))
             t.need_column(c.name);
     std::vector<trial_row> all(t.rows());
     for (const trial_column& c : trial_columns)
         for (std::size_t i = 0; i < all.size() && t.has(c.name); ++i)
             std::visit([&](auto member) { cell_reader{t, i, c}.into(all[i].*member); }, c.member);
     return all;
+}
+
+bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept
+{
+    if (run.task == task_kind::detect)
+        return response == 1;
+    return (response == 2) == (!run.standard || method_1 == standard_name);
 }
 
 bool is_cut_in_plan(const text_table& t)

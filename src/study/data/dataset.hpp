@@ -26,7 +26,7 @@
 
 namespace tactor::study {
 
-enum class task_kind { choose, rate, identify };
+enum class task_kind { choose, rate, identify, detect, same_different, estimate, constant, adaptive };
 
 /// A task as definitions and descriptions have it.
 struct task_row {
@@ -35,10 +35,12 @@ struct task_row {
     std::string_view response; ///< meaning of its response; {} is the range of ratings
     /// Usual questions about similarity, uniformity, another attribute; empty: none.
     std::array<std::string_view, 3> questions;
+    bool measures = false; ///< a psychometric function, d' or an exponent is estimated from its trials
+    bool varies = false;   ///< a value changes from trial to trial; detect may do without
 };
 
 /// Rows in the order of task_kind.
-inline constexpr std::array<task_row, 3> tasks{{
+inline constexpr std::array<task_row, 8> tasks{{
     {"choose",
      "Two stimuli, one after the other, of which one is chosen",
      "Which of the two stimuli was chosen, 1 or 2",
@@ -51,6 +53,35 @@ inline constexpr std::array<task_row, 3> tasks{{
      "One stimulus, whose motion is named",
      "The motion that was named",
      {"Which movement was it?", "Which movement was it?", "Which movement was it?"}},
+    {"detect",
+     "One stimulus or none",
+     "Whether a stimulus was felt: 1 yes, 2 no",
+     {"Did you feel it?", "Did you feel it?", "Did you feel it?"},
+     true},
+    {"same-different",
+     "Two stimuli, one after the other",
+     "Whether the stimuli were 1 the same or 2 different",
+     {"Were both the same?", "Were both the same?", "Were both the same?"},
+     true},
+    {"estimate",
+     "One stimulus, or a standard and then a stimulus, to which a number is given",
+     "The number that was given",
+     {},
+     true,
+     true},
+    {"constant",
+     "One stimulus that is judged, or a standard and a comparison of which one is chosen; stated values",
+     "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
+     {},
+     true,
+     true},
+    {"adaptive",
+     "One stimulus that is judged, or a standard and a comparison of which one is chosen; values by the "
+     "answers before",
+     "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
+     {},
+     true,
+     true},
 }};
 constexpr const task_row& find_task(task_kind t) noexcept
 {
@@ -70,10 +101,22 @@ struct run_outline {
     unsigned trials = 0;                   ///< 0: the definition does not say
     unsigned scale = 5;                    ///< rate: the highest rating
     bool visual = false;                   ///< rate: a visual analogue scale, without numbers
+    std::string vary = {};                 ///< option or stroke parameter that changes; empty: none
+    bool on_db_axis = false;               ///< the values are levels in dB
+    std::vector<double> values = {};       ///< of `vary`, ascending
+    std::optional<double> standard = {};   ///< value of the other stimulus; none: there is no other
+    bool catches = false;                  ///< detect: some trials have no stimulus
 
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
+
+/// Greatest number that a participant may give in a run that estimates.
+inline constexpr unsigned most_estimate = 999;
+
+// Names in the columns of methods for stimuli by no method of the definition.
+inline constexpr std::string_view standard_name = "standard"; ///< the stimulus with the standard's value
+inline constexpr std::string_view catch_name = "none";        ///< of a trial without a stimulus
 
 /// A group of participants. A run that it lacks has no motions.
 struct group_outline {
@@ -136,6 +179,9 @@ struct trial_row {
     std::optional<double> response_time_s = {};
     std::optional<bool> early = {}; ///< none: without an answer, or of a version that did not record it
     std::optional<unsigned> rating = {};
+    std::optional<double> value = {};   ///< of what the run varies; none: it varies nothing, or a catch trial
+    std::optional<unsigned> track = {}; ///< adaptive: from 1
+    std::optional<unsigned> intensity_estimate = {};
     bool is_void = false;
     unsigned xruns = 0;
     unsigned stream = 0; ///< counts openings of the device, from 1
@@ -151,6 +197,9 @@ enum class column_use {
     session,  ///< sessions that go on; the analysis of the tasks that have it
     nobody,   ///< none: tables of older versions do not have it
     groups,   ///< none: only studies with groups have it
+    values,   ///< the analysis of runs that vary a value; only these have it
+    tracks,   ///< sessions of adaptive runs; only these have it
+    numbers,  ///< the analysis of runs that estimate; only these have it
 };
 
 struct trial_column {
@@ -167,13 +216,20 @@ struct trial_column {
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 19> trial_columns;
+extern const std::array<trial_column, 22> trial_columns;
 
-/// Returns the cells of a row, in the order of a new table; no cell for an empty group.
-named_cells make_cells(const trial_row& r);
+/// Returns true if a run's tables have the column.
+bool has_column(const run_outline& run, column_use use, bool has_groups) noexcept;
+
+/// Returns the cells of a row, in the order of a new table of these runs; no cell for an empty group.
+named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs);
 
 /// Reads all columns of all lines. \throws error (bad_input) with file and line.
-std::vector<trial_row> read_rows(const text_table& t);
+std::vector<trial_row> read_rows(const text_table& t, const run_outline& run);
+
+/// Returns true for an answer 1 or 2 of a task that measures which its analysis counts: felt; different; the
+/// comparison, or without a standard the second word. `method_1` is that of the first stimulus.
+bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept;
 
 /// Tests whether a crash cut the table's last line within its last cell, a plan.
 bool is_cut_in_plan(const text_table& t);
@@ -189,7 +245,10 @@ struct trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
     std::size_t method_2 = 0; ///< of choose only
-    unsigned response = 0;    ///< choose: interval 1 or 2; rate: the rating; identify: the motion answered
+    unsigned response = 0;    ///< as in its table; identify: the motion answered; estimate: the number
+    double value = 0.0;       ///< of what the run varies
+    bool positive = false;    ///< felt, different, or more: the comparison was chosen, or the second word
+    bool signal = true;       ///< detect: there was a stimulus; same-different: they differed
     std::optional<double> response_time_s = {};
     std::optional<bool> early = {}; ///< sooner than min_response_s; none: not recorded
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <span>
@@ -20,6 +21,7 @@
 #include "files/toml_reader.hpp"
 #include "options/option.hpp"
 #include "options/settle.hpp"
+#include "study/experiment/variation.hpp"
 
 namespace tactor::study {
 namespace {
@@ -394,6 +396,28 @@ void check_cells(const toml_table& t, const run_outline& o)
         t.fail(fmt::format("{} has one method to choose from", o.name), "name two or more in methods");
     if (o.task == task_kind::identify && o.motions.size() < 2)
         t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
+    if (o.task == task_kind::same_different && o.methods.size() != 2)
+        t.fail(fmt::format("{} has {}", o.name, counted(o.methods.size(), "method")),
+               "two are the same or differ");
+    for (const auto& [used, name] :
+         {std::pair(o.standard.has_value(), standard_name), {o.catches, catch_name}})
+        if (used && std::ranges::count(o.methods, name) != 0)
+            t.fail(fmt::format("a method of {} is called \"{}\"", o.name, name),
+                   "another name: the tables call a stimulus so that is of no method");
+}
+
+// Reads the number of trials, or that of each value.
+unsigned read_trials(const toml_table& t, const run_outline& o)
+{
+    const auto each = t.whole("trials_per_value", 1, most_trials);
+    if (!each)
+        return t.whole("trials", 1, most_trials).value_or(0);
+    const std::size_t all = *each * o.values.size() * o.motions.size() * o.methods.size();
+    if (t.has("trials") || o.task == task_kind::adaptive || o.catches || all > most_trials)
+        t.fail("trials_per_value", fmt::format("trials_per_value makes {} trials", all),
+               t.has("trials") || all > most_trials ? fmt::format("trials alone, at most {}", most_trials)
+                                                    : "trials in its place");
+    return static_cast<unsigned>(all);
 }
 
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
@@ -417,20 +441,46 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
         names.push_back(row.name);
     const std::string task = t.need(t.choice("task", names), "task");
     o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
-    o.trials = t.whole("trials", 1, most_trials).value_or(0);
     read_scale(t, o);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     o.motions = names_at(r.motions, d.motions);
     o.methods = names_at(r.methods, d.methods);
+    read_variation(t, r);
+    o.trials = read_trials(t, o);
     check_cells(t, o);
     return r;
 }
 
-run_definition read_run_definition(const toml_table& t, const experiment_definition& d)
+// Reads the words of both answers, or returns the usual ones.
+std::vector<std::string> read_choices(const toml_table& t, const run_outline& o, const page_words& page)
 {
-    t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
-            "choices", "break_s", "motions", "methods", "blocks", "simulate_as", "min_response_s"});
+    if (t.has("choices") &&
+        (o.task == task_kind::rate || o.task == task_kind::identify || o.task == task_kind::estimate))
+        t.fail("choices", fmt::format("choices is not of runs that {}", to_string(o.task)), "leave it out");
+    std::vector<std::string> choices = texts_in(t, "choices", 2);
+    if (t.has("choices") && choices.size() != 2)
+        t.fail("choices", fmt::format("choices has {}", counted(choices.size(), "text")),
+               "one for each of the two answers");
+    if (!t.has("choices") && (o.task == task_kind::constant || o.task == task_kind::adaptive) && !o.standard)
+        t.fail("vary", "a run without a standard judges by two words",
+               "choices = [\"one\", \"two\"], or add standard");
+    if (!t.has("choices") && o.task == task_kind::detect)
+        return {page["yes"], page["no"]};
+    if (!t.has("choices") && o.task == task_kind::same_different)
+        return {page["same"], page["different"]};
+    return choices;
+}
+
+run_definition read_run_definition(const toml_table& t, experiment_definition& d,
+                                   std::vector<method_definition>& variants)
+{
+    t.only({"name",           "task",      "attribute", "question", "animation",
+            "trials",         "practice",  "scale",     "labels",   "choices",
+            "break_s",        "motions",   "methods",   "blocks",   "simulate_as",
+            "min_response_s", "vary",      "values",    "standard", "trials_per_value",
+            "catch",          "procedure", "start",     "steps",    "range",
+            "tracks",         "slope",     "lapse"});
     run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
@@ -438,13 +488,11 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
                                r.outline.name),
                    "another name: on some disks their files would be one");
-    constexpr std::array task_keys{std::pair("scale", task_kind::rate), std::pair("labels", task_kind::rate),
-                                   std::pair("choices", task_kind::choose)};
-    for (const auto& [key, task] : task_keys)
-        if (r.outline.task != task && t.has(key))
-            t.fail(key, fmt::format("{} is of runs that {}", key, to_string(task)),
-                   fmt::format("leave it out, or task = \"{}\"", to_string(task)));
-    if (t.has("attribute") || r.outline.task != task_kind::identify)
+    for (const char* key : {"scale", "labels"})
+        if (r.outline.task != task_kind::rate && t.has(key))
+            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
+    make_variants(t, r, d.methods, variants);
+    if (t.has("attribute") || r.outline.task == task_kind::choose || r.outline.task == task_kind::rate)
         r.attribute = name_in(t, "attribute");
     const std::size_t kind = r.attribute == "similarity" ? 0 : r.attribute == "uniformity" ? 1 : 2;
     r.simulate_as =
@@ -467,13 +515,11 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             "labels",
             fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
             "one for each end, or one for each step");
-    r.choices = texts_in(t, "choices", 2);
-    if (t.has("choices") && r.choices.size() != 2)
-        t.fail("choices", fmt::format("choices has {}", counted(r.choices.size(), "text")),
-               "one for each of the two answers");
+    r.choices = read_choices(t, r.outline, d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
-    if (r.blocks == "methods" && r.outline.task == task_kind::choose)
+    if (r.blocks == "methods" &&
+        (r.outline.task == task_kind::choose || r.outline.task == task_kind::same_different))
         t.fail("blocks", fmt::format("{} has two methods in each trial", r.outline.name),
                "blocks = \"motions\", or leave it out");
     return r;
@@ -548,16 +594,21 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
                               : read_method(t, d, e.folder);
     });
     d.outline.name = d.name;
+    std::vector<method_definition> variants;
     for (const toml_table& t : need_tables(root, "run")) {
-        d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d));
+        d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d, variants));
         d.outline.runs.push_back(d.runs.back().outline);
     }
     if (root.has("group"))
         d.outline.groups = read_all<group_outline>(root, "group", [&](const toml_table& t) {
             if (!e.outline_only)
-                t.only({"name", "runs", "motions", "methods"});
-            return read_group(t, d);
+                t.only({"name", "array", "runs", "motions", "methods"});
+            group_outline g = read_group(t, d);
+            if (t.has("array") && e.folder != nullptr)
+                d.group_arrays[g.name] = array_in(t, *e.folder);
+            return g;
         });
+    std::ranges::move(variants, std::back_inserter(d.methods));
     return d;
 }
 

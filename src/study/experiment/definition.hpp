@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,9 +41,31 @@ struct method_definition {
     options::wishes options = {};     ///< options that it gives, and defaults
     std::optional<stroke> drawn = {}; ///< stroke in place of the motion's
     source_place where = {};
+    std::optional<double> value = {}; ///< of a run that varies one; see variation.hpp
+    std::string vary = {};            ///< stroke parameter that has it; empty: an option has
+    bool silent = false;              ///< nothing is played, for as long
 
+    /// Returns true if a run made it of a method of the definition.
+    bool is_variant() const noexcept { return value.has_value() || silent; }
     /// Returns true if its level, in options.render, replaces the experiment's.
     bool has_level() const { return options.gives("level_dbfs") || options.gives("sl"); }
+};
+
+/// Methods that a run plays in place of one of its own, as places in those of the definition.
+struct method_variants {
+    std::vector<std::size_t> values = {}; ///< by value
+    std::optional<std::size_t> standard = {};
+    std::optional<std::size_t> silent = {}; ///< of trials without a stimulus
+};
+
+/// Procedure of an adaptive run. Values are places in those of the run.
+struct adaptive_options {
+    unsigned down = 0; ///< positive answers in a row after which a staircase goes down; 0: QUEST+
+    unsigned tracks = 1;
+    std::vector<std::size_t> start = {}; ///< by track
+    std::vector<std::size_t> steps = {}; ///< of a staircase; the next from every second reversal on
+    std::vector<double> slopes = {};     ///< of QUEST+: standard deviations of the normal
+    std::vector<double> lapses = {};
 };
 
 /// [[run]]. Motions and methods are places in those of the definition.
@@ -56,9 +79,12 @@ struct run_definition {
     double break_s = 0.0;         ///< after the run
     double min_response_s = 0.15; ///< an earlier answer is marked early
     std::vector<std::string> labels = {};
-    std::vector<std::string> choices = {}; ///< choose: words of both answers; may be empty
+    std::vector<std::string> choices = {}; ///< words of both answers; may be empty
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
+    std::map<std::size_t, method_variants> variants = {}; ///< by method; empty: it plays them as they are
+    double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
+    adaptive_options adaptive = {};
     std::string blocks = {}; ///< methods or motions: the trials of each stand together; empty: all are mixed
     source_place where = {};
 };
@@ -88,6 +114,7 @@ struct experiment_definition {
     std::vector<motion_definition> motions = {};
     std::vector<method_definition> methods = {};
     std::vector<run_definition> runs = {};
+    std::map<std::string, std::string> group_arrays = {}; ///< by group, of those that have their own
     std::string group = {};          ///< group whose runs `runs` are; empty: those of everybody
     experiment_outline outline = {}; ///< of all runs and groups
     std::string text = {};           ///< all of it, TOML

@@ -15,6 +15,8 @@ constexpr std::array english{
     page_word{"agree", "Do you agree?"},
     page_word{"yes", "Yes"},
     page_word{"no", "No"},
+    page_word{"same", "The same"},
+    page_word{"different", "Different"},
     page_word{"walk", "Each place vibrates once, in turn."},
     page_word{"felt", "Did you feel it?"},
     page_word{"again", "Once more"},

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,6 +15,8 @@
 
 #include "core/split.hpp"
 #include "study/analysis/analysis.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/experiment/adaptive.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
@@ -56,6 +61,15 @@ std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
     return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
 }
 
+// Returns the place in a run's methods of the one that was played, or of which it was made.
+std::size_t own_method(const run_definition& r, std::size_t played)
+{
+    for (const auto& [method, v] : r.variants)
+        if (v.standard == played || v.silent == played || std::ranges::count(v.values, played) != 0)
+            return place_in(r.methods, method);
+    return place_in(r.methods, played);
+}
+
 // Prepares a run for n participants, without their answers.
 std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
                                        const std::optional<std::uint64_t>& seed)
@@ -69,9 +83,13 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
             trial one;
             one.place = static_cast<unsigned>(p.trials.size() + 1);
             one.motion = place_in(r.motions, t.motion);
-            one.method_1 = place_in(r.methods, t.method_1);
+            one.method_1 = own_method(r, t.method_1);
             if (t.method_2)
-                one.method_2 = place_in(r.methods, *t.method_2);
+                one.method_2 = own_method(r, *t.method_2);
+            if (d.methods[t.method_1].name == standard_name)
+                one.method_1 = one.method_2;
+            one.signal = r.outline.task == task_kind::same_different ? t.method_1 != t.method_2
+                                                                     : !d.methods[t.method_1].silent;
             p.trials.push_back(one);
         }
         all.push_back(std::move(p));
@@ -80,18 +98,36 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
 }
 
 // Fills the answers in; a trial that is void comes again until it is not.
-void answer_all(person_run& p, const simulated_observer& who, const run_definition& r)
+void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
+                const run_definition& r)
 {
+    adaptive_tracks tracks(r);
     for (std::size_t i = 0; i < p.trials.size(); ++i) {
+        planned_trial& t = p.planned[i];
+        if (t.track > 0)
+            set_value(t, r, tracks.next(t.track));
         simulated_answer a;
         unsigned attempt = 0;
         do
-            a = who.answer(p.planned[i], p.trials[i].place, ++attempt, false);
+            a = who.answer(t, p.trials[i].place, ++attempt, false);
         while (a.is_void);
+        p.trials[i].value = find_value(d, t).value_or(0.0);
+        p.trials[i].positive = is_positive(r.outline, d.methods[t.method_1].name, a.response);
+        if (t.track > 0)
+            tracks.answer(t.track, p.trials[i].positive);
         p.trials[i].response = r.outline.task == task_kind::identify
                                    ? static_cast<unsigned>(place_in(r.motions, a.response))
                                    : a.response;
     }
+}
+
+// Returns a participant's value in the main comparison of a run.
+std::optional<double> compare_trials(const run_outline& run, const std::vector<trial>& trials)
+{
+    if (find_task(run.task).measures)
+        return list_measures(run, measure_trials(run, trials, sigmoid::normal, "")).front().second;
+    const auto cells = compute_cells(run, trials);
+    return cells ? compared_value(run, *cells) : std::nullopt;
 }
 
 // Tests one study. `values` are by participant; one without a value lacks a cell and is left out, as in the
@@ -102,7 +138,8 @@ void count_study(power_at& at, const std::vector<std::optional<double>>& values,
     for (std::size_t i = 0; i < at.participants; ++i)
         if (values[i])
             there.push_back(*values[i]);
-    const t_test t = quick_test_mean(there, chance(run), rounding_in(run));
+    const double against = find_task(run.task).measures ? measured_against(run).value_or(0.0) : chance(run);
+    const t_test t = quick_test_mean(there, against, rounding_in(run));
     if (!t.p)
         ++at.untested;
     else if (*t.p < significant_p) {
@@ -131,6 +168,16 @@ simulation parse_simulation(std::string_view text)
             s.sigma = simulation_value(key, value, 0.0, 1e6);
         else if (key == "void")
             s.voids = simulation_value(key, value, 0.0, 0.9);
+        else if (key == "pse")
+            s.pse = simulation_value(key, value, -1e6, 1e6);
+        else if (key == "jnd")
+            s.jnd = simulation_value(key, value, 1e-9, 1e6);
+        else if (key == "lapse")
+            s.lapse = simulation_value(key, value, 0.0, 0.5);
+        else if (key == "dprime")
+            s.dprime = simulation_value(key, value, 0.0, 10.0);
+        else if (key == "exponent")
+            s.exponent = simulation_value(key, value, 0.0, 10.0);
         else
             refuse_simulation(fmt::format("\"{}\" is not known", key));
     }
@@ -139,8 +186,18 @@ simulation parse_simulation(std::string_view text)
 
 std::string to_text(const simulation& s)
 {
-    const std::string text = fmt::format("seed={},sigma={}", s.seed, s.sigma);
-    return s.voids > 0.0 ? fmt::format("{},void={}", text, s.voids) : text;
+    const simulation usual;
+    std::string text = fmt::format("seed={},sigma={}", s.seed, s.sigma);
+    for (const auto& [key, v, other] : {std::tuple("void", s.voids, usual.voids),
+                                        {"lapse", s.lapse, usual.lapse},
+                                        {"dprime", s.dprime, usual.dprime},
+                                        {"exponent", s.exponent, usual.exponent}})
+        if (v != other)
+            text += fmt::format(",{}={}", key, v);
+    for (const auto& [key, v] : {std::pair("pse", s.pse), {"jnd", s.jnd}})
+        if (v)
+            text += fmt::format(",{}={}", key, *v);
+    return text;
 }
 
 simulated_observer::simulated_observer(const simulation& s, const experiment_definition& d,
@@ -157,6 +214,8 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
             targets_.push_back(target_path(d.motions[m].drawn));
         return;
     }
+    if (find_task(r.outline.task).measures)
+        return;
     if (r.simulate_as.empty())
         throw error(error_kind::bad_input, r.where,
                     fmt::format("simulate: the observer does not know how to judge \"{}\"", r.attribute),
@@ -181,6 +240,47 @@ double simulated_observer::cost(std::size_t motion, std::size_t method) const
     return std::max(*c, least_cost);
 }
 
+bool simulated_observer::feels_more(double value, random_numbers& r) const
+{
+    constexpr double jnd_per_sd = 0.6744897501960817; // quartile of the normal
+    const run_outline& o = run_.outline;
+    const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
+    const double pse = simulation_.pse.value_or(o.standard.value_or(0.5 * (least + greatest)));
+    const double jnd = simulation_.jnd.value_or(0.1 * (greatest - least));
+    return r.unit() < normal_chance(value, {pse, jnd / jnd_per_sd, simulation_.lapse}, 0.0);
+}
+
+unsigned simulated_observer::measure(const planned_trial& t, random_numbers& r) const
+{
+    const run_outline& o = run_.outline;
+    if (o.task == task_kind::same_different) {
+        // Differs if what is felt is further apart than this, in units of d'.
+        constexpr double criterion = std::numbers::sqrt2;
+        const double apart = t.method_1 != *t.method_2 ? simulation_.dprime : 0.0;
+        return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;
+    }
+    const std::optional<double> value = find_value(definition_, t);
+    if (o.task == task_kind::detect) {
+        if (definition_.methods[t.method_1].silent && !o.vary.empty())
+            return r.unit() < simulation_.lapse ? 1 : 2;
+        if (value)
+            return feels_more(*value, r) ? 1 : 2;
+        const double felt = definition_.methods[t.method_1].silent ? 0.0 : simulation_.dprime;
+        return felt + r.normal() > 0.5 * simulation_.dprime ? 1 : 2;
+    }
+    if (o.task == task_kind::estimate) {
+        constexpr double modulus = 100.0; // of the standard, or of the middle value
+        const double middle = o.standard.value_or(o.values[o.values.size() / 2]);
+        const double ratio = size_ratio(o, *value, middle);
+        const double number =
+            modulus * std::pow(ratio, simulation_.exponent) * std::exp(simulation_.sigma * r.normal());
+        return static_cast<unsigned>(std::clamp(std::round(number), 1.0, double{most_estimate}));
+    }
+    const bool more = feels_more(*value, r);
+    const bool standard_first = definition_.methods[t.method_1].name == standard_name;
+    return more == (!t.method_2 || standard_first) ? 2 : 1;
+}
+
 simulated_answer simulated_observer::answer(const planned_trial& t, unsigned trial, unsigned attempt,
                                             bool practice) const
 {
@@ -190,6 +290,10 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
     constexpr unsigned soonest_ms = 400;
     constexpr unsigned range_ms = 1200;
     a.response_time_ms = soonest_ms + r.below(range_ms);
+    if (find_task(run_.outline.task).measures) {
+        a.response = measure(t, r);
+        return a;
+    }
     const auto noise = [&] { return simulation_.sigma * r.normal(); };
     const auto utility = [&](std::size_t method) { return -std::log(cost(t.motion, method)) + noise(); };
     switch (run_.outline.task) {
@@ -221,6 +325,8 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
         }
         break;
     }
+    default:
+        break;
     }
     return a;
 }
@@ -235,7 +341,9 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
     for (std::size_t run = 0; run < d.runs.size(); ++run) {
         people.push_back(prepare_people(d, run, most, r.seed));
         all.push_back({run, {}});
-        if (d.runs[run].outline.task != task_kind::rate || d.runs[run].methods.size() > 1)
+        const run_outline& o = d.runs[run].outline;
+        if (find_task(o.task).measures ? measured_against(o).has_value()
+                                       : o.task != task_kind::rate || o.methods.size() > 1)
             for (const std::size_t n : r.participants)
                 all[run].at.push_back({n});
     }
@@ -250,9 +358,8 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
             const run_definition& run = d.runs[p.run];
             std::vector<std::optional<double>> values;
             for (person_run& who : people[p.run]) {
-                answer_all(who, {s, d, run, stimuli, who.code}, run);
-                const auto cells = compute_cells(run.outline, who.trials);
-                values.push_back(cells ? compared_value(run.outline, *cells) : std::nullopt);
+                answer_all(who, {s, d, run, stimuli, who.code}, d, run);
+                values.push_back(compare_trials(run.outline, who.trials));
             }
             for (power_at& at : p.at)
                 count_study(at, values, run.outline);

@@ -14,6 +14,7 @@
 
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
+#include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
@@ -22,6 +23,12 @@ struct simulation {
     std::uint64_t seed = 1;
     double sigma = 1.0; ///< of the noise: choose and rate in units of -ln cost, identify in mm
     double voids = 0.0; ///< share of trials that are void, as by an xrun
+    // Truth of tasks that measure.
+    std::optional<double> pse = {}; ///< value with an even chance; none: the standard, or the middle value
+    std::optional<double> jnd = {}; ///< half the distance from 25 to 75 %; none: a tenth of the values' range
+    double lapse = 0.0;             ///< chance of a negative answer to the greatest values
+    double dprime = 1.0;
+    double exponent = 1.0; ///< of the estimates; sigma is the noise of their logarithm
 
     friend bool operator==(const simulation&, const simulation&) = default;
 };
@@ -32,8 +39,7 @@ std::string to_text(const simulation& s);
 
 struct simulated_answer {
     bool is_void = false;
-    unsigned response =
-        0; ///< choose: 1 or 2; rate: the rating; identify: a place in the definition's motions
+    unsigned response = 0;         ///< as a person's; identify: a place in the definition's motions
     unsigned response_time_ms = 0; ///< drawn to fill the column: no model of people
 };
 
@@ -50,6 +56,9 @@ public:
 
 private:
     double cost(std::size_t motion, std::size_t method) const;
+    /// Answers a task that measures.
+    unsigned measure(const planned_trial& t, random_numbers& r) const;
+    bool feels_more(double value, random_numbers& r) const;
 
     simulation simulation_;
     const experiment_definition& definition_;

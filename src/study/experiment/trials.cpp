@@ -18,6 +18,7 @@
 #include "options/option.hpp"
 #include "options/settle.hpp"
 #include "session/piece.hpp"
+#include "study/experiment/variation.hpp"
 #include "study/random/random.hpp"
 #include "synth/score/joined.hpp"
 
@@ -48,6 +49,70 @@ planned_trial with_order(planned_trial t, bool swapped)
     return t;
 }
 
+// Adds a trial of a task that measures: the comparison alone, or with the standard. Only estimates have the
+// standard always first.
+void add_comparison(std::vector<planned_trial>& cells, const run_definition& r, planned_trial t,
+                    const method_variants& v)
+{
+    if (v.standard && r.outline.task != task_kind::estimate) {
+        t.method_2 = v.standard;
+        cells.push_back(t);
+    }
+    if (v.standard) {
+        t.method_2 = t.method_1;
+        t.method_1 = *v.standard;
+    }
+    cells.push_back(t);
+}
+
+// Lists the cells of a task that measures: each motion by each method, and by each value or track.
+std::vector<planned_trial> list_measured_cells(const run_definition& r)
+{
+    std::vector<planned_trial> cells;
+    unsigned track = 0;
+    for (const std::size_t motion : r.motions) {
+        if (r.outline.task == task_kind::same_different) {
+            for (const std::size_t first : r.methods)
+                for (const std::size_t second : r.methods)
+                    cells.push_back({motion, first, second});
+            continue;
+        }
+        for (const std::size_t method : r.methods) {
+            static const method_variants none;
+            const auto there = r.variants.find(method);
+            const method_variants& v = there == r.variants.end() ? none : there->second;
+            if (r.outline.task == task_kind::adaptive)
+                for (const std::size_t start : r.adaptive.start)
+                    add_comparison(cells, r, {motion, v.values[start], {}, 0.0, ++track}, v);
+            else if (v.values.empty())
+                cells.push_back({motion, method});
+            else
+                for (const std::size_t value : v.values)
+                    add_comparison(cells, r, {motion, value}, v);
+        }
+    }
+    return cells;
+}
+
+// Draws n trials of a task that measures: each cell equally often, and of the rest different cells. With
+// catch trials, these are a part of the n.
+std::vector<planned_trial> draw_measured(const run_definition& r, std::size_t n, random_numbers& numbers)
+{
+    std::vector<planned_trial> cells = list_measured_cells(r);
+    const auto catches = static_cast<std::size_t>(std::llround(r.catch_share * static_cast<double>(n)));
+    std::vector<planned_trial> all;
+    for (std::size_t i = 0; i < n - catches; ++i) {
+        if (i == n - catches - (n - catches) % cells.size())
+            shuffle(std::span(cells), numbers);
+        all.push_back(cells[i % cells.size()]);
+    }
+    for (std::size_t i = 0; i < catches; ++i) {
+        const std::size_t method = r.methods[i / r.motions.size() % r.methods.size()];
+        all.push_back({r.motions[i % r.motions.size()], *r.variants.at(method).silent});
+    }
+    return all;
+}
+
 // Lists the cells of a run: each motion by each method, or by each pair in each order.
 std::vector<planned_trial> list_cells(const run_definition& r)
 {
@@ -66,6 +131,8 @@ std::vector<planned_trial> list_cells(const run_definition& r)
 // cells of one motion stand together.
 std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
 {
+    if (find_task(run.outline.task).measures)
+        return draw_measured(run, n, r);
     const std::vector<planned_trial> cells = list_cells(run);
     const std::size_t whole = n - n % cells.size();
     std::vector<planned_trial> all;
@@ -131,10 +198,20 @@ std::size_t count_blocks(const run_definition& r)
     return r.blocks == "methods" ? r.methods.size() : r.blocks == "motions" ? r.motions.size() : 1;
 }
 
+// Tests whether a method is made of another for the run.
+bool has_variant(const run_definition& r, std::size_t method, std::size_t variant)
+{
+    const auto there = r.variants.find(method);
+    if (there == r.variants.end())
+        return false;
+    const method_variants& v = there->second;
+    return v.standard == variant || v.silent == variant || std::ranges::count(v.values, variant) != 0;
+}
+
 bool is_in_block(const planned_trial& t, const run_definition& r, std::size_t i)
 {
     if (r.blocks == "methods")
-        return t.method_1 == r.methods[i];
+        return t.method_1 == r.methods[i] || has_variant(r, r.methods[i], t.method_1);
     return r.blocks.empty() || t.motion == r.motions[i];
 }
 
@@ -178,7 +255,9 @@ std::vector<point> sample_path(const std::vector<percept_sample>& samples)
 // gives replaces that of the stroke's file.
 stroke choose_stroke(const motion_definition& motion, const method_definition& method)
 {
-    stroke s = method.drawn.value_or(motion.drawn);
+    stroke s = vary_stroke(method.drawn.value_or(motion.drawn), method);
+    if (method.silent)
+        s.motion = s.motion.with_intensity(0.0);
     if (method.options.gives("carrier")) {
         s.sound.carrier_hz.reset();
         s.sound.carrier_profile.clear();
@@ -201,6 +280,24 @@ render_options choose_render(const render_options& common, const options::wishes
     return all.render;
 }
 
+// Lists the methods of a run as they are played.
+std::vector<std::size_t> list_played(const run_definition& r)
+{
+    std::vector<std::size_t> all;
+    for (const std::size_t method : r.methods) {
+        const auto there = r.variants.find(method);
+        if (there == r.variants.end() || there->second.values.empty())
+            all.push_back(method);
+        if (there == r.variants.end())
+            continue;
+        all.insert(all.end(), there->second.values.begin(), there->second.values.end());
+        for (const auto& one : {there->second.standard, there->second.silent})
+            if (one)
+                all.push_back(*one);
+    }
+    return all;
+}
+
 // Returns the target of a stimulus: its motion, in the time that the stroke takes which is played.
 stroke find_target(const motion_definition& motion, const method_definition& method, const stroke& played)
 {
@@ -212,6 +309,25 @@ stroke find_target(const motion_definition& motion, const method_definition& met
 }
 
 } // namespace
+
+void set_value(planned_trial& t, const run_definition& r, std::size_t place)
+{
+    for (const auto& [method, v] : r.variants) {
+        if (std::ranges::count(v.values, t.method_1) != 0)
+            t.method_1 = v.values[place];
+        else if (t.method_2 && std::ranges::count(v.values, *t.method_2) != 0)
+            t.method_2 = v.values[place];
+        else
+            continue;
+        return;
+    }
+}
+
+std::optional<double> find_value(const experiment_definition& d, const planned_trial& t)
+{
+    const bool standard_first = t.method_2 && d.methods[t.method_1].name == standard_name;
+    return d.methods[standard_first ? *t.method_2 : t.method_1].value;
+}
 
 std::uint64_t default_seed(std::string_view code)
 {
@@ -396,7 +512,7 @@ stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const
     const layout faces(a);
     for (const run_definition& r : d.runs)
         for (const std::size_t motion : r.motions)
-            for (const std::size_t method : r.methods)
+            for (const std::size_t method : list_played(r))
                 if (find(motion, method) == nullptr) {
                     all_.push_back(make(d.motions[motion], d.methods[method], faces));
                     all_.back().motion = motion;
@@ -409,7 +525,8 @@ void stimulus_set::warn_of_same(const experiment_definition& d)
 {
     const stimulus& last = all_.back();
     for (const stimulus& s : all_)
-        if (s.motion == last.motion && s.method != last.method && s.hash == last.hash)
+        if (s.motion == last.motion && s.method != last.method && s.hash == last.hash &&
+            !d.methods[s.method].is_variant() && !d.methods[last.method].is_variant())
             warnings_.push_back(fmt::format("motion \"{}\": methods \"{}\" and \"{}\" make the same stimulus",
                                             d.motions[s.motion].name, d.methods[s.method].name,
                                             d.methods[last.method].name));

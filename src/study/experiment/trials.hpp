@@ -27,8 +27,9 @@ namespace tactor::study {
 struct planned_trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
-    std::optional<std::size_t> method_2 = {}; ///< of choose only
+    std::optional<std::size_t> method_2 = {}; ///< none: one stimulus
     double rest_s = 0.0;                      ///< pause before it
+    unsigned track = 0;                       ///< adaptive: from 1; set_value() gives the trial its value
 
     friend bool operator==(const planned_trial&, const planned_trial&) = default;
 };
@@ -43,6 +44,12 @@ struct run_sequence {
 
 /// Most trials with the same motion in a row.
 inline constexpr std::size_t most_in_a_row = 3;
+
+/// Gives a trial of an adaptive run a value, by its place in those of the run.
+void set_value(planned_trial& t, const run_definition& r, std::size_t place);
+
+/// Returns the value of a trial's comparison; none: the run varies nothing, or the trial has no stimulus.
+std::optional<double> find_value(const experiment_definition& d, const planned_trial& t);
 
 /// Returns how many orders of so many trials make_run() draws before it gives up: a second or two.
 constexpr std::size_t most_draws(std::size_t trials) noexcept

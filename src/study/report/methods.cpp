@@ -179,7 +179,7 @@ std::string describe_level(const session_facts& s)
         text = fmt::format("{} dBFS, the same for all tactors but for their gains", plain_number(*dbfs));
     if (s.design)
         for (const method_definition& m : s.design->methods)
-            if (const render_options& o = m.options.render; m.has_level())
+            if (const render_options& o = m.options.render; m.has_level() && !m.is_variant())
                 text += fmt::format("; by {} {} {}", m.name, plain_number(o.sl_db.value_or(o.level_dbfs)),
                                     o.sl_db ? "dB SL" : "dBFS");
     return text;
@@ -397,6 +397,21 @@ std::set<std::string> list_notes(const study_facts& f)
     return notes;
 }
 
+// Describes a task that measures, with the values.
+std::string describe_measure(const run_outline& r)
+{
+    std::string text = fmt::format("{} ({})", find_task(r.task).trial, join(r.methods));
+    if (!r.vary.empty())
+        text += fmt::format(
+            "; {} {} {}", r.vary, r.task == task_kind::adaptive ? "chosen by the answers from" : "of",
+            r.task == task_kind::adaptive
+                ? fmt::format("{} to {}", plain_number(r.values.front()), plain_number(r.values.back()))
+                : join(r.values));
+    if (r.standard)
+        text += fmt::format("; standard {}", plain_number(*r.standard));
+    return text + (r.catches ? "; some trials without a stimulus" : "");
+}
+
 std::string describe_task(const run_outline& r)
 {
     const std::string methods = join(r.methods);
@@ -405,8 +420,10 @@ std::string describe_task(const run_outline& r)
                            has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
     if (r.task == task_kind::rate)
         return fmt::format("one stimulus ({}), rated from {}", methods, rating_range(r));
-    return fmt::format("one stimulus ({}); one of {} was named", methods,
-                       counted(r.motions.size(), "motion"));
+    if (r.task == task_kind::identify)
+        return fmt::format("one stimulus ({}); one of {} was named", methods,
+                           counted(r.motions.size(), "motion"));
+    return describe_measure(r);
 }
 
 std::string describe_pause(double s)

@@ -50,10 +50,10 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
     if (!t.has(method) || !t.has(plan) || !t.cell(row, method) || !t.cell(row, plan))
         return;
     const auto same = [&](const planned_stimulus& p) {
-        return p.motion == *t.cell(row, "motion") && p.method == *t.cell(row, method);
+        return p.motion == *t.cell(row, "motion") && p.method == *t.cell(row, method) &&
+               p.hash == *t.cell(row, plan);
     };
-    const auto at = std::find_if(s.stimuli.begin(), s.stimuli.end(), same);
-    if (at == s.stimuli.end() || at->hash != *t.cell(row, plan))
+    if (std::none_of(s.stimuli.begin(), s.stimuli.end(), same))
         t.refuse(row, fmt::format("{} is no plan of its motion by its method in session.json", plan),
                  changed_file);
 }

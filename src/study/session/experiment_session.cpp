@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -29,6 +30,7 @@
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
+#include "study/experiment/adaptive.hpp"
 #include "study/experiment/definition.hpp"
 #include "synth/score/drive_room.hpp"
 
@@ -106,6 +108,8 @@ void keep_group(experiment_definition& d, const std::string& name)
                     names.empty() ? "leave it out" : fmt::format("one of {}", fmt::join(names, ", ")));
     }
     d.group = name;
+    if (const auto array = d.group_arrays.find(name); array != d.group_arrays.end())
+        d.array = array->second;
     const auto keep = [](std::vector<std::size_t>& places, const auto& all, const auto& names) {
         std::erase_if(places, [&](std::size_t i) { return std::ranges::count(names, all[i].name) == 0; });
     };
@@ -146,9 +150,13 @@ void check_limits(const experiment_definition& d, const std::vector<run_sequence
     std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
     for (const run_sequence& r : runs)
         for (const auto* list : {&r.practice, &r.trials})
-            for (const planned_trial& t : *list)
-                if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
-                    check_limits(d, t, stimuli, l, rate);
+            for (planned_trial t : *list)
+                for (std::size_t v = 0; v < (t.track > 0 ? d.runs[r.run].outline.values.size() : 1); ++v) {
+                    if (t.track > 0)
+                        set_value(t, d.runs[r.run], v);
+                    if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
+                        check_limits(d, t, stimuli, l, rate);
+                }
 }
 
 // Lists doubts about the calibration of a session whose level is above the thresholds.
@@ -255,7 +263,7 @@ public:
                 flow_.go_on();
                 continue;
             }
-            const trial_row row = play(s, *who);
+            const trial_row row = play(s, *who, find_trial(p_, s, store_));
             tables->at(s).add(row, utc_ns(now_), p_.render.rate);
             pass(row);
             flow_.took(row.is_void);
@@ -298,10 +306,9 @@ private:
         }
     }
 
-    trial_row play(const session_step& s, const simulated_observer& who)
+    trial_row play(const session_step& s, const simulated_observer& who, const planned_trial& t)
     {
         const run_definition& r = p_.run_at(s.run);
-        const planned_trial& t = find_trial(p_, s);
         if (r.animation)
             now_ += frames(p_.definition.motions[t.motion].drawn.motion.duration_s());
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
@@ -457,6 +464,8 @@ json stimulus_facts(const prepared_experiment& p)
         const method_definition& m = p.definition.methods[s.method];
         all.push_back(
             {{"sha256", s.hash}, {"motion", p.definition.motions[s.motion].name}, {"method", m.name}});
+        if (m.value)
+            all.back()["value"] = *m.value;
         if (m.has_level())
             all.back()["level"] = level_facts(s.render);
     }
@@ -519,6 +528,9 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     row.motion = d.motions[t.motion].name;
     row.method_1 = d.methods[t.method_1].name;
     row.plan_1 = p.stimuli.at(t.motion, t.method_1).hash;
+    row.value = find_value(d, t);
+    if (t.track > 0)
+        row.track = t.track;
     if (t.method_2) {
         row.method_2 = d.methods[*t.method_2].name;
         row.plan_2 = p.stimuli.at(t.motion, *t.method_2).hash;
@@ -533,9 +545,28 @@ void set_response(trial_row& row, const prepared_experiment& p, const run_defini
     row.response = named ? p.definition.motions.at(response).name : fmt::format("{}", response);
     if (r.outline.task == task_kind::rate)
         row.rating = response;
+    if (r.outline.task == task_kind::estimate)
+        row.intensity_estimate = response;
     row.response_time_s = time_s;
     row.early = time_s < r.min_response_s;
 }
+
+namespace {
+
+// Gives a trial of an adaptive run the value that follows from the run's first `n` lines.
+planned_trial adapt(const run_definition& r, planned_trial t, std::span<const trial_row> rows)
+{
+    if (t.track == 0)
+        return t;
+    adaptive_tracks tracks(r);
+    for (const trial_row& row : rows)
+        if (!row.is_void && row.track == t.track)
+            tracks.answer(t.track, is_positive(r.outline, row.method_1, row.response == "2" ? 2 : 1));
+    set_value(t, r, tracks.next(t.track));
+    return t;
+}
+
+} // namespace
 
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
 {
@@ -546,7 +577,9 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
         bool same = !queue.done();
         if (same) {
             const pending_trial next = queue.next();
-            const trial_row planned = planned_row(p, s.trials[next.trial - 1], next);
+            const planned_trial t =
+                adapt(p.definition.runs[s.run], s.trials[next.trial - 1], std::span(rows).first(i));
+            const trial_row planned = planned_row(p, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
                    row.plan_1 == planned.plan_1 && row.plan_2 == planned.plan_2;
         }
@@ -580,10 +613,13 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
     return {std::move(runs), consent, static_cast<unsigned>(walk)};
 }
 
-const planned_trial& find_trial(const prepared_experiment& p, const session_step& s)
+planned_trial find_trial(const prepared_experiment& p, const session_step& s, const session_store& store)
 {
     const run_sequence& run = p.runs[s.run];
-    return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
+    if (s.practice)
+        return run.practice[s.which.trial - 1];
+    const planned_trial& t = run.trials[s.which.trial - 1];
+    return t.track == 0 ? t : adapt(p.run_at(s.run), t, store.rows(p.run_at(s.run)));
 }
 
 run_table::run_table(session_store& store, const run_definition& r, bool practice)

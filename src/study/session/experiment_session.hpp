@@ -118,8 +118,8 @@ bool finished(const prepared_experiment& p, const session_store& store);
 /// Makes the flow at the place where the session is. Only one with a person has consent and walk.
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person);
 
-/// Returns the trial of a step.
-const planned_trial& find_trial(const prepared_experiment& p, const session_step& s);
+/// Returns the trial of a step. One of an adaptive run has the value that follows from the answers so far.
+planned_trial find_trial(const prepared_experiment& p, const session_step& s, const session_store& store);
 
 /// Lines of one run, or of its practice, with times that count from its first sample at the DAC.
 class run_table {

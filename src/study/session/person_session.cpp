@@ -63,7 +63,8 @@ std::vector<std::string> label_choices(const run_definition& r)
 // (exactly)", "1 east, 2 west".
 std::string choices_text(const experiment_definition& d, const run_definition& r)
 {
-    const std::string between = d.page[r.outline.task == task_kind::choose ? "or" : "to"];
+    const bool is_range = r.outline.task == task_kind::rate || r.outline.task == task_kind::estimate;
+    const std::string between = d.page[is_range ? "to" : "or"];
     const bool named = r.outline.task == task_kind::identify;
     const std::vector<std::string> labels = label_choices(r);
     const bool each = named || r.labels.size() == labels.size();
@@ -75,6 +76,20 @@ std::string choices_text(const experiment_definition& d, const run_definition& r
             text += fmt::format(fmt::runtime(named ? " {}" : " ({})"), labels[i]);
     }
     return text;
+}
+
+// Tests whether a trial of the run has two stimuli.
+bool has_pairs(const run_definition& r)
+{
+    const task_kind task = r.outline.task;
+    return task == task_kind::choose || task == task_kind::same_different || r.outline.standard;
+}
+
+// Tests whether an answer names one of two stimuli.
+bool asks_which(const run_definition& r)
+{
+    const task_kind task = r.outline.task;
+    return task == task_kind::choose || (r.outline.standard && task != task_kind::estimate);
 }
 
 page_progress find_progress(const prepared_experiment& p, const session_step& s)
@@ -120,8 +135,9 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 {
     const run_definition& r = p.run_at(s.run);
     page_screen shown = idle_screen(p, "stimulus");
-    shown.stimuli = r.outline.task == task_kind::choose ? 2 : 0;
-    shown.names = r.choices;
+    shown.stimuli = has_pairs(r) ? 2 : 0;
+    if (asks_which(r))
+        shown.names = r.choices;
     shown.playing = playing;
     shown.where = find_progress(p, s);
     return shown;
@@ -130,7 +146,13 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 page_screen question_screen(const prepared_experiment& p, const session_step& s)
 {
     const run_definition& r = p.run_at(s.run);
-    page_screen shown{.name = "question", .question = r.question, .choices = label_choices(r)};
+    page_screen shown{.name = "question", .question = r.question};
+    if (r.outline.task == task_kind::estimate) {
+        shown.entry = entry_kind::number;
+        shown.where = find_progress(p, s);
+        return shown;
+    }
+    shown.choices = label_choices(r);
     if (shown.choices.size() <= most_keys)
         shown.keys = std::string("123456789").substr(0, shown.choices.size());
     shown.visual = r.outline.visual;
@@ -146,9 +168,10 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
 
 unsigned choices_in(const run_definition& r)
 {
-    return r.outline.task == task_kind::choose ? 2
-           : r.outline.task == task_kind::rate ? r.outline.scale - r.outline.lowest_rating() + 1
-                                               : static_cast<unsigned>(r.motions.size());
+    return r.outline.task == task_kind::rate       ? r.outline.scale - r.outline.lowest_rating() + 1
+           : r.outline.task == task_kind::identify ? static_cast<unsigned>(r.motions.size())
+           : r.outline.task == task_kind::estimate ? most_estimate
+                                                   : 2;
 }
 
 person_session::person_session(const prepared_experiment& p, session_store& store, stage& s,
@@ -406,7 +429,8 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
     const std::array<std::pair<std::uint64_t, unsigned>, 3> changes{
         {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
     return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
-        const std::vector<std::string>& names = p_.run_at(s.run).choices;
+        const run_definition& r = p_.run_at(s.run);
+        const std::vector<std::string> names = asks_which(r) ? r.choices : std::vector<std::string>{};
         for (; shown < changes.size() && frame >= changes[shown].first; ++shown) {
             const unsigned playing = changes[shown].second;
             on_page(stimulus_screen(p_, s, playing));
@@ -457,7 +481,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
 void person_session::trial(const session_step& s)
 {
     const run_definition& r = p_.run_at(s.run);
-    const planned_trial& t = find_trial(p_, s);
+    const planned_trial t = find_trial(p_, s, store_);
     const page_words& w = p_.definition.page;
     session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                               s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),

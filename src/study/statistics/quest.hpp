@@ -36,6 +36,8 @@ public:
 
     /// Returns the next stimulus; of equally good ones the first in the grid.
     double stimulus() const noexcept { return stimuli_[next_]; }
+    /// Returns its place in the grid.
+    std::size_t place() const noexcept { return next_; }
     /// Takes the answer to stimulus().
     void answer(bool right);
 

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "study/analysis/measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace tactor::study {
+namespace {
+
+std::vector<answer_block> make_blocks(const std::vector<trial>& trials)
+{
+    std::map<double, answer_block> all;
+    for (const trial& t : trials)
+        if (t.signal) {
+            answer_block& b = all.try_emplace(t.value, answer_block{t.value, 0, 0}).first->second;
+            ++b.n;
+            b.k += t.positive ? 1 : 0;
+        }
+    std::vector<answer_block> blocks;
+    for (const auto& [x, b] : all)
+        blocks.push_back(b);
+    return blocks;
+}
+
+std::optional<double> estimate_exponent(const run_outline& run, const std::vector<trial>& trials)
+{
+    std::vector<double> ratios;
+    std::vector<double> numbers;
+    for (const trial& t : trials) {
+        ratios.push_back(size_ratio(run, t.value, run.values.back()));
+        numbers.push_back(t.response);
+    }
+    return stevens_exponent(ratios, numbers);
+}
+
+measured_condition measure_condition(const run_outline& run, const std::string& name,
+                                     const std::vector<std::pair<std::string, std::vector<trial>>>& people,
+                                     sigmoid kind)
+{
+    measured_condition c{name};
+    std::map<std::string_view, std::vector<double>> values;
+    for (const auto& [code, trials] : people) {
+        c.people.push_back(measure_trials(run, trials, kind, fmt::format("{}/{}/{}", run.name, name, code)));
+        for (const auto& [figure, value] : list_measures(run, c.people.back()))
+            if (value)
+                values[figure].push_back(*value);
+    }
+    const std::vector<named_measure> figures = list_measures(run, {});
+    for (const auto& [figure, none] : figures) {
+        const bool is_main = figure == figures.front().first;
+        c.figures.emplace_back(
+            figure, test_mean(values[figure], is_main ? measured_against(run).value_or(0.0) : 0.0));
+    }
+    return c;
+}
+
+} // namespace
+
+person_measures measure_trials(const run_outline& run, const std::vector<trial>& trials, sigmoid kind,
+                               std::string_view seed)
+{
+    constexpr double most_guess = 0.9; // more leaves no room for a function
+    person_measures m;
+    if (run.task == task_kind::estimate) {
+        m.exponent = estimate_exponent(run, trials);
+        return m;
+    }
+    const auto count = [&](bool signal, bool positive) {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            trials, [&](const trial& t) { return t.signal == signal && (t.positive || !positive); }));
+    };
+    const std::size_t signals = count(true, false);
+    const std::size_t others = count(false, false);
+    const std::size_t false_alarms = count(false, true);
+    if (signals > 0 && others > 0) {
+        detection d{corrected_rate(count(true, true), signals), corrected_rate(false_alarms, others)};
+        d.found = run.task == task_kind::detect ? yes_no(d.hits, d.false_alarms)
+                                                : same_different(d.hits, d.false_alarms);
+        m.detected = d;
+    }
+    if (run.vary.empty())
+        return m;
+    m.blocks = make_blocks(trials);
+    if (others > 0)
+        m.guess = std::min(most_guess, static_cast<double>(false_alarms) / static_cast<double>(others));
+    const psychometric_family family{kind, m.guess};
+    m.fit = fit_psychometric(m.blocks, family);
+    if (m.fit && !seed.empty())
+        m.bootstrap = bootstrap_psychometric(m.blocks, family, *m.fit, seed);
+    return m;
+}
+
+std::vector<named_measure> list_measures(const run_outline& run, const person_measures& m)
+{
+    std::vector<named_measure> all;
+    if (run.task == task_kind::estimate)
+        all.emplace_back("exponent", m.exponent);
+    else if (run.task == task_kind::constant || run.task == task_kind::adaptive)
+        all = {{"pse", m.fit ? m.fit->pse : std::nullopt}, {"jnd", m.fit ? m.fit->jnd : std::nullopt}};
+    else if (!run.vary.empty())
+        all.emplace_back("threshold", m.fit ? std::optional(m.fit->parameters.threshold) : std::nullopt);
+    if (run.task == task_kind::same_different || run.catches) {
+        all.emplace_back("dprime", m.detected ? std::optional(m.detected->found.dprime) : std::nullopt);
+        all.emplace_back("c", m.detected ? std::optional(m.detected->found.c) : std::nullopt);
+    }
+    return all;
+}
+
+std::optional<double> measured_against(const run_outline& run) noexcept
+{
+    if (run.task == task_kind::estimate)
+        return 1.0;
+    if (run.task == task_kind::same_different || (run.catches && run.vary.empty()))
+        return 0.0;
+    return run.standard;
+}
+
+double size_ratio(const run_outline& run, double value, double to) noexcept
+{
+    constexpr double db_per_tenfold = 20.0;
+    return run.on_db_axis ? std::pow(10.0, (value - to) / db_per_tenfold) : value / to;
+}
+
+std::vector<measured_condition> measure_run(const run_outline& run, const std::vector<person_trials>& people,
+                                            sigmoid kind)
+{
+    const auto measure = [&](const std::string& name, const auto& counts) {
+        std::vector<std::pair<std::string, std::vector<trial>>> own;
+        for (const person_trials& p : people) {
+            own.emplace_back(p.code, std::vector<trial>{});
+            std::ranges::copy_if(*p.trials, std::back_inserter(own.back().second), counts);
+        }
+        return measure_condition(run, name, own, kind);
+    };
+    std::vector<measured_condition> all{measure("", [](const trial&) { return true; })};
+    const bool has_method = run.task != task_kind::same_different;
+    const std::size_t methods = has_method ? run.methods.size() : 1;
+    if (methods * run.motions.size() < 2)
+        return all;
+    for (std::size_t method = 0; method < methods; ++method)
+        for (std::size_t motion = 0; motion < run.motions.size(); ++motion)
+            all.push_back(measure(
+                (has_method ? run.methods[method] + ":" : "") + run.motions[motion], [&](const trial& t) {
+                    return t.motion == motion &&
+                           (!has_method || t.method_1 == method || (run.catches && !t.signal));
+                }));
+    return all;
+}
+
+} // namespace tactor::study

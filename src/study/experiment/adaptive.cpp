@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/adaptive.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactor::study {
+
+value_staircase::value_staircase(unsigned down, std::vector<std::size_t> steps, std::size_t start,
+                                 std::size_t top)
+    : down_(down), steps_(std::move(steps)), at_(start), top_(top)
+{
+}
+
+void value_staircase::answer(bool positive)
+{
+    in_row_ = positive ? in_row_ + 1 : 0;
+    if (positive && in_row_ < down_)
+        return;
+    in_row_ = 0;
+    const bool up = !positive;
+    reversals_ += up_ && *up_ != up ? 1 : 0;
+    up_ = up;
+    const std::size_t step = steps_[std::min(reversals_ / 2, steps_.size() - 1)];
+    at_ = up ? std::min(at_ + step, top_) : at_ - std::min(at_, step);
+}
+
+adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
+{
+    if (const auto there = tracks_.find(track); there != tracks_.end())
+        return there->second;
+    const adaptive_options& a = run_.adaptive;
+    const std::vector<double>& values = run_.outline.values;
+    if (a.down > 0)
+        return tracks_
+            .emplace(track,
+                     value_staircase(a.down, a.steps, a.start[(track - 1) % a.tracks], values.size() - 1))
+            .first->second;
+    const quest_grid grid{values, values, {}, a.slopes, a.lapses};
+    return tracks_
+        .emplace(track, quest(grid, [](double x, const psychometric& p) { return normal_chance(x, p, 0.0); }))
+        .first->second;
+}
+
+std::size_t adaptive_tracks::next(unsigned track)
+{
+    const procedure& p = find(track);
+    if (const auto* s = std::get_if<value_staircase>(&p))
+        return s->place();
+    return std::get<quest>(p).place();
+}
+
+void adaptive_tracks::answer(unsigned track, bool positive)
+{
+    std::visit([positive](auto& p) { p.answer(positive); }, find(track));
+}
+
+} // namespace tactor::study

@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: MIT
+"""tactor experiment: tasks that measure. Trials, resumed sessions, results and refusals."""
+import csv
+import io
+import json
+
+from experiments import DESK, ExperimentTest, contents
+from harness import main
+
+TASKS = """[experiment]
+name = "measures"
+array = "desk.toml"
+level = { dbfs = -20 }
+gap_s = 0.1
+[[motion]]
+name = "east"
+path = "M0 0H20"
+duration = 0.2
+[[method]]
+name = "park"
+[[method]]
+name = "soft"
+burst = 0.05
+[[run]]
+name = "values"
+task = "constant"
+question = "Which was stronger?"
+methods = ["park"]
+vary = "level_dbfs"
+values = [-36, -32, -28, -24, -20, -16, -12]
+standard = -24
+trials_per_value = 20
+[[run]]
+name = "words"
+task = "constant"
+question = "One or two?"
+choices = ["one", "two"]
+methods = ["park"]
+vary = "length_mm"
+values = [4, 8, 12, 16, 20]
+trials = 40
+[[run]]
+name = "bayes"
+task = "adaptive"
+question = "Which was stronger?"
+methods = ["park"]
+vary = "level_dbfs"
+procedure = "quest"
+range = [-40, -8]
+standard = -24
+trials = 40
+[[run]]
+name = "stairs"
+task = "adaptive"
+question = "Which was faster?"
+vary = "speed_mm_s"
+procedure = "1up2down"
+range = [40, 200]
+steps = [40, 20]
+standard = 100
+trials = 24
+tracks = 2
+practice = 2
+[[run]]
+name = "felt"
+task = "detect"
+methods = ["park"]
+vary = "level_dbfs"
+values = [-60, -50, -40, -30]
+catch = 0.2
+trials = 50
+[[run]]
+name = "there"
+task = "detect"
+methods = ["park"]
+catch = 0.5
+trials = 40
+[[run]]
+name = "same"
+task = "same-different"
+trials = 40
+[[run]]
+name = "size"
+task = "estimate"
+question = "How strong was it?"
+methods = ["park"]
+vary = "level_dbfs"
+values = [-40, -30, -20, -10]
+standard = -20
+trials = 12
+"""
+SIMULATE = "seed={},jnd=4,sigma=0.2,exponent=0.6,dprime=2"
+
+
+def tasks(*runs):
+    """Returns the definition with the runs of these names alone."""
+    head, *parts = TASKS.split("[[run]]\n")
+    return head + "".join("[[run]]\n" + p for p in parts if p.split('"')[1] in runs)
+
+
+class Tasks(ExperimentTest):
+    def setUp(self):
+        super().setUp()
+        self.write("desk.toml", DESK)
+
+    def hold(self, text, code="01", folder="study", spec=None):
+        self.write("tasks.toml", text)
+        return self.ok("experiment", "tasks.toml", "--participant", code, "-o", folder, "--simulate", spec or SIMULATE.format(1))
+
+    def rows(self, run, code="01"):
+        text = (self.dir / f"study/sub-{code}/beh/sub-{code}_task-{run}_beh.tsv").read_text(encoding="utf-8")
+        return list(csv.DictReader(io.StringIO(text), delimiter="\t"))
+
+    def test_each_task_draws_its_trials(self):
+        self.hold(TASKS)
+        values = self.rows("values")
+        self.assertEqual(len(values), 140)
+        for v in range(-36, -8, 4):
+            own = [r for r in values if float(r["value"]) == v]
+            self.assertEqual([sum(r["method_1"] == "standard" for r in own), len(own)], [10, 20])
+        self.assertTrue(all({r["method_1"], r["method_2"]} == {"park", "standard"} for r in values))
+        self.assertTrue(all(r["method_2"] == "n/a" and r["response"] in "12" for r in self.rows("words")))
+        felt = self.rows("felt")
+        self.assertEqual([(r["method_1"], r["value"]) for r in felt].count(("none", "n/a")), 10)
+        same = [(r["method_1"], r["method_2"]) for r in self.rows("same")]
+        self.assertEqual({p: same.count(p) for p in set(same)}, {(a, b): 10 for a in ("park", "soft") for b in ("park", "soft")})
+        self.assertTrue(all(r["method_1"] == "standard" and r["intensity_estimate"] == r["response"] for r in self.rows("size")))
+        self.assertNotIn("value", self.rows("same")[0])
+        self.assertNotIn("track", values[0])
+
+    def test_a_trial_without_a_stimulus_is_silent_and_as_long(self):
+        self.write("tasks.toml", tasks("there"))
+        stimuli = json.loads(self.ok("experiment", "tasks.toml", "--dry-run", "--format", "json").stdout)["stimuli"]
+        self.hold(tasks("there"))
+        plans = {s["method"]: json.loads((self.dir / f"study/sourcedata/sub-01/plans/{s['sha256']}.json").read_text()) for s in stimuli}
+        drives = {m: [d["amplitude"] for b in p["bursts"] for d in b["drives"]] for m, p in plans.items()}
+        self.assertFalse(any(drives["none"]))
+        self.assertGreater(max(drives["park"]), 0)
+        self.assertEqual(plans["none"]["total_s"], plans["park"]["total_s"])
+
+    def test_a_staircase_follows_the_answers_of_its_track(self):
+        self.hold(tasks("stairs"))
+        tracks = {}
+        for r in self.rows("stairs"):
+            more = (r["response"] == "2") == (r["method_1"] == "standard")
+            tracks.setdefault(r["track"], []).append((float(r["value"]), more))
+        self.assertEqual([tracks[t][0][0] for t in "1234"], [200, 40, 200, 40])
+        for trials in tracks.values():
+            value, in_row, up, reversals = trials[0][0], 0, None, 0
+            for shown, more in trials:
+                self.assertEqual(shown, value)
+                in_row = in_row + 1 if more else 0
+                if more and in_row < 2:
+                    continue
+                in_row, reversals, up = 0, reversals + (up is not None and up != (not more)), not more
+                value = min(200, max(40, value + (40, 20)[min(1, reversals // 2)] * (1 if up else -1)))
+
+    def test_a_session_that_was_killed_goes_on_as_if_it_had_not_been(self):
+        self.hold(TASKS.replace("practice = 2\n", ""))
+        whole = contents(self.dir / "study")
+        for run, keep in (("stairs", 7), ("bayes", 20), ("felt", 1), ("size", 11)):
+            table = self.dir / f"study/sub-01/beh/sub-01_task-{run}_beh.tsv"
+            lines = table.read_text(encoding="utf-8").splitlines(True)
+            order = json.loads((self.dir / "study/sourcedata/sub-01/session.json").read_text())["order"]
+            for later in order[order.index(run) + 1:]:
+                (self.dir / f"study/sub-01/beh/sub-01_task-{later}_beh.tsv").unlink(missing_ok=True)
+            table.write_text("".join(lines[:1 + keep]), encoding="utf-8")
+            self.ok("experiment", "tasks.toml", "--participant", "01", "-o", "study", "--simulate", SIMULATE.format(1), "--resume")
+            now = contents(self.dir / "study")
+            self.assertEqual({k: v for k, v in now.items() if k.endswith("_beh.tsv")}, {k: v for k, v in whole.items() if k.endswith("_beh.tsv")})
+
+    def test_results_recover_what_was_simulated(self):
+        for i in range(1, 7):
+            self.hold(TASKS, f"{i:02}", spec=SIMULATE.format(i))
+        runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        for run, near in (("values", 1.5), ("bayes", 3)):
+            p = runs[run]["psychometric"]
+            self.assertEqual([p["axis"], sorted(p["participants"])], ["dB", [f"{i:02}" for i in range(1, 7)]])
+            self.assertAlmostEqual(p["mean"]["pse"], -24, delta=near)
+            self.assertAlmostEqual(p["mean"]["jnd"], 4, delta=1.5)
+            for one in p["participants"].values():
+                self.assertLess(one["ci"]["pse"][0], one["pse"])
+                self.assertGreater(one["ci"]["pse"][1], one["pse"])
+        self.assertAlmostEqual(runs["there"]["dprime"]["mean"], 2, delta=0.8)
+        self.assertAlmostEqual(runs["same"]["dprime"]["mean"], 2, delta=1)
+        self.assertAlmostEqual(runs["size"]["exponent"]["mean"], 0.6, delta=0.1)
+        self.assertEqual(set(runs["stairs"]["by"]), {"park:east", "soft:east"})
+        wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
+        self.assertAlmostEqual(float(wide[0]["values.pse"]), runs["values"]["psychometric"]["participants"]["01"]["pse"])
+        tsv = self.ok("analyze", "study", "--format", "tsv").stdout
+        self.assertIn("# glmer(positive ~ value * 1", tsv.replace("value + ", "value * 1 + ", 1))
+        text = self.ok("analyze", "study").stdout
+        self.assertIn("pse against -24", text)
+        report = self.ok("report", "study").stdout
+        self.assertIn("chosen by the answers from -40 to -8; standard -24", report)
+
+    def test_power_is_that_of_the_main_figure(self):
+        self.write("tasks.toml", tasks("values", "words", "same"))
+        power = lambda spec: json.loads(self.ok("experiment", "tasks.toml", "--power", "6", "--studies", "20", "--format", "json",
+                                                "--simulate", spec).stdout)["runs"]
+        there = {r["name"]: r for r in power("seed=1,pse=-20,jnd=4,dprime=3")}
+        self.assertEqual([there["values"]["power"][0]["power"], there["same"]["power"][0]["power"], there["words"]["power"]], [1, 1, []])
+        none = {r["name"]: r for r in power("seed=1,pse=-24,jnd=4")}
+        self.assertLess(none["values"]["power"][0]["power"], 0.3)
+
+    def test_wrong_keys_are_refused_with_their_line(self):
+        for run, old, new, at in (
+                ("values", 'vary = "level_dbfs"', 'vary = "waveform"', "vary"), ("values", 'vary = "level_dbfs"', "", "[[run]]"),
+                ("values", "values = [-36, -32", "values = [-36, -36", "values"), ("values", "-16, -12]", "-16, 12]", "values"),
+                ("values", "standard = -24", "standard = 24", "standard"), ("values", "standard = -24", "", "vary"),
+                ("values", "trials_per_value = 20", "trials_per_value = 20\ntrials = 3", "trials_per_value"),
+                ("values", "trials_per_value = 20", "trials = 3\nprocedure = \"quest\"", "procedure"),
+                ("words", 'choices = ["one", "two"]', 'choices = ["one"]', "choices"), ("words", 'question = "One or two?"\n', "", "[[run]]"),
+                ("bayes", "range = [-40, -8]", "range = [-8, -40]", "range"), ("bayes", "range = [-40, -8]", "", "procedure"),
+                ("bayes", 'procedure = "quest"', 'procedure = "quest"\nsteps = [4]', "steps"),
+                ("stairs", 'procedure = "1up2down"', 'procedure = "2up"', "procedure"), ("stairs", "steps = [40, 20]", "steps = [50, 20]", "steps"),
+                ("stairs", "tracks = 2", "tracks = 2\nstart = [50, 60, 70]", "start"), ("stairs", "tracks = 2", "lapse = 0.1", "lapse"),
+                ("felt", "catch = 0.2", "catch = 1", "catch"), ("same", "trials = 40", "trials = 40\ncatch = 0.1", "catch"),
+                ("same", "trials = 40", 'trials = 40\nmethods = ["park"]', "[[run]]"), ("same", "trials = 40", 'trials = 40\nvary = "soa"', "vary"),
+                ("size", "values = [-40", 'choices = ["a", "b"]\nvalues = [-40', "choices"),
+                ("there", 'name = "park"', 'name = "none"', None)):
+            text = tasks(run).replace(old, new, 1)
+            self.assertNotEqual(text, tasks(run))
+            self.write("tasks.toml", text.replace('methods = ["park"]', 'methods = ["none"]') if at is None else text)
+            told = self.refused(2, "experiment", "tasks.toml", "--dry-run").stderr
+            line = 1 + [x.split(" =")[0] for x in text.splitlines()].index(at or "[[run]]")
+            self.assertIn(f"tasks.toml:{line}:", told, (run, new, told))
+
+
+if __name__ == "__main__":
+    main()
