@@ -48,21 +48,6 @@ def trials(text):
     return [dict(zip(head, row)) for row in rows]
 
 
-def test_a_trial_is_in_psychopys_time(root, tmp_path):
-    program = root / "examples/python/psychopy_trial.py"
-    # PsychoPy's clock is another than CLOCK_MONOTONIC: the difference of this one is known.
-    (tmp_path / "psychopy").mkdir()
-    (tmp_path / "psychopy/__init__.py").write_text("")
-    (tmp_path / "psychopy/core.py").write_text("import time\ndef getTime():\n    return time.monotonic() - 1234.5\n")
-    path = os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
-    for ahead, environment in ((0.0, {}), (-1234.5, {"PYTHONPATH": path})):
-        rows = trials(run(program, **environment))
-        assert [r["stroke"] for r in rows] == ["left", "right", "right", "left"]
-        for r in rows:
-            assert abs(float(r["onset_s"]) - float(r["started_s"]) - ahead) <= float(r["within_s"]) + 2e-6
-            assert r["response"] in ("left", "right") and float(r["response_time_s"]) < 1.0
-
-
 def test_a_study_can_be_read(root, tmp_path):
     subprocess.run([sys.executable, root / "tests/study/studies.py", tmp_path], check=True)
     studies = sorted(p for p in tmp_path.iterdir() if (p / "participants.tsv").exists())
