@@ -21,7 +21,7 @@ PROGRAMS = r"(?:\S*/)?(?:tactor|quickstart|run)|sudo|meson|man|c\+\+|cp|dpkg-\w+
 
 @dataclasses.dataclass
 class Block:
-    kind: str  # command, name (of a command of the tool), or what a block is: toml, csv, c++, python, unit, boot, cmake, drawing, formula
+    kind: str  # command, name (of a command of the tool), or what a block is: toml, csv, c++, python, unit, boot, cmake, drawing, formula, runner (a program for one)
     text: str
     line: int
 
@@ -29,7 +29,7 @@ class Block:
 def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
     for kind, pattern in (("c++", r"^#include"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
-                          ("drawing", r"-->"),
+                          ("drawing", r"-->"), ("runner", r"PsychPortAudio|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):
             return kind

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The examples do what their first lines say, without hardware."""
 import contextlib
+import json
 import os
 import pathlib
 import re
@@ -10,6 +11,8 @@ import socket
 import struct
 import subprocess
 import sys
+import time
+import tomllib
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
@@ -20,6 +23,33 @@ EXAMPLES = pathlib.Path(sys.argv[3]).resolve()
 SYN, KEY, REL, ABS = 0, 1, 2, 3
 BTN_LEFT, BTN_TOUCH = 0x110, 0x14a
 SO_RCVBUFFORCE = 33  # asm-generic/socket.h
+
+# A device that is closed while its stroke plays, and another whose service then says nothing.
+PSYCHOPY = """
+import socket
+import psychopy_tactor
+from psychopy.hardware import DeviceManager
+from psychopy_tactor import TactorDevice
+psychopy_tactor.SILENCE_S = 600
+tactor = DeviceManager.addDevice("tactor", "t", port=PORT)
+try:
+    tactor.play(stroke="nowhere")
+except ValueError as e:
+    print(e)
+try:
+    TactorDevice(port=1)
+except ConnectionError as e:
+    print(e)
+print(tactor.isSameDevice({"host": "127.0.0.1", "port": PORT}), tactor.isSameDevice({"host": "127.0.0.1", "port": 1}))
+tactor.play(path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300})
+DeviceManager.removeDevice("t")
+psychopy_tactor.SILENCE_S = 1
+mute = socket.create_server(("127.0.0.1", 0))
+try:
+    TactorDevice(port=mute.getsockname()[1])
+except ConnectionError as e:
+    print(e)
+"""
 
 
 def events(*steps):
@@ -178,6 +208,53 @@ class Examples(ToolTest):
                                check=False, timeout=PATIENCE_S)
             self.assertEqual(r.returncode, 0, r.stderr)
             self.assertTrue(r.stdout.startswith(said), r.stdout)
+
+    def test_psychopy(self):
+        server = Server(self, "--tcp", "0")
+        port = server.where["tcp"].rpartition(":")[2]
+        here = {"PYTHONPATH": os.pathsep.join(str(ROOT / f) for f in ("tests/examples/stand_in", "examples/psychopy")), "PYTHONDONTWRITEBYTECODE": "1"}
+
+        def python(*args, cwd=None):
+            return subprocess.run([sys.executable, *map(str, args)], capture_output=True, text=True, check=False, env=self.env | here,
+                                  timeout=PATIENCE_S, cwd=cwd)
+
+        before = time.monotonic()
+        r = python("-c", "import runpy, psychopy_tactor; psychopy_tactor.SILENCE_S = 600; runpy.run_path('trial.py')", port, cwd=ROOT / "examples/psychopy")
+        self.assertEqual((r.returncode, r.stderr), (0, ""))
+        head, *rows = (line.split("\t") for line in r.stdout.splitlines())
+        trials = [dict(zip(head, row)) for row in rows]
+        self.assertEqual([(t["stroke"], t["state"]) for t in trials], [(n, "finished") for n in ("left", "right", "right", "left")])
+        onsets = [float(t["onset_s"]) + 1234.5 for t in trials]  # the stand-in's clock
+        self.assertTrue(before < onsets[0] < onsets[3] < time.monotonic(), onsets)
+        # Whoever answers at once does so before the onset, which was asked for 0.1 s later.
+        self.assertTrue(all(-PATIENCE_S < float(t["response_time_s"]) < float(t["within_s"]) for t in trials), trials)
+
+        watcher = server.watcher()
+        program = self.write("program.py", PSYCHOPY.replace("PORT", port))
+        r = python(program)
+        self.assertEqual((r.returncode, r.stderr), (0, ""))
+        refused, away, same, lost = r.stdout.splitlines()
+        self.assertIn("tactor: stroke: no preset 'nowhere'", refused)
+        self.assertRegex(away, r"^tactor: 127\.0\.0\.1:1: .*Connection refused \(start tactor serve --tcp 1\)$")
+        self.assertEqual((same, lost), ("True False", "tactor: the service has not answered for 1 s"))
+        # Closed by the device manager, which had not waited for its stroke.
+        self.assertEqual(watcher.notification(lambda m: m["params"]["state"] == "cancelled")["params"]["reason"], "cancelled by its client")
+
+        entry = tomllib.loads((ROOT / "examples/psychopy/pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]["psychopy.hardware"]
+        self.assertEqual(entry, {"TactorDevice": "psychopy_tactor:TactorDevice"})
+
+    def test_the_lines_for_any_runner(self):
+        page = (ROOT / "man/guide/runners.md").read_text(encoding="utf-8")
+        requests = [m for m in map(json.loads, re.findall(r'^    (\{"jsonrpc".*)$', page, re.M)) if "id" in m and "method" in m]
+        self.assertEqual([m["method"] for m in requests], ["hello", "play", "play", "cancel", "stop"])
+        c = Server(self, "--tcp", "0").client(tcp=True)
+        results = []
+        for m in requests:
+            c.send(m)
+            results.append(c.reply()["result"])
+            if m["method"] == "play" and len(results) == 2:
+                self.assertEqual(c.await_end(results[1]["stroke"])["state"], "finished")
+        self.assertEqual(c.await_end(results[2]["stroke"])["reason"], "cancelled by its client")
 
     def test_the_serve_client_of_node(self):
         server = Server(self)
