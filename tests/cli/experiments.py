@@ -138,6 +138,11 @@ class ExperimentTest(ToolTest):
     def rows(self, code, task, folder="study"):
         return read_table(self.dir / folder / f"sub-{code}/beh/sub-{code}_task-{task}_beh.tsv")
 
+    def edit(self, name, *change):
+        """Replaces a text in a file."""
+        path = self.dir / name
+        path.write_text(path.read_text().replace(*change))
+
     def without_cut(self):
         """Returns the files except the part cut off a table."""
         return {n: b for n, b in contents(self.dir / "study").items() if ".cut-" not in n and n != ".bidsignore"}

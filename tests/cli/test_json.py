@@ -29,7 +29,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level"}, "tactor-analysis/1": {"runs{}.groups"}}
+            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "session"}, "tactor-analysis/1": {"runs{}.groups"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
@@ -167,8 +167,8 @@ class Schemas(ToolTest):
         self.write("o.toml", PAIR.partition("[sync]")[0])
         self.write("felt.toml", FELT)
         self.write("line.toml", LINE)
-        self.write("grouped.toml", FELT + '[[group]]\nname = "a"\n')
-        self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a")
+        self.write("grouped.toml", FELT.replace("name", "sessions = 2\nname", 1) + '[[group]]\nname = "a"\n')
+        self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a", "--session", "1")
         for study in ("missing", "three-by-three", "among"):
             studies.STUDIES[study](self.dir / study)
         texts = [self.ok(*args, "--format", "json").stdout for args in (
@@ -185,7 +185,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

@@ -553,7 +553,8 @@ void print_trials(const study::dataset& d)
         return c.needed != nullptr && std::ranges::none_of(d.experiment.runs, c.needed);
     });
     const bool grouped = !d.experiment.groups.empty();
-    text += grouped ? "participant\tgroup" : "participant";
+    const bool several = d.experiment.sessions > 1;
+    text += fmt::format("participant{}{}", grouped ? "\tgroup" : "", several ? "\tsession" : "");
     for (const trial_column& c : columns)
         text += fmt::format("\t{}", c.name);
     text += '\n';
@@ -563,6 +564,7 @@ void print_trials(const study::dataset& d)
                 const study::trial t = move_to(own, find_run(d, i, k), d.experiment.runs[k]);
                 text += d.participants[i];
                 text += grouped ? "\t" + d.groups[i] : "";
+                text += several ? fmt::format("\t{}", own.session.value()) : "";
                 for (const trial_column& c : columns)
                     text += "\t" + c.cell(t, d.experiment.runs[k]);
                 text += '\n';

@@ -125,7 +125,7 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     auto there = std::make_unique<study::stage>(device, how, p.where);
     if (!o.masker.empty()) {
         study::masking_options noise = p.definition.masking.noise.value();
-        noise.seed = fmt::format("{}/{}/{}/noise", p.seed, p.definition.name, p.participant);
+        noise.seed = fmt::format("{}/noise", study::session_seed(p.seed, p.definition, p.participant));
         there->mask(o.masker, noise);
     }
     return there;
@@ -217,8 +217,8 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         runs.push_back(&p.definition.runs[r.run]);
     study::session_store store(folder, std::move(runs), study::describe_session(p, o.simulate, o.masker),
                                o.resume);
-    const std::string who =
-        fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
+    const std::string who = fmt::format("{}{}", study::session_name(p.participant, p.definition.session),
+                                        o.simulate ? ": SIMULATED, nobody was asked" : "");
     store.check_tables();
     if (store.resumed() && study::finished(p, store)) {
         store.refuse_cut_lines();
@@ -262,8 +262,8 @@ int run(const experiment_options& o, settings& s)
     const auto who = o.dry_run    ? study::audience::nobody
                      : o.simulate ? study::audience::observer
                                   : study::audience::person;
-    const study::prepared_experiment p =
-        study::prepare({o.definition, o.participant, o.seed, who, o.hand, o.group, o.row}, s);
+    const study::prepared_experiment p = study::prepare(
+        {o.definition, o.participant, o.seed, who, o.hand, o.group, o.row, o.session, !o.power.empty()}, s);
     say_warnings(p.warnings);
     if (!o.power.empty())
         return print_power(p, o);

@@ -195,8 +195,8 @@ void add_power_options(CLI::App& command, experiment_options& o)
                  "print how often simulated studies of N participants find a significant difference",
                  [&o](const std::string& t) { o.power = participants_in(t); });
     power->needs(command.get_option("--simulate"));
-    for (const char* other : {"--participant", "--output", "--resume", "--order", "--display", "--page",
-                              "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
+    for (const char* other : {"--participant", "--output", "--resume", "--session", "--order", "--display",
+                              "--page", "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
         power->excludes(command.get_option(other));
     add_text(command, "--studies", "K",
              fmt::format("--power: number of simulated studies (default {})", default_studies),
@@ -233,6 +233,10 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
              });
     command.add_option("--group", o.group, "the participant's group, of a definition with groups")
         ->type_name("NAME");
+    add_text(command, "--session", "N", "number of the session, of a definition with several",
+             [&o](const std::string& t) {
+                 o.session = static_cast<unsigned>(options::parse_whole("--session", t, {1, 99}, ""));
+             });
     add_text(command, "--order", "N",
              "row of the orders, such as that of a replaced participant (default: by the code)",
              [&o](const std::string& t) { // prepare() knows how many there are
@@ -291,6 +295,8 @@ void print_dry_run_json(const study::prepared_experiment& p)
     j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
     j["participant"] = p.participant;
     j["group"] = files::or_null(d.group);
+    if (d.session)
+        j["session"] = *d.session;
     j["order_row"] = p.row;
     j["seed"] = p.seed;
     j["array"] = p.where.tactors.name;
@@ -313,8 +319,10 @@ void print_dry_run_text(const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
     say(stdout, "{}: {}\nparticipant {}{}, row {} of {}, seed {}, array {}, level {}\n", d.name, d.title,
-        p.participant, d.group.empty() ? "" : ", group " + d.group, p.row, study::count_rows(d), p.seed,
-        p.where.tactors.name, level_text(p.render));
+        p.participant,
+        (d.group.empty() ? "" : ", group " + d.group) +
+            (d.session ? fmt::format(", session {} of {}", *d.session, d.outline.sessions) : ""),
+        p.row, study::count_rows(d), p.seed, p.where.tactors.name, level_text(p.render));
     for (const study::method_definition& m : d.methods)
         if (m.has_level() && !m.is_variant())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));

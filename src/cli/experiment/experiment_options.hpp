@@ -40,6 +40,7 @@ struct experiment_options {
     std::optional<study::simulation> simulate = {};
     std::optional<study::hand_kind> hand = {};
     std::string group = {};
+    study::session_number session = {};
     std::optional<std::size_t> row = {}; ///< of the orders, from 1
     std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: without
     std::size_t studies = default_studies;

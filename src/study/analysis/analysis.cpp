@@ -220,9 +220,10 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
         a.warnings.push_back(fmt::format("{}: sub-{} is left out: {}", r.run.name, l.participant, l.why));
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const std::size_t count = d.data[i][which].trials.size();
-        if (r.run.trials != 0 && count != r.run.trials && count != 0)
+        const std::size_t planned = std::size_t{r.run.trials} * d.data[i][which].sessions;
+        if (planned != 0 && count != planned && count != 0)
             a.warnings.push_back(fmt::format("{}: sub-{} has {} that count, of {}", r.run.name,
-                                             d.participants[i], counted(count, "trial"), r.run.trials));
+                                             d.participants[i], counted(count, "trial"), planned));
     }
 }
 

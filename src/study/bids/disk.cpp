@@ -117,6 +117,13 @@ void make_folder(const fs::path& folder)
                     "name a folder that can be written");
 }
 
+void make_folders(const fs::path& folder, const fs::path& below)
+{
+    fs::path at = folder;
+    for (const fs::path& part : below)
+        make_folder(at /= part);
+}
+
 void try_to_write(const fs::path& file)
 {
     fs::path folder = file.parent_path();

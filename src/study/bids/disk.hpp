@@ -34,6 +34,9 @@ bool is_on_disk(const std::filesystem::path& p) noexcept;
 /// Makes a folder in one that is there, unless it is there already. \throws error (runtime).
 void make_folder(const std::filesystem::path& folder);
 
+/// Makes each folder of a path below one that is there. Throws as above.
+void make_folders(const std::filesystem::path& folder, const std::filesystem::path& below);
+
 /// Tries another name of the same length, to find out if a file can be written under this name once its
 /// folders are made. \throws error: bad_input for an impossible name, runtime for what the system refuses.
 void try_to_write(const std::filesystem::path& file);

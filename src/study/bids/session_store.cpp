@@ -38,9 +38,10 @@ bool is_as_begun(const std::string& key, const ordered& began, const ordered& no
 constexpr std::size_t reserved_bytes = std::size_t{64} << 10;
 
 // The first file has these bytes. Each gives up the place of a file's name, because a disk or a quota may run
-// out of those, too: the first answer of all needs two folders and three tables.
-constexpr std::array<const char*, 5> reserved{".reserve", ".reserve-2", ".reserve-3", ".reserve-4",
-                                              ".reserve-5"};
+// out of those, too: the first answer of all needs three folders, if there are several sessions, and three
+// tables.
+constexpr std::array<const char*, 6> reserved{".reserve",   ".reserve-2", ".reserve-3",
+                                              ".reserve-4", ".reserve-5", ".reserve-6"};
 
 // Returns a value as text, if it is short enough to be shown.
 std::string brief(const ordered& j, const std::string& key)
@@ -74,23 +75,27 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
     : folder_(folder),
       runs_(std::move(runs)),
       facts_(facts),
-      source_(folder.path() / source_path(folder.code()))
+      source_(folder.path() / source_path(folder.code(), folder.session()))
 {
     const fs::path file = source_ / "session.json";
-    const fs::path data = folder_.path() / ("sub-" + folder_.code()) / "beh";
+    const fs::path data = folder_.path() / session_path(folder_.code(), folder_.session()) / "beh";
     for (const fs::path& p : {source_.parent_path(), source_, source_ / "plans", data.parent_path(), data})
         remove_leftovers(p);
     if (!is_on_disk(file)) {
         if (is_on_disk(data))
             throw error(error_kind::bad_input, file.string(),
-                        fmt::format("it is missing, and sub-{} has data", folder_.code()),
+                        fmt::format("it is missing, and {} has data",
+                                    session_name(folder_.code(), folder_.session())),
                         "put it back, or choose another code");
         return;
     }
     if (!resume)
-        throw error(error_kind::bad_input, "--participant",
-                    fmt::format("there is a session of {} already", folder_.code()),
-                    "--resume goes on with it; somebody else needs another code");
+        throw error(
+            error_kind::bad_input, "--participant",
+            fmt::format("there is {} of {} already",
+                        folder_.session() ? fmt::format("session {}", *folder_.session()) : "a session",
+                        folder_.code()),
+            "--resume goes on with it; somebody else needs another code");
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
         throw error(error_kind::bad_input, file.string(), "it is no JSON", "it was changed");
@@ -123,9 +128,7 @@ void session_store::try_to_write() const
 void session_store::begin(const std::vector<stimulus>& stimuli)
 {
     begun_ = true;
-    make_folder(folder_.path() / "sourcedata");
-    make_folder(source_);
-    make_folder(source_ / "plans");
+    make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");
     reserve();
     for (const stimulus& s : stimuli) {
         const fs::path file = source_ / "plans" / (s.hash + ".json");
@@ -139,7 +142,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli)
 
 fs::path session_store::table(const run_definition& r) const
 {
-    return folder_.path() / table_path(folder_.code(), r.outline);
+    return folder_.path() / table_path(folder_.code(), folder_.session(), r.outline);
 }
 
 std::string session_store::scan_name(const run_definition& r) const
@@ -191,8 +194,7 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
     const fs::path file = table(r);
     keep([&] {
         if (!is_on_disk(file)) {
-            make_folder(file.parent_path().parent_path());
-            make_folder(file.parent_path());
+            make_folders(folder_.path(), session_path(folder_.code(), folder_.session()) / "beh");
             folder_.add_participant();
             folder_.add_scan(scan_name(r), acq_time);
         }

@@ -27,7 +27,7 @@ class session_store {
 public:
     /// Prepares a new session, or with `resume` one that is there. `facts` go into session.json; those of a
     /// session that is there must be the same, except the ones that `may_differ` lists.
-    /// \throws error: bad_input if there is a session of this participant (and not `resume`), or it began
+    /// \throws error: bad_input if this session is there (and not `resume`), or it began
     ///         with other facts; runtime for what the system refuses.
     session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts, bool resume);
     ~session_store();
@@ -95,7 +95,7 @@ private:
     study_folder& folder_;
     runs_in_order runs_;
     nlohmann::ordered_json facts_;
-    std::filesystem::path source_; ///< sourcedata/sub-CODE
+    std::filesystem::path source_; ///< sourcedata/sub-CODE, of several sessions sourcedata/sub-CODE/ses-N
     bool resumed_ = false;
     bool begun_ = false; ///< by this process
     std::optional<written_table> last_ = {};

@@ -99,7 +99,8 @@ std::string readme_text(const experiment_definition& d, bool simulated)
     return fmt::format(
         "{}\n\n{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the "
         "skin, and after\n"
-        "each trial a question was answered; each run is a task of its own, and sub-CODE/beh has a line for "
+        "each trial a question was answered; each run is a task of its own, and sub-CODE/{}beh has a line "
+        "for "
         "each\n"
         "trial. What the columns mean is in task-NAME_beh.json. The definition, the array, the levels and "
         "each\n"
@@ -107,7 +108,8 @@ std::string readme_text(const experiment_definition& d, bool simulated)
         "were\n"
         "played or answered under conditions that were not as planned; they do not count, and come again.\n"
         "tactor analyze prints the statistics.\n",
-        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name);
+        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name,
+        d.session ? "ses-N/" : "");
 }
 
 std::string participants_text(const experiment_definition& d, bool simulated)
@@ -127,7 +129,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
     return json_text(j);
 }
 
-std::string task_text(const run_definition& r, bool simulated, bool has_groups)
+std::string task_text(const run_definition& r, const experiment_definition& d, bool simulated)
 {
     ordered j{{"TaskName", r.outline.name}};
     const task_row& task = find_task(r.outline.task);
@@ -135,13 +137,16 @@ std::string task_text(const run_definition& r, bool simulated, bool has_groups)
     j["Instructions"] = r.question;
     if (!r.labels.empty())
         j["Labels"] = r.labels;
+    const named_cells columns = make_cells({.group = d.group, .session = d.session}, {&r.outline});
     for (const trial_column& c : trial_columns)
-        if (has_column(r.outline, c.use, has_groups))
+        if (std::ranges::count(columns, c.name, &named_cells::value_type::first) != 0)
             j[std::string(c.name)] = column_json(c.meaning, c.unit);
     j["response"] = column_json(fmt::format(fmt::runtime(task.response), rating_range(r.outline)));
     if (!r.choices.empty())
         j["response"]["Levels"] = {{"1", r.choices[0]}, {"2", r.choices[1]}};
     j["early"]["Levels"] = {{"true", fmt::format("sooner than {} s", r.min_response_s)}, {"false", "later"}};
+    if (d.session)
+        j["plan_1"]["Description"] = "SHA-256 of the first stimulus' plan: sourcedata/sub-CODE/ses-N/plans";
     j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
     return json_text(j);
 }
@@ -187,19 +192,23 @@ void study_folder::refuse_others()
     const auto kind = [](bool simulated) { return simulated ? "simulated" : "real"; };
     constexpr const char* one_kind = "simulated and real sessions need a folder each";
     std::vector<std::string> otherwise;
+    std::vector<std::pair<std::string, session_number>> all; // codes, with a session
     std::error_code failed;
-    for (const fs::directory_entry& e : fs::directory_iterator(folder_ / "sourcedata", failed)) {
-        const fs::path file = e.path() / "session.json";
+    for (const fs::directory_entry& e : fs::directory_iterator(folder_ / "sourcedata", failed))
+        if (const std::string name = e.path().filename().string(); name.starts_with("sub-"))
+            for (const session_number n : list_sessions(folder_, name.substr(4)))
+                all.emplace_back(name.substr(4), n);
+    for (const auto& [code, session] : all) {
+        const fs::path file = folder_ / source_path(code, session) / "session.json";
         if (!is_on_disk(file))
             continue;
-        const std::string who = e.path().filename().string();
-        const std::string own = "sub-" + code_;
-        if (who != own && in_small_letters(who) == in_small_letters(own))
+        if (code != code_ && in_small_letters(code) == in_small_letters(code_))
             throw error(error_kind::bad_input, "--participant",
-                        fmt::format("{} is here already, and {} is the same name where a disk does not know "
-                                    "capitals",
-                                    who, own),
+                        fmt::format("sub-{} is here already, and sub-{} is the same name where a disk does "
+                                    "not know capitals",
+                                    code, code_),
                         "choose another code");
+        const std::string who = session_name(code, session);
         const session_data s = read_session(file);
         if (s.simulated != simulated_)
             throw error(
@@ -208,12 +217,20 @@ void study_folder::refuse_others()
                 one_kind);
         if (s.experiment != definition_.outline)
             throw error(error_kind::bad_input, folder_.string(),
-                        fmt::format("{} had another experiment: \"{}\" with other runs, motions or methods",
+                        fmt::format("{} had another experiment: \"{}\" with other runs, motions, methods or "
+                                    "sessions",
                                     who, s.experiment.name),
                         "each experiment needs a folder of its own");
+        if (code == code_ && session != definition_.session && s.group != definition_.group)
+            throw error(error_kind::bad_input, "--group",
+                        fmt::format("{} is of group \"{}\", not \"{}\"", who, s.group, definition_.group),
+                        "a participant is in one group");
         if (s.text != definition_.text)
             otherwise.push_back(who);
     }
+    for (unsigned n = 1; n < definition_.session.value_or(1); ++n)
+        if (std::ranges::count(all, std::pair(code_, session_number(n))) == 0)
+            warnings_.push_back(fmt::format("{} is not here", session_name(code_, n)));
     if (!otherwise.empty()) {
         std::sort(otherwise.begin(), otherwise.end());
         warnings_.push_back(fmt::format("{} had another text of this definition: levels, gaps, methods and "
@@ -250,12 +267,12 @@ void study_folder::describe() const
     put(folder_ / "README", readme_text(definition_, simulated_));
     put(folder_ / "participants.json", participants_text(definition_, simulated_));
     for (const run_definition& r : definition_.runs)
-        put(folder_ / description_path(r.outline), task_text(r, simulated_, !definition_.group.empty()));
+        put(folder_ / description_path(r.outline), task_text(r, definition_, simulated_));
 }
 
 fs::path study_folder::scans() const
 {
-    return folder_ / ("sub-" + code_) / fmt::format("sub-{}_scans.tsv", code_);
+    return folder_ / session_path(code_, session()) / (session_name(code_, session()) + "_scans.tsv");
 }
 
 void study_folder::check_lists() const

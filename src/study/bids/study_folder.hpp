@@ -24,8 +24,8 @@ public:
     /// Makes the folder, or takes one that is a study's. `d` must live as long. The destructor removes a
     /// folder that this made, if it is empty.
     /// \throws error: bad_input if the folder has other things in it, another session is running in it,
-    ///         somebody in it had another experiment, or real and simulated sessions would meet; runtime for
-    ///         what the system refuses.
+    ///         somebody in it had another experiment, the participant was in another group, or real and
+    ///         simulated sessions would meet; runtime for what the system refuses.
     study_folder(std::filesystem::path folder, const experiment_definition& d, std::string code,
                  bool simulated);
     ~study_folder();
@@ -35,10 +35,12 @@ public:
     const std::filesystem::path& path() const noexcept { return folder_; }
     /// Code of the participant whose session this is.
     const std::string& code() const noexcept { return code_; }
+    session_number session() const noexcept { return definition_.session; }
 
-    /// Sentences about allowed differences from the sessions that are there.
+    /// Sentences about allowed differences from the sessions that are there, and an earlier one that is not.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
+    /// Returns the list of the session's runs: sub-CODE_scans.tsv.
     std::filesystem::path scans() const;
 
     /// Writes the descriptions that are not there yet: dataset_description.json, README, participants.json,
@@ -48,7 +50,7 @@ public:
     /// Lists the files that the session makes: descriptions and lists, without plans and trials.
     std::vector<std::filesystem::path> list_files() const;
 
-    /// Reads participants.tsv and sub-CODE_scans.tsv, if they are there. \throws error (bad_input) with file
+    /// Reads participants.tsv and scans(), if they are there. \throws error (bad_input) with file
     /// and line: see read_participants(); if the first has another group for the participant.
     void check_lists() const;
 
@@ -56,7 +58,7 @@ public:
     /// is one.
     bool add_participant();
 
-    /// Enters a run's table, named relative to sub-CODE, into sub-CODE_scans.tsv; replaces the time of one
+    /// Enters a run's table, named relative to its session's folder, into scans(); replaces the time of one
     /// that is there.
     void add_scan(const std::string& file_name, const std::string& acq_time);
 

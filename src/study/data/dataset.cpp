@@ -12,6 +12,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/split.hpp"
+#include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/definition.hpp"
@@ -290,28 +292,17 @@ public:
 
     void add(const std::string& code)
     {
-        const fs::path file = source_path(code) / "session.json";
-        const fs::path beh = fs::path(std::string(prefix) + code) / "beh";
-        const bool has_tables = is_there(folder_, beh);
-        if (!is_there(folder_, file) && !has_tables) {
-            set_.participants.push_back(code); // in the list, but not here yet
-            set_.data.emplace_back();
-            set_.groups.emplace_back();
-            return;
-        }
-        const session_data s = read_session(folder_ / file);
-        take_session(code, s);
         set_.participants.push_back(code);
-        set_.groups.push_back(s.group);
-        std::vector<run_data> runs;
-        for (std::size_t i = 0; i < set_.experiment.runs.size(); ++i) {
-            const run_outline& run = find_run(set_, set_.participants.size() - 1, i);
-            const fs::path table = table_path(code, run);
-            runs.push_back(is_there(folder_, table) ? read_whole_run(folder_ / table, run) : run_data{});
-        }
-        if (has_tables)
-            refuse_unknown_tables(folder_ / beh, code);
-        set_.data.push_back(std::move(runs));
+        set_.data.emplace_back();
+        set_.groups.emplace_back();
+        const std::vector<session_number> sessions = list_sessions(folder_, code); // none: not here yet
+        for (const session_number session : sessions)
+            add_session(code, session);
+        for (run_data& run : set_.data.back())
+            run.sessions = static_cast<unsigned>(sessions.size());
+        for (unsigned n = 1; n <= set_.experiment.sessions && set_.experiment.sessions > 1; ++n)
+            if (!sessions.empty() && std::ranges::find(sessions, n) == sessions.end())
+                set_.warnings.push_back(fmt::format("sub-{} has no session {}", code, n));
     }
 
     dataset finish()
@@ -326,36 +317,74 @@ public:
     }
 
 private:
-    void take_session(const std::string& code, const session_data& s)
+    // Adds a session of the last participant.
+    void add_session(const std::string& code, session_number session)
+    {
+        const session_data s = read_session(folder_ / source_path(code, session) / "session.json");
+        take_session(session_name(code, session), s);
+        const unsigned planned = set_.experiment.sessions;
+        if (session.value_or(1) > planned || session.has_value() != (planned > 1))
+            throw error(error_kind::bad_input, session_name(code, session),
+                        fmt::format("the experiment has {}", counted(planned, "session")),
+                        "move it away, or {exclude} the participant");
+        std::string& group = set_.groups.back();
+        if (std::vector<run_data>& runs = set_.data.back(); runs.empty()) {
+            group = s.group;
+            runs.resize(set_.experiment.runs.size());
+        }
+        if (group != s.group)
+            throw error(
+                error_kind::bad_input, session_name(code, session),
+                fmt::format("it is of group \"{}\", and an earlier session of group \"{}\"", s.group, group),
+                "a participant is in one group: correct session.json, or {exclude} the participant");
+        for (std::size_t i = 0; i < set_.experiment.runs.size(); ++i) {
+            const run_outline& run = find_run(set_, set_.participants.size() - 1, i);
+            const fs::path table = table_path(code, session, run);
+            if (!is_there(folder_, table))
+                continue;
+            run_data own = read_whole_run(folder_ / table, run);
+            run_data& all = set_.data.back()[i];
+            all.voids += own.voids;
+            for (trial& t : own.trials) {
+                t.session = session;
+                all.trials.push_back(t);
+            }
+        }
+        if (const fs::path beh = session_path(code, session) / "beh"; is_there(folder_, beh))
+            refuse_unknown_tables(folder_ / beh, code, session);
+    }
+
+    // Takes a session, whose name is for messages.
+    void take_session(const std::string& name, const session_data& s)
     {
         if (first_.empty()) {
-            first_ = code;
+            first_ = name;
             text_ = s.text;
             set_.experiment = s.experiment;
             set_.simulated = s.simulated;
             return;
         }
         const auto differs = [&](std::string_view why, std::string_view hint) {
-            throw error(error_kind::bad_input, fmt::format("sub-{} and sub-{}", first_, code), why, hint);
+            throw error(error_kind::bad_input, fmt::format("{} and {}", first_, name), why, hint);
         };
         if (s.simulated != set_.simulated)
             differs("one is simulated and one is not", "choose with {participants} or {exclude}");
         if (s.experiment != set_.experiment)
-            differs("their experiments differ in runs, motions or methods",
+            differs("their experiments differ in runs, motions, methods or sessions",
                     "choose with {participants} or {exclude}");
         if (s.text != text_)
             set_.warnings.push_back(fmt::format(
-                "sub-{} and sub-{}: the texts of their experiments differ, though not in what is analysed",
-                first_, code));
+                "{} and {}: the texts of their experiments differ, though not in what is analysed", first_,
+                name));
     }
 
     // Refuses a table of no run: the analysis would pass over it in silence.
-    void refuse_unknown_tables(const fs::path& beh, const std::string& code) const
+    void refuse_unknown_tables(const fs::path& beh, const std::string& code, session_number session) const
     {
         for (const fs::path& path : list_folder(beh)) {
             const std::string name = path.filename().string();
             const auto is_its_table = [&](const run_outline& r) {
-                return path.filename() == table_path(code, r).filename();
+                return path.filename() == table_path(code, session, r).filename();
             };
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
                 std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), is_its_table))
@@ -365,7 +394,7 @@ private:
     }
 
     fs::path folder_;
-    std::string first_; ///< who had the first session
+    std::string first_; ///< name of the first session
     std::string text_;
     dataset set_;
 };
@@ -397,15 +426,25 @@ std::string make_file_name(std::string_view run)
     return name;
 }
 
-std::filesystem::path source_path(std::string_view code)
+std::string session_name(std::string_view code, session_number session)
 {
-    return std::filesystem::path("sourcedata") / fmt::format("sub-{}", code);
+    return session ? fmt::format("sub-{}_ses-{}", code, *session) : fmt::format("sub-{}", code);
 }
 
-std::filesystem::path table_path(std::string_view code, const run_outline& run)
+std::filesystem::path session_path(std::string_view code, session_number session)
 {
-    return std::filesystem::path(fmt::format("sub-{}", code)) / "beh" /
-           fmt::format("sub-{}_task-{}_beh.tsv", code, run.file_name);
+    return session ? fmt::format("sub-{}/ses-{}", code, *session) : fmt::format("sub-{}", code);
+}
+
+std::filesystem::path source_path(std::string_view code, session_number session)
+{
+    return "sourcedata" / session_path(code, session);
+}
+
+std::filesystem::path table_path(std::string_view code, session_number session, const run_outline& run)
+{
+    return session_path(code, session) / "beh" /
+           fmt::format("{}_task-{}_beh.tsv", session_name(code, session), run.file_name);
 }
 
 std::filesystem::path description_path(const run_outline& run)
@@ -431,7 +470,22 @@ session_data read_session(const std::filesystem::path& file)
     return s;
 }
 
-const std::array<trial_column, 22> trial_columns{{
+std::vector<session_number> list_sessions(const fs::path& folder, std::string_view code)
+{
+    std::set<session_number> all{session_number{}};
+    for (const fs::path& parent : {source_path(code, {}), session_path(code, {})})
+        if (is_there(folder, parent))
+            for (const fs::path& path : list_folder(folder / parent))
+                if (const std::string name = path.filename().string(); name.starts_with("ses-"))
+                    all.insert(detail::number_in<unsigned>(name.substr(4)));
+    std::erase_if(all, [&](session_number s) {
+        return !is_there(folder, source_path(code, s) / "session.json") &&
+               !is_there(folder, session_path(code, s) / "beh");
+    });
+    return {all.begin(), all.end()};
+}
+
+const std::array<trial_column, 23> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration", "From the first frame of the first stimulus to the last of the last, the gap included", "s",
@@ -439,7 +493,8 @@ const std::array<trial_column, 22> trial_columns{{
     {"trial", "Place in the sequence, from 1; a trial that comes again keeps it", "", &trial_row::trial,
      column_use::analysis, 1},
     {"attempt", "How often the trial has been begun", "", &trial_row::attempt, column_use::analysis, 1},
-    {"group", "Group of the participant", "", &trial_row::group, column_use::groups},
+    {"group", "Group of the participant", "", &trial_row::group, column_use::some},
+    {"session", "Number of the session, from 1", "", &trial_row::session, column_use::some, 1},
     {"motion", "Target motion; the methods are how it was rendered", "", &trial_row::motion,
      column_use::analysis},
     {"method_1", "Method of the first stimulus", "", &trial_row::method_1, column_use::analysis},
@@ -465,11 +520,9 @@ const std::array<trial_column, 22> trial_columns{{
     {"plan_2", "SHA-256 of the second stimulus' plan", "", &trial_row::plan_2},
 }};
 
-bool has_column(const run_outline& run, column_use use, bool has_groups) noexcept
+bool has_column(const run_outline& run, column_use use) noexcept
 {
     switch (use) {
-    case column_use::groups:
-        return has_groups;
     case column_use::values:
         return !run.vary.empty();
     case column_use::tracks:
@@ -484,16 +537,20 @@ bool has_column(const run_outline& run, column_use use, bool has_groups) noexcep
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs)
 {
     named_cells cells;
-    for (const trial_column& c : trial_columns)
-        if (std::ranges::any_of(runs, [&](auto* run) { return has_column(*run, c.use, !r.group.empty()); }))
-            cells.emplace_back(c.name, std::visit([&](auto member) { return written(r.*member); }, c.member));
+    for (const trial_column& c : trial_columns) {
+        std::string text = std::visit([&](auto member) { return written(r.*member); }, c.member);
+        if (c.use == column_use::some ? text != "n/a" : std::ranges::any_of(runs, [&](auto* run) {
+                return has_column(*run, c.use);
+            }))
+            cells.emplace_back(c.name, std::move(text));
+    }
     return cells;
 }
 
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
 {
     for (const trial_column& c : trial_columns)
-        if (c.use != column_use::nobody && has_column(run, c.use, false))
+        if (c.use != column_use::nobody && c.use != column_use::some && has_column(run, c.use))
             t.need_column(c.name);
     std::vector<trial_row> all(t.rows());
     for (const trial_column& c : trial_columns)
@@ -616,20 +673,23 @@ std::vector<trial_cells> read_study(const fs::path& folder, const selection& who
 {
     const dataset d = read_dataset(folder, who);
     std::vector<trial_cells> all;
-    for (const std::string& code : d.participants)
-        for (const run_outline& run : d.experiment.runs) {
-            const fs::path file = table_path(code, run);
-            if (!is_there(folder, file))
-                continue;
-            const text_table t(folder / file);
-            for (std::size_t row = 0; row < t.rows(); ++row) {
-                all.push_back({{"participant", code},
-                               {"run", run.name},
-                               {"task", std::string(to_string(run.task))},
-                               {"simulated", d.simulated}});
-                add_cells(all.back(), t, row);
+    for (const std::string& code : d.participants) {
+        const std::vector<session_number> sessions = list_sessions(folder, code);
+        for (const run_outline& run : d.experiment.runs)
+            for (const session_number session : sessions) {
+                const fs::path file = table_path(code, session, run);
+                if (!is_there(folder, file))
+                    continue;
+                const text_table t(folder / file);
+                for (std::size_t row = 0; row < t.rows(); ++row) {
+                    all.push_back({{"participant", code},
+                                   {"run", run.name},
+                                   {"task", std::string(to_string(run.task))},
+                                   {"simulated", d.simulated}});
+                    add_cells(all.back(), t, row);
+                }
             }
-        }
+    }
     return all;
 }
 

@@ -8,6 +8,9 @@
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
 ///                                             left alone: the order of motions and methods, and the runs;
 ///                                             "group": its name, if the experiment has groups
+///
+/// If the experiment has several sessions, these are in sub-CODE/ses-N/beh/sub-CODE_ses-N_task-NAME_beh.tsv
+/// and sourcedata/sub-CODE/ses-N/session.json.
 #pragma once
 
 #include <array>
@@ -130,6 +133,7 @@ struct experiment_outline {
     std::string name;
     std::vector<run_outline> runs = {};
     std::vector<group_outline> groups = {}; ///< empty: everybody has all runs
+    unsigned sessions = 1;                  ///< of each participant
 
     friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
 };
@@ -143,12 +147,20 @@ std::string describe_group(const group_outline& g);
 /// Returns the letters and digits of a run's name (BIDS allows no others in a task's).
 std::string make_file_name(std::string_view run);
 
+/// Number of a session, from 1; none if the experiment has one session for each participant.
+using session_number = std::optional<unsigned>;
+
+/// Returns sub-CODE or sub-CODE_ses-N.
+std::string session_name(std::string_view code, session_number session);
+
 // Paths in a study's folder; `code` is the participant's, without sub-.
 
-/// Returns sourcedata/sub-CODE.
-std::filesystem::path source_path(std::string_view code);
+/// Returns sub-CODE or sub-CODE/ses-N.
+std::filesystem::path session_path(std::string_view code, session_number session);
+/// Returns sourcedata/sub-CODE or sourcedata/sub-CODE/ses-N.
+std::filesystem::path source_path(std::string_view code, session_number session);
 /// Returns the path of a run's trials: sub-CODE/beh/sub-CODE_task-NAME_beh.tsv.
-std::filesystem::path table_path(std::string_view code, const run_outline& run);
+std::filesystem::path table_path(std::string_view code, session_number session, const run_outline& run);
 /// Returns the path of what describes a run's tables: task-NAME_beh.json.
 std::filesystem::path description_path(const run_outline& run);
 
@@ -165,6 +177,10 @@ struct session_data {
 /// Reads a session.json. \throws error (bad_input) with file and, where it has one, line.
 session_data read_session(const std::filesystem::path& file);
 
+/// Lists the sessions of a participant that have a session.json or tables, in order; also those that the
+/// experiment does not have. \throws error (bad_input) for a folder that cannot be read.
+std::vector<session_number> list_sessions(const std::filesystem::path& folder, std::string_view code);
+
 /// A trial as a line of its table. Empty texts and missing values are n/a.
 struct trial_row {
     std::optional<double> onset_s = {}; ///< since the run's first sample at the DAC
@@ -172,6 +188,7 @@ struct trial_row {
     unsigned trial = 0;                 ///< place in the sequence, from 1
     unsigned attempt = 1;
     std::string group = {};
+    session_number session = {};
     std::string motion = {};
     std::string method_1 = {};
     std::string method_2 = {};
@@ -196,7 +213,7 @@ enum class column_use {
     analysis, ///< the analysis of each task, and sessions that go on
     session,  ///< sessions that go on; the analysis of the tasks that have it
     nobody,   ///< none: tables of older versions do not have it
-    groups,   ///< none: only studies with groups have it
+    some,     ///< none: only studies in which it is not n/a have it
     values,   ///< the analysis of runs that vary a value; only these have it
     tracks,   ///< sessions of adaptive runs; only these have it
     numbers,  ///< the analysis of runs that estimate; only these have it
@@ -216,12 +233,13 @@ struct trial_column {
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 22> trial_columns;
+extern const std::array<trial_column, 23> trial_columns;
 
-/// Returns true if a run's tables have the column.
-bool has_column(const run_outline& run, column_use use, bool has_groups) noexcept;
+/// Returns true if tables of the run have the column, or may.
+bool has_column(const run_outline& run, column_use use) noexcept;
 
-/// Returns the cells of a row, in the order of a new table of these runs; no cell for an empty group.
+/// Returns the cells of a row, in the order of a new table of these runs; none that is n/a in a column of
+/// some studies.
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs);
 
 /// Reads all columns of all lines. \throws error (bad_input) with file and line.
@@ -251,11 +269,14 @@ struct trial {
     bool signal = true;       ///< detect: there was a stimulus; same-different: they differed
     std::optional<double> response_time_s = {};
     std::optional<bool> early = {}; ///< sooner than min_response_s; none: not recorded
+    session_number session = {};
 };
 
+/// A participant's trials of a run, of all sessions.
 struct run_data {
     std::vector<trial> trials = {};
     std::size_t voids = 0; ///< lines that do not count
+    unsigned sessions = 1; ///< that the participant has begun
 };
 
 /// Somebody whose trials are left out, and why.
@@ -289,7 +310,8 @@ run_data read_run(const text_table& t, const run_outline& run);
 /// Reads the folder; of participants who are not selected nothing is opened.
 /// \throws error (bad_input) with file and line for what is not as the head of this file says: a code that is
 ///         not known, nobody left, a folder of somebody who is not in participants.tsv, experiments that
-///         differ, real and simulated sessions together, names that the experiment does not know, answers out
+///         differ, real and simulated sessions together, sessions that the experiment does not have or of
+///         two groups, names that the experiment does not know, answers out
 ///         of range, a trial that counts twice.
 dataset read_dataset(const std::filesystem::path& folder, const selection& who);
 
@@ -306,7 +328,8 @@ using cell_value = std::variant<std::monostate, bool, std::uint64_t, double, std
 /// its table as texts. Columns that the table does not have are n/a.
 using trial_cells = std::vector<std::pair<std::string, cell_value>>;
 
-/// Reads every line of every table, void trials included, in the order of participants, runs and lines.
+/// Reads every line of every table, void trials included, in the order of participants, runs, sessions and
+/// lines.
 /// \throws error (bad_input) with file and line, as read_dataset(), and for a cell that is not of its type.
 std::vector<trial_cells> read_study(const std::filesystem::path& folder, const selection& who);
 

@@ -281,9 +281,11 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
     if (!t)
         root.fail("there is no [experiment]", "it begins with one");
     d.name = name_in(*t, "name");
+    d.outline.sessions = t->whole("sessions", 1, 99).value_or(1);
     if (e.outline_only)
         return;
-    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "order", "seed", "consent", "authors"});
+    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "order", "seed", "consent", "authors",
+             "sessions"});
     d.title = t->has("title") ? name_in(*t, "title") : d.name;
     if (t->has("array") && e.folder != nullptr)
         d.array = array_in(*t, *e.folder);

@@ -116,6 +116,7 @@ struct experiment_definition {
     std::vector<run_definition> runs = {};
     std::map<std::string, std::string> group_arrays = {}; ///< by group, of those that have their own
     std::string group = {};          ///< group whose runs `runs` are; empty: those of everybody
+    session_number session = {};     ///< session that is held
     experiment_outline outline = {}; ///< of all runs and groups
     std::string text = {};           ///< all of it, TOML
 };

@@ -207,7 +207,7 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
       definition_(d),
       run_(r),
       stimuli_(stimuli),
-      seed_(fmt::format("{}/{}/{}/{}", s.seed, d.name, code, r.outline.name))
+      seed_(fmt::format("{}/{}", session_seed(s.seed, d, code), r.outline.name))
 {
     if (r.outline.task == task_kind::identify) {
         for (const std::size_t m : r.motions)
@@ -336,10 +336,15 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                                                      const std::function<bool()>& go_on)
 {
     const std::size_t most = *std::max_element(r.participants.begin(), r.participants.end());
+    std::vector<experiment_definition> sessions(d.outline.sessions, d);
+    for (unsigned i = 0; i < sessions.size() && sessions.size() > 1; ++i)
+        sessions[i].session = i + 1;
     std::vector<run_power> all;
-    std::vector<std::vector<person_run>> people; // by run
+    std::vector<std::vector<std::vector<person_run>>> people; // by run and session
     for (std::size_t run = 0; run < d.runs.size(); ++run) {
-        people.push_back(prepare_people(d, run, most, r.seed));
+        people.emplace_back();
+        for (const experiment_definition& held : sessions)
+            people[run].push_back(prepare_people(held, run, most, r.seed));
         all.push_back({run, {}});
         const run_outline& o = d.runs[run].outline;
         if (find_task(o.task).measures ? measured_against(o).has_value()
@@ -357,9 +362,14 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                 continue;
             const run_definition& run = d.runs[p.run];
             std::vector<std::optional<double>> values;
-            for (person_run& who : people[p.run]) {
-                answer_all(who, {s, d, run, stimuli, who.code}, d, run);
-                values.push_back(compare_trials(run.outline, who.trials));
+            for (std::size_t i = 0; i < most; ++i) {
+                std::vector<trial> trials;
+                for (std::size_t n = 0; n < sessions.size(); ++n) {
+                    person_run& who = people[p.run][n][i];
+                    answer_all(who, {s, sessions[n], run, stimuli, who.code}, d, run);
+                    trials.insert(trials.end(), who.trials.begin(), who.trials.end());
+                }
+                values.push_back(compare_trials(run.outline, trials));
             }
             for (power_at& at : p.at)
                 count_study(at, values, run.outline);

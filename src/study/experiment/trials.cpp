@@ -364,6 +364,11 @@ std::size_t count_rows(const experiment_definition& d)
     return square_rows(d.order, d.runs.size()) * blocks;
 }
 
+std::string session_seed(std::uint64_t seed, const experiment_definition& d, std::string_view code)
+{
+    return fmt::format("{}/{}/{}{}", seed, d.name, code, d.session ? fmt::format("/ses-{}", *d.session) : "");
+}
+
 std::size_t default_row(const experiment_definition& d, std::string_view code)
 {
     const std::size_t rows = count_rows(d);
@@ -374,14 +379,14 @@ std::size_t default_row(const experiment_definition& d, std::string_view code)
             number = (number * 10 + static_cast<std::size_t>(c - '0')) % rows;
         row = (number + rows - 1) % rows;
     }
-    return row + 1;
+    return (row + d.session.value_or(1) - 1) % rows + 1;
 }
 
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
                       std::uint64_t seed, std::optional<std::size_t> row)
 {
     const run_definition& r = d.runs[run];
-    random_numbers numbers(fmt::format("{}/{}/{}/{}", seed, d.name, code, r.outline.name));
+    random_numbers numbers(fmt::format("{}/{}", session_seed(seed, d, code), r.outline.name));
     run_sequence s{run};
     const std::vector<planned_trial> drawn = draw_balanced(r, r.outline.trials, numbers);
     // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
@@ -405,7 +410,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
 std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
                                         std::uint64_t seed, std::optional<std::size_t> row)
 {
-    random_numbers numbers(fmt::format("{}/{}/{}", seed, d.name, code));
+    random_numbers numbers(session_seed(seed, d, code));
     const std::size_t own_row = row.value_or(default_row(d, code));
     std::vector<run_sequence> all;
     for (const std::size_t run : make_order(d.order, d.runs.size(), own_row - 1, numbers))

@@ -71,19 +71,22 @@ std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::
 /// blocks in a run.
 std::size_t count_rows(const experiment_definition& d);
 
+/// Returns "seed/experiment/code", in a study with several sessions "seed/experiment/code/ses-N".
+std::string session_seed(std::uint64_t seed, const experiment_definition& d, std::string_view code);
+
 /// Returns the row of a participant, from 1: the number at the code's end, or without a number
-/// default_seed() plus 1; after the last row the first one comes again.
+/// default_seed() plus 1; each later session has the next row; after the last row the first one comes again.
 std::size_t default_row(const experiment_definition& d, std::string_view code);
 
-/// Draws the trials of one run from the generator that "seed/experiment/code/run" seeds: each motion with
-/// each method, or with each pair of methods in each order, equally often as far as their number allows.
+/// Draws the trials of one run from the generator that session_seed() and "/run" seed: each motion with each
+/// method, or with each pair of methods in each order, equally often as far as their number allows.
 /// `row` orders the blocks; none: default_row().
 /// \throws error (bad_input) if every order drawn has a motion four times in a row.
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
                       std::uint64_t seed, std::optional<std::size_t> row = {});
 
-/// Draws all runs, in the participant's order; a random one is from the generator that "seed/experiment/code"
-/// seeds. Throws as above.
+/// Draws all runs, in the participant's order; a random one is from the generator that session_seed() seeds.
+/// Throws as above.
 std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
                                         std::uint64_t seed, std::optional<std::size_t> row = {});
 

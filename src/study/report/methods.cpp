@@ -497,7 +497,7 @@ std::string walk_text(const session_facts& s)
 
 // Returns what was so in a session, with the trials of each run that count, void ones, and those of them with
 // gaps in the sound.
-json describe_session(const session_facts& s, const dataset& d)
+json describe_session(const session_facts& s)
 {
     json row{
         {"code", s.code}, {"days", days_text(s)}, {"mirrored", mirrored_text(s)}, {"walk", walk_text(s)}};
@@ -513,13 +513,9 @@ json describe_session(const session_facts& s, const dataset& d)
                      : is_simulated(s)                       ? "simulated"
                                                              : not_recorded;
     row["counts"] = json::array();
-    const auto person =
-        std::find(d.participants.begin(), d.participants.end(), s.code) - d.participants.begin();
-    for (std::size_t run = 0; run < s.xruns.size(); ++run) {
-        const run_data& r = d.data.at(person)[run];
-        row["counts"].push_back(fmt::format("{} / {} / {}", r.trials.size(), r.voids,
-                                            s.xruns[run] ? fmt::format("{}", *s.xruns[run]) : not_recorded));
-    }
+    for (const trial_counts& c : s.counts)
+        row["counts"].push_back(fmt::format("{} / {} / {}", c.valid, c.voids,
+                                            c.xruns ? fmt::format("{}", *c.xruns) : not_recorded));
     return row;
 }
 
@@ -647,6 +643,9 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
         return fmt::format("a row of a {}, chosen by the participant's code or by the experimenter",
                            e.order == "latin" ? "cyclic Latin square" : "Williams square (Williams 1949)");
     });
+    all["several"] = d.experiment.sessions > 1
+                         ? json{{"number", d.experiment.sessions}, {"between", between_text(f)}}
+                         : json(false);
     all["groups"] = json::array();
     for (const group_outline& g : d.experiment.groups)
         all["groups"].push_back({{"name", g.name}, {"runs", describe_group(g)}});
@@ -660,7 +659,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
     all["sessions"] = json::array();
     for (const session_facts& s : f.sessions)
-        all["sessions"].push_back(describe_session(s, d));
+        all["sessions"].push_back(describe_session(s));
     all["held"] = !f.sessions.empty();
     all["versions"] = join_texts(f, [](const session_facts& s) {
         const json_value v = s.facts()["versions"];

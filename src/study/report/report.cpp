@@ -2,6 +2,7 @@
 #include "study/report/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "core/sha256.hpp"
 #include "core/words.hpp"
 #include "files/output_file.hpp"
+#include "study/bids/study_folder.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {
@@ -58,11 +60,10 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  changed_file);
 }
 
-// Checks the plans in a run's table. Returns the number of void trials with gaps in the sound, if it is
-// recorded.
-std::optional<std::size_t> check_trials(const fs::path& folder, const fs::path& table, const session_facts& s)
+// Checks the plans in a run's table, and counts its trials.
+trial_counts check_trials(const fs::path& folder, const fs::path& table, const session_facts& s)
 {
-    std::optional<std::size_t> count = 0;
+    trial_counts count;
     if (!is_there(folder, table))
         return count;
     const text_table t(folder / table);
@@ -71,24 +72,26 @@ std::optional<std::size_t> check_trials(const fs::path& folder, const fs::path& 
             check_plan(t, i, s, "method_1", "plan_1");
             check_plan(t, i, s, "method_2", "plan_2");
         }
+        ++(t.truth(i, "void") ? count.voids : count.valid);
         if (!t.truth(i, "void"))
             continue;
         const auto xruns = t.has("xruns") ? t.whole(i, "xruns", 0, 1000000000) : std::nullopt;
         if (!xruns)
-            count.reset();
-        else if (*xruns > 0 && count)
-            ++*count;
+            count.xruns.reset();
+        else if (*xruns > 0 && count.xruns)
+            ++*count.xruns;
     }
     return count;
 }
 
-session_facts read_session_facts(const fs::path& folder, const std::string& code,
+session_facts read_session_facts(const fs::path& folder, const std::string& code, session_number session,
                                  const experiment_outline& outline)
 {
-    const fs::path source = folder / source_path(code);
+    const fs::path source = folder / source_path(code, session);
     const fs::path file = source / "session.json";
     session_facts s;
-    s.code = code;
+    s.participant = code;
+    s.code = session_name(code, session).substr(4); // after "sub-"
     s.file = file.string();
     s.document = files::read_object(read_file(file), s.file);
     const std::string text = s.facts()["experiment"]["text"].need_text();
@@ -100,7 +103,7 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
         s.design = read_design(text, s.file + ": experiment.text");
     s.stimuli = read_stimuli(s, source / "plans");
     for (const run_outline& r : outline.runs)
-        s.xruns.push_back(check_trials(folder, table_path(code, r), s));
+        s.counts.push_back(check_trials(folder, table_path(code, session, r), s));
     return s;
 }
 
@@ -176,8 +179,8 @@ study_facts read_facts(const fs::path& folder, const dataset& d)
     study_facts f;
     f.people = read_people(folder, d.participants);
     for (const std::string& code : d.participants)
-        if (is_there(folder, source_path(code) / "session.json"))
-            f.sessions.push_back(read_session_facts(folder, code, d.experiment));
+        for (const session_number session : list_sessions(folder, code))
+            f.sessions.push_back(read_session_facts(folder, code, session, d.experiment));
     return f;
 }
 
@@ -186,6 +189,19 @@ std::string methods_text(const study_facts& f, const dataset& d, const nlohmann:
     mustache::mustache text{std::string(methods_template())};
     text.set_custom_escape([](const std::string& t) { return escape_markdown(t); });
     return without_gaps(text.render(make_data(collect_facts(f, d, analysis))));
+}
+
+std::string between_text(const study_facts& f)
+{
+    constexpr double day_ns = 86400e9;
+    std::vector<double> days;
+    for (std::size_t i = 1; i < f.sessions.size(); ++i) {
+        const auto before = acq_time_ns(f.sessions[i - 1].facts()["date"].words());
+        const auto after = acq_time_ns(f.sessions[i].facts()["date"].words());
+        if (before && after && f.sessions[i].participant == f.sessions[i - 1].participant)
+            days.push_back(std::round(10.0 * static_cast<double>(*after - *before) / day_ns) / 10.0);
+    }
+    return days.empty() ? "not recorded" : range_text(days) + " days";
 }
 
 void write_report(const fs::path& file, const std::string& text, bool force)

@@ -37,17 +37,24 @@ struct planned_stimulus {
     json_value facts() const { return {plan, file, changed_file}; }
 };
 
+/// Number of a session's trials of a run.
+struct trial_counts {
+    std::size_t valid = 0;
+    std::size_t voids = 0;
+    std::optional<std::size_t> xruns = 0; ///< void trials with gaps in the sound; none: not recorded
+};
+
 struct session_facts {
-    std::string code;
-    std::string file; ///< session.json
+    std::string participant; ///< code
+    std::string code;        ///< the same, or CODE_ses-N
+    std::string file;        ///< session.json
     nlohmann::ordered_json document;
     /// The definition with its defaults; only if tactor held the session: other programs may have other
     /// defaults.
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<std::optional<std::size_t>> xruns =
-        {}; ///< void trials with gaps in the sound, by run; none: not recorded
+    std::vector<trial_counts> counts = {}; ///< by run
 
     json_value facts() const { return {document, file, changed_file}; }
 };
@@ -61,7 +68,7 @@ struct participant {
 };
 
 struct study_facts {
-    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv
+    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv, of each in their order
     std::vector<participant> people = {};     ///< who was selected, those without a session too
 };
 
@@ -93,6 +100,9 @@ std::string escape_markdown(std::string_view text);
 /// Returns the text of all sessions, or each text with the sessions that have it if they differ. An empty
 /// text reads "not recorded".
 std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text);
+
+/// Returns the days from the begin of a session to that of the participant's next.
+std::string between_text(const study_facts& f);
 
 /// Returns the least and the largest value, or the only one; "not recorded" for none.
 std::string range_text(const std::vector<double>& values);

@@ -122,6 +122,19 @@ void keep_group(experiment_definition& d, const std::string& name)
     std::erase_if(d.runs, [](const run_definition& r) { return r.motions.empty(); });
 }
 
+// Takes the number of the session; a definition with several needs it.
+void take_session(experiment_definition& d, session_number session)
+{
+    const unsigned all = d.outline.sessions;
+    const bool several = all > 1;
+    if (several != session.has_value() || session.value_or(1) > all)
+        throw error(error_kind::bad_input, "--session",
+                    session ? fmt::format("there is no session {}", *session)
+                            : fmt::format("the definition has {} sessions, and none is named", all),
+                    several ? fmt::format("1 to {}", all) : "leave it out");
+    d.session = session;
+}
+
 // Checks that no limit changes a trial on an array that has rested: it would always be void.
 void check_limits(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
                   const drive_limits& l, unsigned rate)
@@ -338,6 +351,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
 {
     experiment_definition d = load_definition(r.definition);
     keep_group(d, r.group);
+    if (!r.all_sessions)
+        take_session(d, r.session);
     if (!s.array_name)
         s.array_name = d.array;
     session::environment e = session::read_environment(s);
@@ -489,6 +504,8 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     // These are absent where they say nothing: sessions of older versions go on.
     if (!d.group.empty())
         j["group"] = d.group;
+    if (d.session)
+        j["session"] = *d.session;
     if (p.row != default_row(d, p.participant) ||
         std::ranges::any_of(d.runs, [](const auto& r) { return !r.blocks.empty(); }))
         j["order_row"] = p.row;
@@ -524,6 +541,7 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     row.trial = which.trial;
     row.attempt = which.attempt;
     row.group = d.group;
+    row.session = d.session;
     row.duration_s = static_cast<double>(p.stimuli.frames(t)) / p.render.rate;
     row.motion = d.motions[t.motion].name;
     row.method_1 = d.methods[t.method_1].name;

@@ -44,6 +44,8 @@ struct session_request {
     std::optional<hand_kind> hand = {};  ///< none: not said
     std::string group = {};              ///< of the definition's groups; empty: none is named
     std::optional<std::size_t> row = {}; ///< of the orders, from 1; none: default_row()
+    session_number session = {};         ///< of the definition's sessions; none: none is named
+    bool all_sessions = false;           ///< needs no number
 };
 
 struct prepared_experiment {
@@ -65,9 +67,9 @@ struct prepared_experiment {
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }
 };
 
-/// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, the group
-/// or row is not the definition's, a stimulus cannot be planned or played, or a session with a person has no
-/// thresholds.
+/// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, the group,
+/// session or row is not the definition's, a stimulus cannot be planned or played, or a session with a person
+/// has no thresholds.
 prepared_experiment prepare(const session_request& r, session::settings& s);
 
 /// Makes the score of one tactor at the carrier of the definition's first method. \throws error (bad_input)
