@@ -8,7 +8,7 @@ import sys
 
 VALIDATOR = pathlib.Path(sys.argv.pop(3))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from experiments import ExperimentTest  # noqa: E402
+from experiments import SMALL, ExperimentTest  # noqa: E402
 from harness import main  # noqa: E402
 
 # A single author is enough for an example.
@@ -77,6 +77,14 @@ class Folders(ExperimentTest):
 
     def test_groups(self):
         self.grouped(("01", "palm"), ("02", "palm"))
+        self.valid(["01", "02"])
+
+    def test_several_sessions(self):
+        self.write("two.toml", SMALL.replace("gap_s", "sessions = 2\ngap_s"))
+        for code, n in (("01", "1"), ("02", "1"), ("01", "2")):
+            self.simulate(code, "--session", n, definition="two.toml", spec="seed=2,void=0.3")
+        self.assertEqual(self.valid(["01", "02"], ["MISSING_SESSION"])["sessions"], ["1", "2"])
+        self.simulate("02", "--session", "2", definition="two.toml")
         self.valid(["01", "02"])
 
     def test_the_validator_finds_faults(self):

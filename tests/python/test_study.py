@@ -59,6 +59,15 @@ def test_trials_say_which_run_they_are_of_and_who_answered(tool, tmp_path):
     assert {(type(t["early"]), type(t["void"]), type(t["duration"]), len(t["plan_1"])) for t in trials} == {(bool, bool, float, 64)}
 
 
+def test_trials_have_the_number_of_their_session(tool, tmp_path):
+    (tmp_path / "two.toml").write_text(tool("experiment", "park2016", "--print").replace("title", "sessions = 2\ntitle", 1))
+    for n in ("2", "1"):
+        tool("experiment", "two.toml", "--participant", "P07", "-o", "study", "--simulate", "seed=1,sigma=1", "--session", n)
+    trials = tactor.study.read(tmp_path / "study")
+    assert [(t["run"], t["session"], t["trial"]) for t in trials if t["run"] == "uniformity"] == [
+        ("uniformity", n, i) for n in (1, 2) for i in range(1, 41)]
+
+
 def test_statistics_are_those_that_the_tool_prints(studies, tool):
     for folder in studies.values():
         assert json.dumps(tactor.study.analyze(folder)) == json.dumps(json.loads(tool("analyze", folder, "--format", "json")))
