@@ -47,8 +47,9 @@ struct psychometric_fit {
 std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> blocks,
                                                  const psychometric_family& f);
 
-/// Intervals (95 %) and goodness of fit by simulated answers. Of 1,000 simulated studies with 7 values, 20 or
-/// 40 trials each, those of pse and threshold held the truth in 93 to 97 %, those of the jnd in 92 to 98 %.
+/// Intervals (95 %) and goodness of fit by simulated answers. With 7 values 1 apart, 20 or 40 trials each,
+/// slopes of 0.6 to 2.5 and lapses of 0 to 0.05, intervals of 1,000 simulated people held the pse in 93 to 97
+/// %, the threshold and the jnd in 92 to 97 %.
 struct psychometric_bootstrap {
     std::optional<interval> threshold = {}; ///< percentiles
     std::optional<interval> pse = {};       ///< percentiles
