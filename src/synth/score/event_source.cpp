@@ -225,7 +225,7 @@ void expander::marker_event() noexcept
     event_.cycles_per_frame = 0.0;
     event_.sound = nullptr;
     event_.ramp = event_.release = 0;
-    event_.drive[event_.drives++] = {1.0, 1.0, item_->tactor};
+    event_.drive[event_.drives++] = {score_->marker_level, score_->marker_level, item_->tactor};
     position_ = item_->end();
 }
 

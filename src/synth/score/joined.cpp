@@ -23,7 +23,7 @@ score join_scores(const std::vector<placed_score>& parts)
     all->asked.resize(first.asked.size());
     for (const placed_score& p : parts) {
         const score::impl& one = detail::access::of(p.score);
-        for (std::size_t i = 0; i < one.plans.size(); ++i) {
+        for (std::size_t i = 0; i < one.plans.size() && !one.is_code; ++i) {
             all->starts.push_back(p.start + one.starts[i]);
             all->ends.push_back(p.start + one.ends[i]);
             all->plans.push_back({one.plans[i].plan, static_cast<double>(all->starts.back()) / one.rate});
@@ -35,9 +35,43 @@ score join_scores(const std::vector<placed_score>& parts)
         all->open_items = std::max(all->open_items, one.open_items);
         all->open_continuous = std::max(all->open_continuous, one.open_continuous);
         all->open_events += one.open_events; // those of two parts meet where one follows at once
-        all->parts.push_back({detail::access::shared(p.score), p.start});
+        if (one.parts.empty())
+            all->parts.push_back({detail::access::shared(p.score), p.start});
+        for (const score_part& inner : one.parts)
+            all->parts.push_back({inner.made, p.start + inner.start});
     }
+    std::ranges::stable_sort(all->parts, {}, &score_part::start);
     return detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(all)));
+}
+
+score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, unsigned number)
+{
+    const score::impl& model = detail::access::of(like);
+    auto s = std::make_shared<score::impl>();
+    s->tactors = model.tactors;
+    s->limits = model.limits;
+    s->guards = model.guards;
+    s->channels = model.channels;
+    s->rate = model.rate;
+    s->asked.resize(model.asked.size());
+    s->marker = channel;
+    s->marker_level = 0.5;
+    s->is_code = true;
+    s->plans.emplace_back();
+    s->sounds.emplace_back();
+    s->starts.push_back(0);
+    s->frames = code_bits * bit_frames;
+    s->ends.push_back(s->frames);
+    const unsigned bits = number << 1 | 1;
+    for (unsigned i = 0; i < code_bits; ++i)
+        if ((bits >> i & 1) != 0)
+            s->list.items.push_back({.start = i * bit_frames,
+                                     .length = bit_frames,
+                                     .tactor = static_cast<std::uint16_t>(channel),
+                                     .kind = item_kind::marker});
+    s->open_items = s->open_events = 2; // a bit may begin where another ends
+    // Alone, too, it is a part: its plan is none of the score's.
+    return join_scores({{detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(s))), 0}});
 }
 
 } // namespace tactor::synth

@@ -39,7 +39,7 @@ enum class item_kind : std::uint8_t {
     burst,      ///< drives that share one carrier and one window
     joined,     ///< one tactor, several bursts under one carrier
     continuous, ///< a whole continuous stroke
-    marker,     ///< a stroke's beginning, on a channel without a tactor
+    marker,     ///< a stroke's beginning or a code's bit, on a channel without a tactor
 };
 
 /// A stretch of one carrier. Frames of the score. Ten hours are half a million of them: no byte is idle.
@@ -91,6 +91,8 @@ struct score::impl {
     std::vector<double> asked;
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any
+    double marker_level = 1.0;      ///< of full scale
+    bool is_code = false;           ///< part of a make_code(): its plan is no stroke
     synth::item_list list;
     std::vector<synth::score_part> parts; ///< of a joined score, which has no items of its own; by start
     std::uint64_t frames = 0;
