@@ -28,6 +28,20 @@ struct output_settings {
     std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 
+/// [sync] code: numbers that mark what happens in a study with people.
+struct code_settings {
+    std::optional<unsigned> channel = {}; ///< spare PCM channel of the pulse codes
+    double bit_s = 0.002;                 ///< length of a bit there
+    std::string chip = {};                ///< GPIO chip; empty: no lines
+    std::vector<unsigned> offsets = {};   ///< its lines, least significant bit first; eight at most
+    double pulse_s = 0.005;               ///< time for which the lines show a number
+    bool lsl = false;                     ///< markers to the Lab Streaming Layer
+    unsigned stimulus = 10;               ///< number of an event in the definition's first condition
+    unsigned answer = 20;
+    unsigned made_void = 30;
+    source_place where = {};
+};
+
 /// [sync]: triggers out and in.
 struct sync_settings {
     std::optional<gpio_line_name> out = {};
@@ -37,6 +51,7 @@ struct sync_settings {
     edge_kind edge = edge_kind::rising;
     double debounce_s = 0.001; ///< an edge that follows another within this time is dropped
     pull_kind pull = pull_kind::as_is;
+    std::optional<code_settings> code = {};
 };
 
 /// [limits], see drive_limits. Missing values have the defaults there.

@@ -324,12 +324,18 @@ bool same_line(const gpio_line_name& a, const gpio_line_name& b)
 void check_lines(const setup& s)
 {
     std::vector<const gpio_line_name*> lines;
+    std::vector<gpio_line_name> coded;
+    if (s.sync && s.sync->code)
+        for (const unsigned offset : s.sync->code->offsets)
+            coded.push_back({.chip = s.sync->code->chip, .offset = offset, .where = s.sync->code->where});
     if (s.amplifier)
         lines.push_back(&s.amplifier->line);
     if (s.sync && s.sync->out)
         lines.push_back(&*s.sync->out);
     if (s.sync && s.sync->in)
         lines.push_back(&*s.sync->in);
+    for (const gpio_line_name& l : coded)
+        lines.push_back(&l);
     for (std::size_t i = 0; i < lines.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (same_line(*lines[i], *lines[j]))
@@ -371,9 +377,31 @@ void read_amplifier(const toml_table& t, located_setup& out)
     out.contents.amplifier = a;
 }
 
+// Reads where numbers go.
+void read_code(const toml_table& t, code_settings& c)
+{
+    t.only({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl"});
+    c.where = t.where();
+    c.channel = t.whole("channel", bounds_of::marker_channel);
+    c.bit_s = seconds(t.number("bit_ms", {0.1, 20.0})).value_or(c.bit_s);
+    c.pulse_s = seconds(t.number("pulse_ms", {0.0, 1000.0, true})).value_or(c.pulse_s);
+    c.lsl = t.boolean("lsl").value_or(c.lsl);
+    if (t.has("chip") || t.has("offsets")) {
+        c.chip = t.need(t.text("chip"), "chip");
+        const toml::array* offsets = t.list("offsets", "lines, [5, 6]");
+        if (offsets == nullptr || offsets->empty() || offsets->size() > 8)
+            t.fail("offsets", fmt::format("there are {}", counted(offsets ? offsets->size() : 0, "offset")),
+                   "give one to eight lines, that of the least significant bit first");
+        for (const toml::node& n : *offsets)
+            c.offsets.push_back(static_cast<unsigned>(t.to_number(n, "an offset", {0.0, 65535.0})));
+    } else if (!c.channel && !c.lsl) {
+        t.fail("code says neither channel nor chip", "code = { channel = 15 }, or { chip, offsets }");
+    }
+}
+
 void read_sync(const toml_table& t, located_setup& out)
 {
-    t.only({"out", "channel", "in"});
+    t.only({"out", "channel", "in", "code", "codes"});
     sync_settings s;
     if (const auto pulse = t.table("out", "out", "out = { chip, offset, pulse_ms }")) {
         pulse->only({"chip", "offset", "name", "pulse_ms"});
@@ -388,6 +416,19 @@ void read_sync(const toml_table& t, located_setup& out)
         s.pull = edge->kind<pull_kind>("pull").value_or(s.pull);
     }
     s.channel = t.whole("channel", bounds_of::marker_channel);
+    if (const auto code = t.table("code", "code", "code = { channel } or { chip, offsets }"))
+        read_code(*code, s.code.emplace());
+    if (const auto numbers = t.table("codes", "[sync.codes]", "[sync.codes] stimulus = 10")) {
+        numbers->only({"stimulus", "answer", "void"});
+        if (!s.code)
+            t.fail("codes", "nothing sends these numbers", "code = { channel }, or { chip, offsets }");
+        s.code->stimulus = numbers->whole("stimulus", 1, 255).value_or(s.code->stimulus);
+        s.code->answer = numbers->whole("answer", 1, 255).value_or(s.code->answer);
+        s.code->made_void = numbers->whole("void", 1, 255).value_or(s.code->made_void);
+    }
+    if (s.code && s.channel && s.code->channel == s.channel)
+        t.fail("channel", fmt::format("channel {} is that of the code, too", *s.channel),
+               "give the marker and the code a channel each");
     out.sync_channel_at = t.where("channel");
     out.contents.sync = s;
 }

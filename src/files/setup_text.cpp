@@ -11,6 +11,7 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
@@ -113,6 +114,19 @@ void add_lines(lines& out, const setup& u)
         out.add_value("in", fmt::format("{{ {}, edge = \"{}\", debounce_ms = {}, pull = \"{}\" }}",
                                         line_text(*u.sync->in), to_string(u.sync->edge),
                                         ms(u.sync->debounce_s), to_string(u.sync->pull)));
+    if (!u.sync->code)
+        return;
+    const code_settings& c = *u.sync->code;
+    std::string code = fmt::format("bit_ms = {}, pulse_ms = {}, lsl = {}", ms(c.bit_s), ms(c.pulse_s), c.lsl);
+    if (c.channel)
+        code += fmt::format(", channel = {}", *c.channel);
+    if (!c.chip.empty())
+        code += fmt::format(", chip = {}, offsets = [{}]", toml_string(c.chip), fmt::join(c.offsets, ", "));
+    out.add_value("code", "{ " + code + " }");
+    out.begin_table("[sync.codes]");
+    out.add("stimulus", c.stimulus);
+    out.add("answer", c.answer);
+    out.add("void", c.made_void);
 }
 
 void add_tactor(lines& out, const tactor_spec& t)

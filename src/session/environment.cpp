@@ -165,13 +165,17 @@ array find_array(settings& s, environment& e, const files::plan_file* planned)
 // A configuration's marker channel may meet another file's array.
 void check_sync_channel(const environment& e)
 {
-    if (!e.config.sync || !e.config.sync->channel)
+    if (!e.config.sync)
         return;
-    for (const tactor_spec& t : e.tactors.tactors)
-        if (t.channel == *e.config.sync->channel)
-            throw error(error_kind::bad_input, "[sync] channel",
-                        fmt::format("channel {} drives a tactor of {}", t.channel, e.tactors.name),
-                        "choose a spare channel");
+    const std::optional<code_settings>& code = e.config.sync->code;
+    for (const tactor_spec& t : e.tactors.tactors) {
+        const std::string why = fmt::format("channel {} drives a tactor of {}", t.channel, e.tactors.name);
+        constexpr const char* spare = "choose a spare channel";
+        if (t.channel == e.config.sync->channel)
+            throw error(error_kind::bad_input, "[sync] channel", why, spare);
+        if (code && t.channel == code->channel)
+            throw error(error_kind::bad_input, code->where, "code: " + why, spare);
+    }
 }
 
 // Returns the carrier of a plan that is farthest from this one.
@@ -221,15 +225,21 @@ render_options settle_render(const settings& s, const environment& e)
         r.marker_channel = e.config.sync->channel;
         r.marker_s = e.config.sync->pulse_s;
     }
-    const unsigned marker = r.marker_channel ? *r.marker_channel + 1 : 0;
-    const unsigned needed = std::max(e.tactors.channels(), marker);
+    const auto up_to = [](std::optional<unsigned> channel) { return channel ? *channel + 1 : 0; };
+    const code_settings code = (e.config.sync ? e.config.sync->code : std::nullopt).value_or(code_settings{});
+    const unsigned needed = std::max({e.tactors.channels(), up_to(r.marker_channel), up_to(code.channel)});
+    r.channels =
+        s.channels ? *s.channels : e.config.output.channels.value_or(e.plan_channels.value_or(needed));
+    if (up_to(code.channel) > r.channels)
+        throw error(error_kind::bad_input, code.where,
+                    fmt::format("the code's channel is {}, but there {} {}", *code.channel,
+                                r.channels == 1 ? "is" : "are", counted(r.channels, "channel")),
+                    "channels count from 0");
     if (s.channels && *s.channels < needed)
         throw error(error_kind::bad_input, "channels",
                     fmt::format("{} needs {}", e.tactors.name, counted(needed, "channel")),
                     fmt::format("give {} or more", needed))
             .with_field("channels");
-    r.channels =
-        s.channels ? *s.channels : e.config.output.channels.value_or(e.plan_channels.value_or(needed));
     return r;
 }
 

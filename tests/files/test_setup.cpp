@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <clocale>
 #include <string>
 
@@ -163,6 +164,40 @@ TEST_CASE("fewer channels than the map or the marker needs are refused")
     CHECK(complaint(with("channel = 15", "channel = 3")) ==
           "t.toml:19:11: the marker's channel 3 is that of tactor 3 (t.toml:3:8) (give the marker a channel "
           "without a tactor)");
+}
+
+TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
+{
+    const setup s =
+        read("[sync]\nout = { chip = \"a\", offset = 4 }\ncode = { channel = 15, bit_ms = 1, chip = \"a\", "
+             "offsets = [5, 6], pulse_ms = 7, lsl = true }\n[sync.codes]\nstimulus = 1\nvoid = 3\n");
+    REQUIRE(s.sync->code.has_value());
+    const code_settings& c = *s.sync->code;
+    CHECK(c.channel == 15u);
+    CHECK(c.bit_s == 0.001);
+    CHECK(c.chip == "a");
+    CHECK(c.offsets == std::vector<unsigned>{5, 6});
+    CHECK(c.pulse_s == 0.007);
+    CHECK(c.lsl);
+    CHECK(std::array{c.stimulus, c.answer, c.made_void} == std::array{1u, 20u, 3u});
+    const std::string again = detail::besides_text(s);
+    CHECK(detail::besides_text(read(again)) == again);
+
+    const auto code = [](const std::string& in) { return complaint("[sync]\ncode = " + in + "\n"); };
+    CHECK(code("{ bit_ms = 2 }") ==
+          "t.toml:2:8: code says neither channel nor chip (code = { channel = 15 }, or { chip, offsets })");
+    CHECK(
+        code("{ chip = \"a\" }") ==
+        "t.toml:2:8: there are 0 offsets (give one to eight lines, that of the least significant bit first)");
+    CHECK(code("{ offsets = [1] }") == "t.toml:2:8: code has no chip (add chip = ...)");
+    CHECK(code("{ chip = \"a\", offsets = [1, 1] }") ==
+          "t.toml:2:8: the line is in use at t.toml:2:8 (give each purpose a GPIO line of its own)");
+    CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = 256") ==
+          "t.toml:4:12: stimulus is 256 (allowed: 1 to 255)");
+    CHECK(complaint("[sync.codes]\nstimulus = 1\n") ==
+          "t.toml:1:1: nothing sends these numbers (code = { channel }, or { chip, offsets })");
+    CHECK(complaint("[sync]\nchannel = 4\ncode = { channel = 4 }\n") ==
+          "t.toml:2:11: channel 4 is that of the code, too (give the marker and the code a channel each)");
 }
 
 TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
