@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tactor/lines.hpp>
 
@@ -63,6 +65,16 @@ public:
     virtual int descriptor() const noexcept = 0;
 };
 
+inline constexpr std::size_t most_code_lines = 8;
+
+/// Outputs of one chip that show a number together, off from the moment of the request.
+class code_lines {
+public:
+    virtual ~code_lines() = default;
+    /// Switches all lines by one ioctl; the first one shows the least significant bit. Does not allocate.
+    virtual bool set(unsigned number) noexcept = 0;
+};
+
 /// A line, or the errno of the refusal.
 template <typename T>
 struct requested {
@@ -76,6 +88,11 @@ bool built_in() noexcept;
 chip read_chip(const std::string& path);
 /// Requests an output. One ioctl sets direction and value, so the line goes off without a glitch.
 requested<output> request_output(const output_request& r);
+/// Requests outputs of one chip by one ioctl, all off.
+requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets);
+/// The same of lines that a user named. `where`: their place in a file. Throws as open_output().
+std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::vector<unsigned>& offsets,
+                                            const source_place& where);
 /// Requests an input with every edge that the kernel saw, not debounced.
 requested<edge_input> request_input(const input_request& r);
 

@@ -24,6 +24,11 @@ requested<output> request_output(const output_request&)
     return {nullptr, ENOSYS};
 }
 
+requested<code_lines> request_code(const std::string&, const std::vector<unsigned>&)
+{
+    return {nullptr, ENOSYS};
+}
+
 requested<edge_input> request_input(const input_request&)
 {
     return {nullptr, ENOSYS};

@@ -3,6 +3,7 @@
 #include "amplifier/line.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
@@ -57,6 +58,22 @@ private:
     chip_handle chip_;
     gpiod_line* line_;
     int fd_;
+};
+
+class bulk_lines final : public code_lines {
+public:
+    bulk_lines(chip_handle c, const gpiod_line_bulk& l) : chip_(std::move(c)), lines_(l) {}
+    bool set(unsigned number) noexcept override
+    {
+        std::array<int, most_code_lines> values{};
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = static_cast<int>(number >> i & 1);
+        return gpiod_line_set_value_bulk(&lines_, values.data()) == 0;
+    }
+
+private:
+    chip_handle chip_;
+    gpiod_line_bulk lines_;
 };
 
 class input_line final : public edge_input {
@@ -155,6 +172,19 @@ requested<output> request_output(const output_request& r)
     if (!l || request_and_find(l, r.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0, fd) != 0)
         return {nullptr, failure()};
     return {std::make_unique<output_line>(std::move(c), l, fd), 0};
+}
+
+requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets)
+{
+    errno = 0;
+    chip_handle c(gpiod_chip_open(path.c_str()));
+    std::vector<unsigned> own = offsets; // the library does not write to them, but says that it may
+    const std::array<int, most_code_lines> off{};
+    gpiod_line_bulk lines{};
+    if (!c || gpiod_chip_get_lines(c.get(), own.data(), static_cast<unsigned>(own.size()), &lines) != 0 ||
+        gpiod_line_request_bulk_output(&lines, consumer, off.data()) != 0)
+        return {nullptr, failure()};
+    return {std::make_unique<bulk_lines>(std::move(c), lines), 0};
 }
 
 requested<edge_input> request_input(const input_request& r)

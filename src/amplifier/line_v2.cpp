@@ -2,8 +2,10 @@
 // libgpiod 2 (Debian 13).
 #include "amplifier/line.hpp"
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
+#include <span>
 
 #include <fcntl.h>
 #include <gpiod.h>
@@ -49,6 +51,21 @@ public:
 private:
     request_handle request_;
     unsigned offset_;
+};
+
+class bulk_lines final : public code_lines {
+public:
+    explicit bulk_lines(request_handle r) : request_(std::move(r)) {}
+    bool set(unsigned number) noexcept override
+    {
+        std::array<gpiod_line_value, most_code_lines> values{};
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = (number >> i & 1) != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
+        return gpiod_line_request_set_values(request_.get(), values.data()) == 0;
+    }
+
+private:
+    request_handle request_;
 };
 
 class input_line final : public edge_input {
@@ -99,16 +116,30 @@ gpiod_line_edge to_gpiod(edge_kind e) noexcept
 }
 
 // Returns null and sets errno if there is no such line or it is not available.
-request_handle request(const std::string& path, unsigned offset, gpiod_line_settings* s)
+request_handle request(const std::string& path, std::span<const unsigned> offsets, gpiod_line_settings* s)
 {
     errno = 0;
     const chip_handle c(gpiod_chip_open(path.c_str()));
     const line_config lines(gpiod_line_config_new());
     const request_config by(gpiod_request_config_new());
-    if (!c || !lines || !by || gpiod_line_config_add_line_settings(lines.get(), &offset, 1, s) != 0)
+    if (!c || !lines || !by ||
+        gpiod_line_config_add_line_settings(lines.get(), offsets.data(), offsets.size(), s) != 0)
         return nullptr;
     gpiod_request_config_set_consumer(by.get(), consumer);
     return request_handle(gpiod_chip_request_lines(c.get(), by.get(), lines.get()));
+}
+
+// The same for outputs, which are off.
+request_handle request_outputs(const std::string& path, std::span<const unsigned> offsets, bool active_low)
+{
+    errno = ENOMEM;
+    const settings_handle s(gpiod_line_settings_new());
+    if (!s)
+        return nullptr;
+    gpiod_line_settings_set_direction(s.get(), GPIOD_LINE_DIRECTION_OUTPUT);
+    gpiod_line_settings_set_active_low(s.get(), active_low);
+    gpiod_line_settings_set_output_value(s.get(), GPIOD_LINE_VALUE_INACTIVE);
+    return request(path, offsets, s.get());
 }
 
 } // namespace
@@ -142,16 +173,18 @@ chip read_chip(const std::string& path)
 
 requested<output> request_output(const output_request& r)
 {
-    const settings_handle s(gpiod_line_settings_new());
-    if (!s)
-        return {nullptr, ENOMEM};
-    gpiod_line_settings_set_direction(s.get(), GPIOD_LINE_DIRECTION_OUTPUT);
-    gpiod_line_settings_set_active_low(s.get(), r.active_low);
-    gpiod_line_settings_set_output_value(s.get(), GPIOD_LINE_VALUE_INACTIVE);
-    request_handle h = request(r.path, r.offset, s.get());
+    request_handle h = request_outputs(r.path, {&r.offset, 1}, r.active_low);
     if (!h)
         return {nullptr, failure()};
     return {std::make_unique<output_line>(std::move(h), r.offset), 0};
+}
+
+requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets)
+{
+    request_handle h = request_outputs(path, offsets, false);
+    if (!h)
+        return {nullptr, failure()};
+    return {std::make_unique<bulk_lines>(std::move(h)), 0};
 }
 
 requested<edge_input> request_input(const input_request& r)
@@ -164,7 +197,7 @@ requested<edge_input> request_input(const input_request& r)
     gpiod_line_settings_set_edge_detection(s.get(), to_gpiod(r.edge));
     gpiod_line_settings_set_bias(s.get(), to_gpiod(r.bias));
     gpiod_line_settings_set_event_clock(s.get(), GPIOD_LINE_CLOCK_MONOTONIC);
-    request_handle h = request(r.path, r.offset, s.get());
+    request_handle h = request(r.path, {&r.offset, 1}, s.get());
     if (!h)
         return {nullptr, failure()};
     // Does not use the kernel's debounce: it stamps an edge when the line has settled, not when it came.

@@ -71,6 +71,21 @@ bool set_output(void* line, bool on) noexcept
 }
 
 } // namespace
+
+std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::vector<unsigned>& offsets,
+                                            const source_place& where)
+{
+    gpio_line_name wanted{.chip = chip, .where = where};
+    gpio_line_place at;
+    for (const unsigned offset : offsets) {
+        wanted.offset = offset;
+        at = look_up(wanted);
+        if (!at.line.consumer.empty()) // the request of all would not say which line is busy
+            break;
+    }
+    return take(request_code(at.path, offsets), wanted, at);
+}
+
 } // namespace tactor::amplifier
 
 namespace tactor {

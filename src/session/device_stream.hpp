@@ -126,6 +126,14 @@ public:
     /// Lends the lines to one player at a time. `proof_s`: as player_lines.
     player_lines lend(double proof_s = 0.0) const;
 
+    /// Replaces the line of sync pulses by what `change` makes of it (null: there is none), before the lines
+    /// are lent. `pulse_s`: as player_lines.
+    template <class Change>
+    void change_sync(const Change& change, double pulse_s)
+    {
+        state_->own.sync_out = change(std::move(state_->own.sync_out));
+        state_->own.pulse_s = pulse_s;
+    }
     /// Calls `f`, which must not throw, when the amplifier has gone on or off, in the thread that switches.
     void on_switch(std::function<void()> f) { state_->switched = std::move(f); }
     /// Returns what the line was switched to. Any thread.
