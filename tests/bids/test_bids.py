@@ -24,12 +24,12 @@ class Folders(ExperimentTest):
         self.assertEqual(said.returncode != 0, bool(errors), said.stderr)
         return errors, {i["key"] for i in told["issues"]["warnings"]}, told["summary"]
 
-    def valid(self, subjects, warned=()):
+    def valid(self, subjects, warned=(), more=()):
         errors, warnings, summary = self.issues()
         self.assertEqual(errors, {})
         self.assertEqual(warnings - HARMLESS, set(warned))
         self.assertEqual(summary["subjects"], subjects)
-        self.assertEqual(summary["dataTypes"], ["beh"])
+        self.assertEqual(summary["dataTypes"], ["beh", *more])
         return summary
 
     def test_two_participants_of_the_paper_s_experiment(self):
@@ -86,6 +86,13 @@ class Folders(ExperimentTest):
         self.assertEqual(self.valid(["01", "02"], ["MISSING_SESSION"])["sessions"], ["1", "2"])
         self.simulate("02", "--session", "2", definition="two.toml")
         self.valid(["01", "02"])
+
+    def test_events_of_codes(self):
+        self.write("array.toml", '[array]\npreset = "palm-3x3"\n[sync]\ncode = { channel = 15 }\n')
+        for code in ("01", "02"):
+            self.simulate(code, "--array", "array.toml", spec="seed=2,void=0.3")
+        self.assertEqual(len(list((self.dir / "study").glob("sub-*/beh/*_events.tsv"))), 6)
+        self.valid(["01", "02"], more=["events"])
 
     def test_the_validator_finds_faults(self):
         self.simulate("01")

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
-   What tactor.lsl calls of liblsl, which prints what it is told to the file in $STAND_IN_LSL. Its clock runs 1000 s ahead. */
+   What tactor.lsl and tactor experiment call of liblsl, which prints what it is told to the file in $STAND_IN_LSL. Its clock runs 1000 s ahead. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -30,6 +30,13 @@ void* lsl_create_outlet(void* info, int chunk, int buffered)
 int lsl_push_sample_strtp(void* outlet, const char** sample, double at, int through)
 {
     fprintf(outlet, "%.9f %d %s\n", at, through, sample[0]);
+    fflush(outlet);
+    return 0;
+}
+
+int lsl_push_sample_itp(void* outlet, const int* sample, double at, int through)
+{
+    fprintf(outlet, "%.9f %d %d\n", at, through, sample[0]);
     fflush(outlet);
     return 0;
 }

@@ -3,19 +3,33 @@
 #include "study/session/stage.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <functional>
+#include <limits>
+#include <memory>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include "caught.hpp"
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
+#include "folder.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 #include "sink/alsa/pcm_sink.hpp"
+#include "study/bids/session_store.hpp"
+#include "study/bids/study_folder.hpp"
+#include "study/data/text_table.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
+#include "study/session/experiment_session.hpp"
+#include "study/session/sync_codes.hpp"
+#include "synth/score/joined.hpp"
 
 namespace stage_test {
 
@@ -326,6 +340,179 @@ TEST_CASE("noise that stands still makes it void; noise whose device is gone is 
     CHECK(headphones.size() == 2);
     s.there.finish();
     clocks.clear();
+}
+
+namespace {
+
+// The array's eight tactors leave a channel for the codes.
+const char* coded_array = R"(
+[array]
+name = "eight"
+grid = { rows = 2, columns = 4, pitch_mm = 20.0 }
+[sync]
+code = { channel = 8, bit_ms = 1.5 }
+[sync.codes]
+stimulus = 41
+)";
+
+// A session of `pairs` on an array file's text, without a device.
+struct coded_session {
+    folder files;
+    study::prepared_experiment p;
+    study::study_folder study_files;
+    study::session_store store;
+
+    explicit coded_session(const std::string& array_text)
+        : p(prepare(array_text)),
+          study_files(files / "study", p.definition, "01", true),
+          store(study_files, {&p.definition.runs[0]}, study::describe_session(p, {}, ""), false)
+    {
+        store.begin(p.stimuli.all(), study::describe_events(p));
+    }
+
+    study::prepared_experiment prepare(const std::string& array_text)
+    {
+        session::settings s;
+        s.config_file = files.write("none.toml", "").string();
+        s.array_name = files.write("array.toml", array_text).string();
+        return study::prepare({files.write("pairs.toml", pairs).string(), "01", 1, study::audience::nobody},
+                              s);
+    }
+};
+
+std::string refusal(const std::string& from, const std::string& to)
+{
+    std::string text = coded_array;
+    text.replace(text.find(from), from.size(), to);
+    const std::string why = caught_message([&] { coded_session{text}; });
+    return why.substr(why.find("array.toml"));
+}
+
+} // namespace
+
+TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its number")
+{
+    coded_session c(coded_array);
+    fake_dac dac;
+    study::stage there(nine(), {}, c.p.where, set_up::source(dac));
+    const running_clock clock(dac, running_clock::capture_kind::kept);
+    study::sync_codes codes(c.p, c.store, &there, nullptr);
+    const study::planned_trial t{0, 1, 0};
+    const study::session_step step{study::step_kind::trial, 0, 0, false, {1, 1}};
+    const study::session_step practice{study::step_kind::trial, 0, 0, true, {1, 1}}; // has no codes
+    CHECK(codes.give(c.p.stimuli.make_score(t), practice, t, nobody).frames == c.p.stimuli.frames(t));
+    codes.send(study::code_event::answer, practice, t);
+    std::uint64_t latest = 0;
+    const study::given_stimulus g =
+        codes.give(c.p.stimuli.make_score(t), step, t, [&](std::uint64_t frame) { latest = frame; });
+    codes.send(study::code_event::answer, step, t);
+    codes.send(study::code_event::made_void, step, t);
+    REQUIRE(g.flaw.empty());
+    CHECK(latest <= c.p.stimuli.frames(t));
+    CHECK(g.frames == c.p.stimuli.frames(t));
+
+    const std::vector<std::byte> all = dac.captured();
+    const auto sample = [&](std::uint64_t at, std::size_t channel) {
+        std::int32_t v = 0;
+        std::memcpy(&v, all.data() + at * frame + channel * 4, 4);
+        return v;
+    };
+    // Decodes as an amplifier would: after a rise, each bit in its middle.
+    std::vector<std::pair<unsigned, std::uint64_t>> heard;
+    constexpr std::uint64_t bit = 72;
+    for (std::uint64_t at = 0; at + 9 * bit < all.size() / frame; ++at) {
+        if (sample(at, 8) == 0)
+            continue;
+        CHECK(sample(at, 8) == 1 << 30);
+        unsigned number = 0;
+        for (unsigned i = 0; i < 8; ++i)
+            number |= sample(at + (i + 1) * bit + bit / 2, 8) > 0 ? 1U << i : 0U;
+        heard.emplace_back(number, at);
+        at += 9 * bit;
+    }
+    REQUIRE(heard.size() == 4);
+    CHECK(synth::make_code(c.p.stimuli.make_score(t), 8, bit, 1).starts().empty()); // no sync pulse
+    const std::uint64_t first = *g.first_frame;
+    CHECK(heard[0] == std::pair{42U, first - 9 * bit});
+    CHECK(heard[1] == std::pair{41U, first + c.p.stimuli.second(t) - 9 * bit});
+    CHECK(heard[2].first == 21);
+    CHECK(heard[3].first == 31);
+    for (const std::size_t method : {t.method_1, *t.method_2}) {
+        const study::stimulus& s = c.p.stimuli.at(0, method);
+        const std::uint64_t from = first + (method == t.method_1 ? 0 : c.p.stimuli.second(t));
+        CHECK(part(all, from * frame, s.frames * frame) ==
+              rendered(score(c.p.where.tactors, s.plan, s.render), format_kind::s32));
+    }
+
+    study::run_table table(c.store, c.p.definition.runs[0], false);
+    study::trial_row row = study::planned_row(c.p, t, {1, 1});
+    row.stream = 1;
+    row.frame_1 = first;
+    table.add(row, 0, rate);
+    codes.write(c.p.definition.runs[0], row, table);
+    const study::text_table events(c.files / "study/sub-01/beh/sub-01_task-r_events.tsv");
+    REQUIRE(events.rows() == heard.size());
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+        CHECK(events.need(i, "code") == std::to_string(heard[i].first));
+        CHECK(events.need(i, "frame") == std::to_string(heard[i].second));
+    }
+    CHECK(events.need(0, "onset") == "0.000000");
+    there.finish();
+}
+
+TEST_CASE("lines show the number of each pulse, another line along with it")
+{
+    std::vector<int> shown;
+    struct fake_lines : amplifier::code_lines {
+        explicit fake_lines(std::vector<int>& s) : shown(s) {}
+        bool set(unsigned n) noexcept override
+        {
+            shown.push_back(static_cast<int>(n));
+            return true;
+        }
+        std::vector<int>& shown;
+    };
+    struct fake_out : enable_line {
+        explicit fake_out(std::vector<int>& s) : shown(s) {}
+        bool set(bool on) noexcept override
+        {
+            shown.push_back(on ? -1 : -2);
+            return true;
+        }
+        std::vector<int>& shown;
+    };
+    {
+        study::coded_pulse pulse(std::make_unique<fake_lines>(shown), std::make_unique<fake_out>(shown));
+        CHECK(pulse.set(true));
+        pulse.expect(7, 9, std::numeric_limits<std::int64_t>::max());
+        CHECK(pulse.set(true));
+        CHECK(pulse.set(false));
+        pulse.expect(7, 9, 0);
+        CHECK(pulse.set(true));
+    }
+    CHECK(shown == std::vector<int>{0, -1, 7, -1, 0, -2, 9, -1, 0, -2});
+}
+
+TEST_CASE("codes that cannot be sent are refused by name before the session")
+{
+    CHECK(refusal("stimulus = 41", "stimulus = 255") ==
+          "array.toml:6:8: code: the stimulus's number of motion \"east\" by method \"b\" is 256, and 255 is "
+          "the "
+          "greatest (smaller numbers under [sync.codes], or fewer motions or methods)");
+    CHECK(
+        refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5]") ==
+        "array.toml:6:8: code: the stimulus's number of motion \"east\" by method \"a\" is 41, and 31 is the "
+        "greatest (more lines, or smaller numbers under [sync.codes])");
+    CHECK(refusal("bit_ms = 1.5", "bit_ms = 4") == "array.toml:6:8: code: it takes 0.036 s, and the gap "
+                                                   "between two stimuli is 0.0321 s (a longer gap_s in "
+                                                   "the definition, or a shorter bit_ms)");
+    std::string same = coded_array;
+    same.replace(same.find("41"), 2, "20");
+    const auto warnings = coded_session(same).p.warnings;
+    REQUIRE(!warnings.empty());
+    CHECK(warnings.back() ==
+          "[sync.codes]: the answer's number of motion \"east\" by method \"a\" is 20, which "
+          "another event has, too");
 }
 
 } // namespace stage_test

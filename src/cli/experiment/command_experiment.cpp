@@ -25,6 +25,7 @@
 #include "study/session/key_input.hpp"
 #include "study/session/person_session.hpp"
 #include "study/session/stage.hpp"
+#include "study/session/sync_codes.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -115,14 +116,15 @@ study::session_devices check_real_session(const study::prepared_experiment& p, c
     return devices;
 }
 
-// The array's device, and the noise's where one is named. \throws error.
+// The array's device, the noise's where one is named, and the lines of codes, which `lines` then points to.
+// \throws error.
 std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, const experiment_options& o,
-                                         const settings& s)
+                                         const settings& s, study::coded_pulse*& lines)
 {
     session::stream_options how = s.stream;
     how.reopen_s = patience_s;
     const alsa_options device = session::device_options(s, how, p.where, p.render.channels, p.render.rate);
-    auto there = std::make_unique<study::stage>(device, how, p.where);
+    auto there = std::make_unique<study::stage>(device, how, p.where, study::with_codes(how, p.where, lines));
     if (!o.masker.empty()) {
         study::masking_options noise = p.definition.masking.noise.value();
         noise.seed = fmt::format("{}/noise", study::session_seed(p.seed, p.definition, p.participant));
@@ -137,15 +139,23 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
                                              const settings& s, const study::session_devices& devices,
                                              net::owned_fd listening, study::session_store& store)
 {
-    const std::unique_ptr<study::stage> there = open_stage(p, o, s);
+    study::coded_pulse* lines = nullptr;
+    const std::unique_ptr<study::stage> there = open_stage(p, o, s, lines);
     std::optional<study::participant_page> page; // its thread has the signals blocked that the stage takes
     if (listening)
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
-    return study::until_interrupted(*there, [&] {
+    study::sync_codes codes(p, store, there.get(), lines);
+    const auto why = study::until_interrupted(*there, [&] {
         const study::answering with{page ? &*page : nullptr, o.keypads};
         const study::target_display display{can_draw(), show_target};
-        study::person_session(p, store, *there, with, display, devices).hold();
+        study::person_session(p, store, *there, with, display, devices, codes).hold();
     });
+    if (const player_stats now = there->stats(); lines != nullptr)
+        say(stderr,
+            "tactor: lines of codes: {} pulses (walk and practice too), {} missed, late by {:.3f} ms, at "
+            "worst {:.3f} ms\n",
+            now.sync_pulses, now.sync_missed, now.sync_mean_late_s * 1e3, now.sync_worst_late_s * 1e3);
+    return why;
 }
 
 // Plays the definition's noise, and its stimuli under it, by keys, until q or the end of the lines.
@@ -196,7 +206,8 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
 {
     static_cast<void>(check_real_session(p, o, s));
     const study::masking_options& noise = p.definition.masking.noise.value();
-    const std::unique_ptr<study::stage> there = open_stage(p, o, s);
+    study::coded_pulse* lines = nullptr;
+    const std::unique_ptr<study::stage> there = open_stage(p, o, s, lines);
     show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
                      to_string(noise.color), noise.level_dbfs, o.masker));
     const int signal = study::until_interrupted(*there, [&] { try_noise(p, *there); }).signal;
@@ -231,7 +242,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
             say(stderr, "tactor: warning: {}\n", what);
     study::stage::interruption why{0};
     if (o.simulate) {
-        store.begin(p.stimuli.all());
+        store.begin(p.stimuli.all(), study::describe_events(p));
         why.signal = study::simulate_session(p, *o.simulate, store);
     } else {
         why = hold_real_session(p, o, s, devices, std::move(listening), store);

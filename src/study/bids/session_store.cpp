@@ -119,13 +119,13 @@ void session_store::try_to_write() const
     std::vector<fs::path> files = folder_.list_files();
     std::erase_if(files, [](const fs::path& p) { return is_on_disk(p) && p.extension() != ".tsv"; });
     for (const run_definition* r : runs_)
-        files.push_back(table(*r));
+        files.push_back(facts_.contains("codes") ? event_table(*r) : table(*r)); // the longer name
     files.push_back(source_ / "session.json");
     for (const fs::path& file : files)
         study::try_to_write(file);
 }
 
-void session_store::begin(const std::vector<stimulus>& stimuli)
+void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& events)
 {
     begun_ = true;
     make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");
@@ -138,11 +138,22 @@ void session_store::begin(const std::vector<stimulus>& stimuli)
     if (!resumed_)
         write_whole(source_ / "session.json", json_text(facts_));
     folder_.describe();
+    for (const run_definition* r : runs_) {
+        const fs::path file = folder_.path() / fmt::format("task-{}_events.json", r->outline.file_name);
+        if (!events.is_null() && !is_on_disk(file))
+            write_whole(file, json_text(events));
+    }
 }
 
 fs::path session_store::table(const run_definition& r) const
 {
     return folder_.path() / table_path(folder_.code(), folder_.session(), r.outline);
+}
+
+fs::path session_store::event_table(const run_definition& r) const
+{
+    return table(r).parent_path() /
+           fmt::format("sub-{}_task-{}_events.tsv", folder_.code(), r.outline.file_name);
 }
 
 std::string session_store::scan_name(const run_definition& r) const
@@ -210,6 +221,11 @@ void session_store::append_practice(const run_definition& r, const trial_row& ro
     named_cells cells = make_cells(row, all);
     cells.insert(cells.begin(), {"run", r.outline.name});
     keep([&] { write_line(source_ / "practice.tsv", cells); });
+}
+
+void session_store::append_event(const run_definition& r, const named_cells& cells)
+{
+    keep([&] { write_line(event_table(r), cells); });
 }
 
 // Appends a line, or makes the table with it. Reads a table that this process did not write last, or that
@@ -293,8 +309,8 @@ void session_store::refuse_cut_lines() const
 std::vector<std::string> session_store::mend()
 {
     std::vector<std::string> done;
-    const auto cut = [&](const fs::path& file) {
-        const auto at = read_trials(file).cut_at();
+    const auto cut = [&](const fs::path& file, const text_table& t) {
+        const auto at = t.cut_at();
         if (at)
             done.push_back(fmt::format("{}: its last line was cut off: what is left of it is in {}",
                                        file.string(), cut_file(file, *at).string()));
@@ -307,8 +323,15 @@ std::vector<std::string> session_store::mend()
     for (const run_definition* r : runs_) {
         if (!is_on_disk(table(*r)))
             continue;
-        if (cut(table(*r)))
+        if (cut(table(*r), read_trials(table(*r))))
             folder_.ignore_cut_lines();
+        if (const fs::path file = event_table(*r); is_on_disk(file)) {
+            text_table t(file, last_line::may_be_cut);
+            if (t.is_open())
+                t.leave_out_last();
+            if (cut(file, t))
+                folder_.ignore_cut_lines();
+        }
         added = folder_.add_participant() || added;
         if (!acq_time(*r)) {
             folder_.add_scan(scan_name(*r), "n/a");
@@ -325,7 +348,7 @@ std::vector<std::string> session_store::mend()
     if (entered)
         note_lost(lost_scans, folder_.scans(), "a run");
     if (const fs::path practice = source_ / "practice.tsv"; is_on_disk(practice))
-        cut(practice);
+        cut(practice, read_trials(practice));
     return done;
 }
 

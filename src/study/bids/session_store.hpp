@@ -39,7 +39,8 @@ public:
     void try_to_write() const;
 
     /// Writes session.json and the files of the study unless they are there, and each plan under its hash.
-    void begin(const std::vector<stimulus>& stimuli);
+    /// `events`: the description of append_event()'s tables; null if there are none.
+    void begin(const std::vector<stimulus>& stimuli, const nlohmann::ordered_json& events = nullptr);
 
     /// Reads the tables as the analysis does. \throws error (bad_input) with file and line, and if a run has
     /// no table and a later one has.
@@ -65,6 +66,8 @@ public:
     /// \throws error (runtime): if the disk is full, after the line was written into the reserved room.
     void append(const run_definition& r, const trial_row& row, const std::string& acq_time);
     void append_practice(const run_definition& r, const trial_row& row);
+    /// Adds a line to the events of a run, sub-CODE_task-NAME_events.tsv, in the order of the cells.
+    void append_event(const run_definition& r, const named_cells& cells);
 
     /// Makes the run's last trial void, in a file written whole. \throws error (runtime).
     void make_last_void(const run_definition& r);
@@ -77,6 +80,7 @@ public:
 
 private:
     std::filesystem::path table(const run_definition& r) const;
+    std::filesystem::path event_table(const run_definition& r) const;
     std::string scan_name(const run_definition& r) const;
     void reserve();
     void release() noexcept;

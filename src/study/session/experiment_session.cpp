@@ -32,6 +32,7 @@
 #include "study/data/dataset.hpp"
 #include "study/experiment/adaptive.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/session/sync_codes.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
@@ -254,7 +255,11 @@ constexpr std::int64_t epoch_ns = 946684800LL * 1000000000LL;
 class simulated_session {
 public:
     simulated_session(const prepared_experiment& p, const simulation& s, session_store& store)
-        : p_(p), simulation_(s), store_(store), flow_(make_flow(p, store, false))
+        : p_(p),
+          simulation_(s),
+          store_(store),
+          codes_(p, store, nullptr, nullptr),
+          flow_(make_flow(p, store, false))
     {
     }
 
@@ -278,6 +283,8 @@ public:
             }
             const trial_row row = play(s, *who, find_trial(p_, s, store_));
             tables->at(s).add(row, utc_ns(now_), p_.render.rate);
+            note_codes(s, row);
+            codes_.write(p_.run_at(s.run), row, tables->at(s));
             pass(row);
             flow_.took(row.is_void);
         }
@@ -324,6 +331,7 @@ private:
         const run_definition& r = p_.run_at(s.run);
         if (r.animation)
             now_ += frames(p_.definition.motions[t.motion].drawn.motion.duration_s());
+        now_ += codes_.lead(s);
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
         trial_row row = planned_row(p_, t, s.which);
         row.stream = 1;
@@ -337,9 +345,20 @@ private:
         return row;
     }
 
+    void note_codes(const session_step& s, const trial_row& row)
+    {
+        if (s.practice)
+            return;
+        const planned_trial& t = find_trial(p_, s, store_);
+        codes_.note_stimuli(t, now_, p_.stimuli.frames(t), utc_ns(now_));
+        const std::uint64_t then = now_ + p_.stimuli.frames(t) + frames(row.response_time_s.value_or(0.0));
+        codes_.note(row.is_void ? code_event::made_void : code_event::answer, t, then, utc_ns(then));
+    }
+
     const prepared_experiment& p_;
     const simulation& simulation_;
     session_store& store_;
+    sync_codes codes_;
     session_flow flow_;
     session::interrupt stop_;
     std::uint64_t now_ = 0; ///< frame of the virtual stream
@@ -382,6 +401,9 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         doubts = calibration_doubts(r.participant, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+    if (const code_settings* const c = find_codes(e))
+        if (std::string same = check_codes(*c, d, stimuli, render.rate); !same.empty())
+            warnings.push_back(std::move(same));
     if (std::string words = missing_words(d); !words.empty() && r.who != audience::observer)
         warnings.push_back(std::move(words));
     if (assumed)
@@ -519,6 +541,8 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["thresholds_dbfs"] = thresholds;
     j["thresholds_assumed"] = p.assumed;
     j["calibration"] = calibration_facts(p);
+    if (const code_settings* const c = find_codes(p.where))
+        j["codes"] = code_facts(*c);
     j["rate"] = p.render.rate;
     j["channels"] = p.render.channels;
     j["masking"] = masking_facts(d.masking);
@@ -665,15 +689,19 @@ void run_table::add(trial_row row, std::int64_t started_ns, unsigned rate)
         first_frame_ = row.frame_1;
         began_ns_ = started_ns;
     }
-    // Exact within a stream; by the clock of the day over the gap between two streams.
-    if (row.frame_1 && first_frame_ && row.stream == first_stream_)
-        row.onset_s = static_cast<double>(*row.frame_1 - *first_frame_) / rate;
-    else if (row.frame_1 && began_ns_)
-        row.onset_s = std::max(0.0, static_cast<double>(started_ns - *began_ns_) * 1e-9);
+    if (row.frame_1 && (began_ns_ || (first_frame_ && row.stream == first_stream_)))
+        row.onset_s = onset_s(row.stream, *row.frame_1, started_ns, rate);
     if (practice_)
         store_.append_practice(run_, row);
     else
         store_.append(run_, row, acq_time_text(began_ns_.value_or(started_ns)));
+}
+
+double run_table::onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_ns, unsigned rate) const
+{
+    if (first_frame_ && stream == first_stream_)
+        return (static_cast<double>(frame) - static_cast<double>(*first_frame_)) / rate;
+    return std::max(0.0, static_cast<double>(at_ns - began_ns_.value_or(at_ns)) * 1e-9);
 }
 
 int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store)

@@ -132,6 +132,9 @@ public:
     /// Sets the onset and writes the line; it is on the disk when this returns. `started_ns` is
     /// CLOCK_REALTIME at the trial's first frame, or at its planned begin. \throws error (runtime).
     void add(trial_row row, std::int64_t started_ns, unsigned rate);
+    /// Returns the time of a frame since the run's first sample: exact within a stream; over the gap between
+    /// two streams by `at_ns`, its CLOCK_REALTIME. Call it after add().
+    double onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_ns, unsigned rate) const;
 
 private:
     session_store& store_;

@@ -175,13 +175,15 @@ unsigned choices_in(const run_definition& r)
 }
 
 person_session::person_session(const prepared_experiment& p, session_store& store, stage& s,
-                               const answering& with, target_display display, session_devices devices)
+                               const answering& with, target_display display, session_devices devices,
+                               sync_codes& codes)
     : p_(p),
       store_(store),
       stage_(s),
       page_(with.page),
       display_(std::move(display)),
       devices_(std::move(devices)),
+      codes_(codes),
       keys_(s, with),
       flow_(make_flow(p, store, true))
 {
@@ -214,7 +216,12 @@ void person_session::on_page(page_screen s)
 void person_session::step(const session_step& s)
 {
     if (s.what != step_kind::trial)
-        stage_.fade_out(); // noise through the run ends with it
+        stage_.fade_out();                           // noise through the run ends with it
+    if (const auto v = std::exchange(voided_, {})) { // not before, because something may have played
+        codes_.send(code_event::made_void, *v, find_trial(p_, *v, store_));
+        const trial_row row{.trial = v->which.trial, .attempt = v->which.attempt, .stream = stream_};
+        codes_.write(p_.run_at(v->run), row, tables_->trials);
+    }
     switch (s.what) {
     case step_kind::consent:
         return ask_consent();
@@ -460,7 +467,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
         if (!p_.definition.masking.through_run)
             noise.emplace(stage_);
         const auto mark = marks(s, t);
-        g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t frame) {
+        g = codes_.give(stimuli, s, t, [&](std::uint64_t frame) {
             mark(frame);
             if (!heed())
                 stage_.cancel();
@@ -500,17 +507,20 @@ void person_session::trial(const session_step& s)
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
+            codes_.send(code_event::answer, s, t);
             set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[*a.number - 1]) : *a.number,
                          a.time_s);
         }
     }
     row.is_void = !flaw.empty();
     if (row.is_void) {
+        codes_.send(code_event::made_void, s, t);
         session::show((s.practice ? "" : w["later"]) + "\n");
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     tables_->at(s).add(row, started_ns, p_.render.rate);
+    codes_.write(r, row, tables_->at(s));
     flow_.took(row.is_void);
     find_device();
 }
@@ -551,6 +561,7 @@ void person_session::void_last()
     store_.make_last_void(r);
     const trial_row row = store_.rows(r).back();
     tables_.emplace(store_, r);
+    voided_ = {{step_kind::trial, 0, flow_.void_run(), false, {row.trial, row.attempt}}};
     session::say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name,
                  row.trial);
 }
@@ -625,7 +636,7 @@ void person_session::begin_store()
     if (std::exchange(begun_, true))
         return;
     const std::string now = acq_time_text(rt::unix_ns());
-    store_.begin(p_.stimuli.all());
+    store_.begin(p_.stimuli.all(), describe_events(p_));
     if (store_.facts()["date"].is_null()) // new, or it ended before the date was written
         store_.note("date", now);
     if (!agreed_at_.empty())

@@ -20,6 +20,7 @@
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/stage.hpp"
+#include "study/session/sync_codes.hpp"
 
 namespace tactor::study {
 
@@ -43,7 +44,7 @@ class person_session {
 public:
     /// `with` has the participant's page (null: the terminal). All must live as long.
     person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
-                   target_display display, session_devices devices);
+                   target_display display, session_devices devices, sync_codes& codes);
 
     /// Holds the rest of the session. \throws stage::interruption; error (runtime): the participant did not
     /// agree or did not feel a tactor, no answer can come any more, the device did not come back, or the
@@ -91,11 +92,13 @@ private:
     participant_page* page_;
     target_display display_;
     session_devices devices_;
+    sync_codes& codes_;
     session_keys keys_;
     session_flow flow_;
     std::optional<run_tables> tables_ = {}; ///< of the present run
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
-    std::optional<unsigned> doubted_ = {}; ///< tactor whose first No offered it again
+    std::optional<unsigned> doubted_ = {};    ///< tactor whose first No offered it again
+    std::optional<session_step> voided_ = {}; ///< trial that the experimenter made void: its code is to come
     unsigned stream_ = 0;
     std::string agreed_at_ = {}; ///< time of the yes; empty: not asked
     bool begun_ = false;         ///< of the store

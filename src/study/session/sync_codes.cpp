@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+#include "study/session/sync_codes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/words.hpp"
+#include "rt/clock.hpp"
+#include "session/say.hpp"
+#include "synth/score/joined.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr std::array events{code_event::stimulus, code_event::answer, code_event::made_void};
+constexpr unsigned most_number = 255;
+
+std::uint64_t bit_frames(const code_settings& c, unsigned rate)
+{
+    return static_cast<std::uint64_t>(std::max(1LL, std::llround(c.bit_s * rate)));
+}
+
+std::string condition_text(const experiment_definition& d, std::size_t motion, std::size_t method)
+{
+    return fmt::format("motion \"{}\" by method \"{}\"", d.motions[motion].name, d.methods[method].name);
+}
+
+} // namespace
+
+std::string_view to_string(code_event e) noexcept
+{
+    return e == code_event::stimulus ? "stimulus" : e == code_event::answer ? "answer" : "void";
+}
+
+const code_settings* find_codes(const session::environment& e)
+{
+    return e.config.sync && e.config.sync->code ? &*e.config.sync->code : nullptr;
+}
+
+unsigned code_number(const code_settings& c, const experiment_definition& d, code_event e, std::size_t motion,
+                     std::size_t method)
+{
+    const unsigned first = e == code_event::stimulus ? c.stimulus
+                           : e == code_event::answer ? c.answer
+                                                     : c.made_void;
+    return first + static_cast<unsigned>(motion * d.methods.size() + method);
+}
+
+std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
+                        unsigned rate)
+{
+    const unsigned most = c.offsets.empty() ? most_number : (1U << c.offsets.size()) - 1;
+    std::set<unsigned> seen;
+    std::string warning;
+    for (const stimulus& s : all.all())
+        for (const code_event e : events) {
+            const unsigned n = code_number(c, d, e, s.motion, s.method);
+            const std::string of = fmt::format("the {}'s number of {} is {}", to_string(e),
+                                               condition_text(d, s.motion, s.method), n);
+            if (n > most)
+                throw error(
+                    error_kind::bad_input, c.where, fmt::format("code: {}, and {} is the greatest", of, most),
+                    most == most_number ? "smaller numbers under [sync.codes], or fewer motions or methods"
+                                        : "more lines, or smaller numbers under [sync.codes]");
+            if (!seen.insert(n).second && warning.empty())
+                warning = fmt::format("[sync.codes]: {}, which another event has, too", of);
+        }
+    const bool has_pairs =
+        std::ranges::any_of(d.runs, [](const auto& r) { return r.outline.task == task_kind::choose; });
+    const std::uint64_t lead = code_frames(c, rate);
+    if (has_pairs && d.gap_s * rate < static_cast<double>(lead))
+        throw error(error_kind::bad_input, c.where,
+                    fmt::format("code: it takes {:.4g} s, and the gap between two stimuli is {} s",
+                                static_cast<double>(lead) / rate, d.gap_s),
+                    "a longer gap_s in the definition, or a shorter bit_ms");
+    return warning;
+}
+
+std::uint64_t code_frames(const code_settings& c, unsigned rate)
+{
+    return c.channel ? synth::code_bits * bit_frames(c, rate) : 0;
+}
+
+nlohmann::ordered_json code_facts(const code_settings& c)
+{
+    nlohmann::ordered_json j{{"stimulus", c.stimulus}, {"answer", c.answer}, {"void", c.made_void}};
+    if (c.channel) {
+        j["channel"] = *c.channel;
+        j["bit_ms"] = c.bit_s * 1e3;
+    }
+    if (!c.offsets.empty())
+        j["lines"] = c.offsets;
+    return j;
+}
+
+nlohmann::ordered_json describe_events(const prepared_experiment& p)
+{
+    nlohmann::ordered_json j;
+    const code_settings* const c = find_codes(p.where);
+    if (c == nullptr)
+        return j;
+    const auto column = [&](const char* name, const char* text) { j[name]["Description"] = text; };
+    column("onset",
+           "Time of the event since the run's first sample at the DAC; of an answer, when the program "
+           "took it");
+    j["onset"]["Units"] = j["duration"]["Units"] = "s";
+    column("duration", "Duration of the stimulus; 0 for other events");
+    column("trial", "Trial of the run's table");
+    column("attempt", "Attempt of the run's table");
+    column("event", "What happened");
+    j["event"]["Levels"] = {{"stimulus", "a stimulus began"},
+                            {"answer", "the participant answered"},
+                            {"void", "the trial was made void"}};
+    column("code", "Number that was sent");
+    for (const code_event e : events)
+        for (const stimulus& s : p.stimuli.all())
+            j["code"]["Levels"][fmt::format("{}", code_number(*c, p.definition, e, s.motion, s.method))] =
+                fmt::format("{}, {}", to_string(e), condition_text(p.definition, s.motion, s.method));
+    column("frame", c->channel ? "Frame of the stream at which the start bit begins; the code ends where the "
+                                 "stimulus begins, frame_1 or frame_2 of the run's table"
+                               : "Frame of the stream at which the lines switch");
+    return j;
+}
+
+void coded_pulse::expect(unsigned first, unsigned second, std::int64_t second_from_ns) noexcept
+{
+    first_ = first;
+    second_ = second;
+    second_from_ns_ = second_from_ns;
+}
+
+bool coded_pulse::set(bool on) noexcept
+{
+    const unsigned due = rt::monotonic_ns() < second_from_ns_ ? first_ : second_;
+    const bool done = lines_->set(on ? due : 0);
+    return (!out_ || out_->set(on)) && done;
+}
+
+session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
+                                  coded_pulse*& lines)
+{
+    return [&o, &e, &lines](session::stream_parts& p) {
+        const code_settings* const c = find_codes(e);
+        if (c == nullptr || c->offsets.empty() || o.no_gpio)
+            return;
+        auto own = amplifier::open_code_lines(c->chip, c->offsets, c->where);
+        p.lines.change_sync(
+            [&](std::unique_ptr<enable_line> out) {
+                auto pulse = std::make_unique<coded_pulse>(std::move(own), std::move(out));
+                lines = pulse.get();
+                return pulse;
+            },
+            c->pulse_s);
+    };
+}
+
+sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage* there, coded_pulse* lines)
+    : p_(p), store_(store), there_(there), lines_(lines), code_(find_codes(p.where))
+{
+    if (code_ == nullptr)
+        return;
+    lead_ = code_frames(*code_, p.render.rate);
+    if (code_->lsl && there != nullptr)
+        lsl_.emplace("tactor-" + p.participant);
+    if (there != nullptr && !code_->channel && lines == nullptr && !lsl_)
+        code_ = nullptr; // lines that are left alone
+}
+
+unsigned sync_codes::number(code_event e, const planned_trial& t, std::size_t method) const
+{
+    return code_number(*code_, p_.definition, e, t.motion, method);
+}
+
+score sync_codes::make(unsigned number) const
+{
+    const stimulus& any = p_.stimuli.all().front();
+    const score like(p_.where.tactors, any.plan, any.render);
+    return synth::make_code(like, code_->channel.value(), bit_frames(*code_, p_.render.rate), number);
+}
+
+given_stimulus sync_codes::give(const score& stimuli, const session_step& s, const planned_trial& t,
+                                const stage::watcher& watch)
+{
+    const std::uint64_t lead = this->lead(s);
+    const bool sends = code_ != nullptr && !s.practice;
+    const unsigned first = sends ? number(code_event::stimulus, t, t.method_1) : 0;
+    const unsigned second = sends ? number(code_event::stimulus, t, t.method_2.value_or(t.method_1)) : 0;
+    std::vector<synth::placed_score> parts{{stimuli, lead}};
+    if (lead > 0)
+        parts.push_back({make(first), 0});
+    if (lead > 0 && t.method_2)
+        parts.push_back({make(second), p_.stimuli.second(t)});
+    const double rate = p_.render.rate;
+    if (lines_ != nullptr) {
+        there_->fade_in(); // now, because it takes a time that nobody knows
+        // Between the starts of both stimuli there is time enough for a late pulse.
+        const double until_s = stimulus_lead_s + (t.method_2 ? p_.stimuli.second(t) / 2.0 / rate : 0.0) +
+                               there_->setup().buffer_frames / rate;
+        lines_->expect(first, second, rt::monotonic_ns() + std::llround(until_s * 1e9));
+    }
+    const std::uint64_t missed = there_->stats().sync_missed;
+    given_stimulus g = there_->give(lead > 0 ? synth::join_scores(parts) : stimuli,
+                                    stimulus_lead_s - static_cast<double>(lead) / rate,
+                                    [&](std::uint64_t frame) { watch(frame - std::min(frame, lead)); });
+    g.frames -= std::min(g.frames, lead);
+    g.started_ns += std::llround(static_cast<double>(lead) / rate * 1e9);
+    if (g.first_frame)
+        g.first_frame = g.frames > 0 || lead == 0 ? std::optional(*g.first_frame + lead) : std::nullopt;
+    if (sends && g.first_frame)
+        note_stimuli(t, *g.first_frame, g.frames, rt::unix_ns() - (rt::monotonic_ns() - g.started_ns));
+    if (lines_ != nullptr && there_->stats().sync_missed != missed)
+        session::say(stderr, "tactor: {}: trial {}: the lines came too late for a code and did not send it\n",
+                     p_.run_at(s.run).outline.name, s.which.trial);
+    return g;
+}
+
+void sync_codes::send(code_event e, const session_step& s, const planned_trial& t)
+{
+    if (code_ == nullptr || s.practice || there_->lost())
+        return;
+    const unsigned n = number(e, t, t.method_1);
+    sent code{e, n, there_->position().played, there_->position().played, rt::unix_ns(), 0};
+    const auto over = std::chrono::steady_clock::now() + std::chrono::duration<double>(code_->pulse_s);
+    if (lines_ != nullptr && !lines_->show(n))
+        session::say(stderr, "tactor: the lines did not take a code\n");
+    bool is_sent = true;
+    if (code_->channel) {
+        code.frame += there_->setup().buffer_frames;
+        const auto gone = there_->submit(make(n), start_at::frame(code.frame));
+        const stroke_report r = gone ? *gone : there_->follow();
+        is_sent = r.state == state_kind::finished;
+        code.frame += static_cast<std::uint64_t>(std::llround(r.late_s * p_.render.rate));
+    }
+    if (lines_ != nullptr) {
+        std::this_thread::sleep_until(over);
+        lines_->show(0);
+    }
+    if (is_sent)
+        note(code);
+}
+
+void sync_codes::note_stimuli(const planned_trial& t, std::uint64_t frame_1, std::uint64_t frames,
+                              std::int64_t ns)
+{
+    if (code_ == nullptr)
+        return;
+    const stimulus_set& all = p_.stimuli;
+    note({code_event::stimulus, number(code_event::stimulus, t, t.method_1), frame_1 - lead_, frame_1, ns,
+          all.at(t.motion, t.method_1).frames});
+    if (!t.method_2 || frames <= all.second(t))
+        return;
+    const std::uint64_t frame_2 = frame_1 + all.second(t);
+    const auto later = std::llround(static_cast<double>(all.second(t)) / p_.render.rate * 1e9);
+    note({code_event::stimulus, number(code_event::stimulus, t, *t.method_2), frame_2 - lead_, frame_2,
+          ns + later, all.at(t.motion, *t.method_2).frames});
+}
+
+void sync_codes::note(code_event e, const planned_trial& t, std::uint64_t frame, std::int64_t ns)
+{
+    if (code_ != nullptr)
+        note({e, number(e, t, t.method_1), frame, frame, ns, 0});
+}
+
+void sync_codes::note(const sent& s)
+{
+    if (lsl_)
+        lsl_->push(s.number, s.at_ns);
+    noted_.push_back(s);
+}
+
+void sync_codes::write(const run_definition& r, const trial_row& trial, const run_table& table)
+{
+    for (const sent& s : std::exchange(noted_, {}))
+        store_.append_event(
+            r, {{"onset",
+                 fmt::format("{:.6f}", table.onset_s(trial.stream, s.at_frame, s.at_ns, p_.render.rate))},
+                {"duration", fmt::format("{:.6f}", static_cast<double>(s.frames) / p_.render.rate)},
+                {"trial", fmt::format("{}", trial.trial)},
+                {"attempt", fmt::format("{}", trial.attempt)},
+                {"event", std::string(to_string(s.event))},
+                {"code", fmt::format("{}", s.number)},
+                {"frame", fmt::format("{}", s.frame)}});
+}
+
+} // namespace tactor::study

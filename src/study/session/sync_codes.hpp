@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Numbers that mark the stimuli, answers and void trials of a session for an EEG amplifier: as pulse codes
+/// on a spare channel, on GPIO lines, in the Lab Streaming Layer; and as lines of the events of a run.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <tactor/lines.hpp>
+#include <tactor/render.hpp>
+#include <tactor/setup.hpp>
+
+#include "amplifier/line.hpp"
+#include "session/environment.hpp"
+#include "study/bids/session_store.hpp"
+#include "study/experiment/trials.hpp"
+#include "study/session/experiment_session.hpp"
+#include "study/session/lsl_markers.hpp"
+#include "study/session/stage.hpp"
+
+namespace tactor::study {
+
+enum class code_event { stimulus, answer, made_void };
+std::string_view to_string(code_event e) noexcept;
+
+/// Returns the configuration's [sync] code; null: there is none.
+const code_settings* find_codes(const session::environment& e);
+
+/// Returns the number of an event: that of the first condition, plus the place of this one, motion by motion.
+unsigned code_number(const code_settings& c, const experiment_definition& d, code_event e, std::size_t motion,
+                     std::size_t method);
+
+/// Checks the numbers of all conditions before a session. Returns a warning if two events have one number.
+/// \throws error (bad_input) at the place of [sync] code: a number above 255, or with more bits than there
+///         are lines, or a gap between stimuli that is shorter than a code.
+std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
+                        unsigned rate);
+
+/// Returns the frames that a code on the channel takes before its event; 0 without a channel.
+std::uint64_t code_frames(const code_settings& c, unsigned rate);
+
+/// Returns what session.json has of the codes.
+nlohmann::ordered_json code_facts(const code_settings& c);
+/// Returns the description of the tables of events, with each number and its meaning; null without codes.
+nlohmann::ordered_json describe_events(const prepared_experiment& p);
+
+/// The lines of the codes as a line of sync pulses: each pulse shows the number that is due, and switches
+/// another line along, if any.
+class coded_pulse final : public enable_line {
+public:
+    coded_pulse(std::unique_ptr<amplifier::code_lines> lines, std::unique_ptr<enable_line> out)
+        : lines_(std::move(lines)), out_(std::move(out))
+    {
+    }
+    ~coded_pulse() override { static_cast<void>(coded_pulse::set(false)); }
+
+    /// Sets the number of the next pulses, and another one from a time of CLOCK_MONOTONIC on; 0: none.
+    void expect(unsigned first, unsigned second, std::int64_t second_from_ns) noexcept;
+    bool set(bool on) noexcept override;
+    /// Shows a number at once, or none.
+    bool show(unsigned number) noexcept { return lines_->set(number); }
+
+private:
+    std::unique_ptr<amplifier::code_lines> lines_;
+    std::unique_ptr<enable_line> out_;
+    std::atomic<unsigned> first_{0};
+    std::atomic<unsigned> second_{0};
+    std::atomic<std::int64_t> second_from_ns_{0};
+};
+
+/// Returns a source that opens the lines of the codes beside those of the stream, and sets `lines` to them;
+/// they live as long as the stream. `o` and `e` must live until it is called.
+session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
+                                  coded_pulse*& lines);
+
+/// The codes of one session; those of practice are not sent. Does nothing without [sync] code.
+class sync_codes {
+public:
+    /// Without a stage nothing is sent, and the caller says when. `lines` may be null. All must live as long.
+    sync_codes(const prepared_experiment& p, session_store& store, stage* there, coded_pulse* lines);
+
+    /// Returns the frames that the code before a stimulus takes.
+    std::uint64_t lead(const session_step& s) const { return code_ && !s.practice ? lead_ : 0; }
+
+    /// Plays a trial's stimuli as stage::give() does, with their codes before them. The record is that of the
+    /// stimuli alone. Throws as that.
+    given_stimulus give(const score& stimuli, const session_step& s, const planned_trial& t,
+                        const stage::watcher& watch);
+    /// Sends the code of an event that is now: on the lines at once, on the channel after the buffer. Blocks
+    /// until it is sent.
+    void send(code_event e, const session_step& s, const planned_trial& t);
+
+    /// Notes the codes of stimuli that began at a frame, of which so many frames were played.
+    void note_stimuli(const planned_trial& t, std::uint64_t frame_1, std::uint64_t frames, std::int64_t ns);
+    /// Notes the code of an event at a frame. `ns`: its CLOCK_REALTIME.
+    void note(code_event e, const planned_trial& t, std::uint64_t frame, std::int64_t ns);
+    /// Writes what was noted as events of the trial. \throws error (runtime).
+    void write(const run_definition& r, const trial_row& trial, const run_table& table);
+
+private:
+    struct sent {
+        code_event event;
+        unsigned number;
+        std::uint64_t frame;    ///< at which the code begins
+        std::uint64_t at_frame; ///< of the event itself
+        std::int64_t at_ns;     ///< CLOCK_REALTIME
+        std::uint64_t frames;   ///< length of the event
+    };
+    unsigned number(code_event e, const planned_trial& t, std::size_t method) const;
+    score make(unsigned number) const;
+    void note(const sent& s);
+
+    const prepared_experiment& p_;
+    session_store& store_;
+    stage* there_;
+    coded_pulse* lines_;
+    const code_settings* code_;
+    std::uint64_t lead_ = 0;
+    std::optional<lsl_markers> lsl_ = {};
+    std::vector<sent> noted_ = {};
+};
+
+} // namespace tactor::study
