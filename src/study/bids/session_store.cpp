@@ -152,8 +152,9 @@ fs::path session_store::table(const run_definition& r) const
 
 fs::path session_store::event_table(const run_definition& r) const
 {
-    return table(r).parent_path() /
-           fmt::format("sub-{}_task-{}_events.tsv", folder_.code(), r.outline.file_name);
+    const fs::path file = table(r);
+    const std::string name = file.filename().string();
+    return file.parent_path() / (name.substr(0, name.rfind('_')) + "_events.tsv");
 }
 
 std::string session_store::scan_name(const run_definition& r) const

@@ -114,6 +114,12 @@ struct run_outline {
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
 
+/// Tests whether a trial of the run has two stimuli.
+inline bool has_pairs(const run_outline& run) noexcept
+{
+    return run.task == task_kind::choose || run.task == task_kind::same_different || run.standard;
+}
+
 /// Greatest number that a participant may give in a run that estimates.
 inline constexpr unsigned most_estimate = 999;
 

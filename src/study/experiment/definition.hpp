@@ -41,12 +41,13 @@ struct method_definition {
     options::wishes options = {};     ///< options that it gives, and defaults
     std::optional<stroke> drawn = {}; ///< stroke in place of the motion's
     source_place where = {};
-    std::optional<double> value = {}; ///< of a run that varies one; see variation.hpp
+    std::optional<std::size_t> made_of =
+        {};                           ///< method of which a run made it: variation.hpp; none: it stands there
+    std::optional<double> value = {}; ///< of a run that varies one
     std::string vary = {};            ///< stroke parameter that has it; empty: an option has
     bool silent = false;              ///< nothing is played, for as long
 
-    /// Returns true if a run made it of a method of the definition.
-    bool is_variant() const noexcept { return value.has_value() || silent; }
+    bool is_variant() const noexcept { return made_of.has_value(); }
     /// Returns true if its level, in options.render, replaces the experiment's.
     bool has_level() const { return options.gives("level_dbfs") || options.gives("sl"); }
 };

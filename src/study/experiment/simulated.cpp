@@ -61,15 +61,6 @@ std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
     return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
 }
 
-// Returns the place in a run's methods of the one that was played, or of which it was made.
-std::size_t own_method(const run_definition& r, std::size_t played)
-{
-    for (const auto& [method, v] : r.variants)
-        if (v.standard == played || v.silent == played || std::ranges::count(v.values, played) != 0)
-            return place_in(r.methods, method);
-    return place_in(r.methods, played);
-}
-
 // Prepares a run for n participants, without their answers.
 std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
                                        const std::optional<std::uint64_t>& seed)
@@ -83,9 +74,9 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
             trial one;
             one.place = static_cast<unsigned>(p.trials.size() + 1);
             one.motion = place_in(r.motions, t.motion);
-            one.method_1 = own_method(r, t.method_1);
+            one.method_1 = place_in(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
             if (t.method_2)
-                one.method_2 = own_method(r, *t.method_2);
+                one.method_2 = place_in(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
             if (d.methods[t.method_1].name == standard_name)
                 one.method_1 = one.method_2;
             one.signal = r.outline.task == task_kind::same_different ? t.method_1 != t.method_2

@@ -198,20 +198,11 @@ std::size_t count_blocks(const run_definition& r)
     return r.blocks == "methods" ? r.methods.size() : r.blocks == "motions" ? r.motions.size() : 1;
 }
 
-// Tests whether a method is made of another for the run.
-bool has_variant(const run_definition& r, std::size_t method, std::size_t variant)
-{
-    const auto there = r.variants.find(method);
-    if (there == r.variants.end())
-        return false;
-    const method_variants& v = there->second;
-    return v.standard == variant || v.silent == variant || std::ranges::count(v.values, variant) != 0;
-}
-
-bool is_in_block(const planned_trial& t, const run_definition& r, std::size_t i)
+bool is_in_block(const experiment_definition& d, const planned_trial& t, const run_definition& r,
+                 std::size_t i)
 {
     if (r.blocks == "methods")
-        return t.method_1 == r.methods[i] || has_variant(r, r.methods[i], t.method_1);
+        return d.methods[t.method_1].made_of.value_or(t.method_1) == r.methods[i];
     return r.blocks.empty() || t.motion == r.motions[i];
 }
 
@@ -396,7 +387,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
          make_order(d.order, count_blocks(r), own_row / runs + own_row % runs, numbers)) {
         std::vector<planned_trial> block;
         std::ranges::copy_if(drawn, std::back_inserter(block),
-                             [&](const planned_trial& t) { return is_in_block(t, r, i); });
+                             [&](const planned_trial& t) { return is_in_block(d, t, r, i); });
         shuffle_block(block, r, numbers);
         s.trials.insert(s.trials.end(), block.begin(), block.end());
     }

@@ -208,7 +208,8 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
                    std::vector<method_definition>& more)
 {
     const run_outline& o = r.outline;
-    const auto add = [&](method_definition m) {
+    const auto add = [&](method_definition m, std::size_t made_of) {
+        m.made_of = made_of;
         more.push_back(std::move(m));
         return methods.size() + more.size() - 1;
     };
@@ -232,13 +233,13 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
         method_variants& v = r.variants[i];
         for (const double value : o.values)
             v.values.push_back(
-                add(vary(methods[i], value, r.outline.task == task_kind::adaptive ? "range" : "values")));
+                add(vary(methods[i], value, r.outline.task == task_kind::adaptive ? "range" : "values"), i));
         if (o.standard) {
-            v.standard = add(vary(methods[i], *o.standard, "standard"));
+            v.standard = add(vary(methods[i], *o.standard, "standard"), i);
             more.back().name = standard_name;
         }
         if (o.catches) {
-            v.silent = add(methods[i]);
+            v.silent = add(methods[i], i);
             more.back().name = catch_name;
             more.back().silent = true;
         }

@@ -78,13 +78,6 @@ std::string choices_text(const experiment_definition& d, const run_definition& r
     return text;
 }
 
-// Tests whether a trial of the run has two stimuli.
-bool has_pairs(const run_definition& r)
-{
-    const task_kind task = r.outline.task;
-    return task == task_kind::choose || task == task_kind::same_different || r.outline.standard;
-}
-
 // Tests whether an answer names one of two stimuli.
 bool asks_which(const run_definition& r)
 {
@@ -135,7 +128,7 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 {
     const run_definition& r = p.run_at(s.run);
     page_screen shown = idle_screen(p, "stimulus");
-    shown.stimuli = has_pairs(r) ? 2 : 0;
+    shown.stimuli = has_pairs(r.outline) ? 2 : 0;
     if (asks_which(r))
         shown.names = r.choices;
     shown.playing = playing;

@@ -52,7 +52,9 @@ unsigned code_number(const code_settings& c, const experiment_definition& d, cod
     const unsigned first = e == code_event::stimulus ? c.stimulus
                            : e == code_event::answer ? c.answer
                                                      : c.made_void;
-    return first + static_cast<unsigned>(motion * d.methods.size() + method);
+    const auto methods =
+        static_cast<std::size_t>(std::ranges::count(d.methods, false, &method_definition::is_variant));
+    return first + static_cast<unsigned>(motion * methods + d.methods[method].made_of.value_or(method));
 }
 
 std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
@@ -61,11 +63,15 @@ std::string check_codes(const code_settings& c, const experiment_definition& d, 
     const unsigned most = c.offsets.empty() ? most_number : (1U << c.offsets.size()) - 1;
     std::set<unsigned> seen;
     std::string warning;
-    for (const stimulus& s : all.all())
+    std::set<std::pair<std::size_t, std::size_t>> conditions;
+    for (const stimulus& s : all.all()) {
+        const std::size_t method = d.methods[s.method].made_of.value_or(s.method);
+        if (!conditions.emplace(s.motion, method).second)
+            continue;
         for (const code_event e : events) {
-            const unsigned n = code_number(c, d, e, s.motion, s.method);
+            const unsigned n = code_number(c, d, e, s.motion, method);
             const std::string of = fmt::format("the {}'s number of {} is {}", to_string(e),
-                                               condition_text(d, s.motion, s.method), n);
+                                               condition_text(d, s.motion, method), n);
             if (n > most)
                 throw error(
                     error_kind::bad_input, c.where, fmt::format("code: {}, and {} is the greatest", of, most),
@@ -74,10 +80,10 @@ std::string check_codes(const code_settings& c, const experiment_definition& d, 
             if (!seen.insert(n).second && warning.empty())
                 warning = fmt::format("[sync.codes]: {}, which another event has, too", of);
         }
-    const bool has_pairs =
-        std::ranges::any_of(d.runs, [](const auto& r) { return r.outline.task == task_kind::choose; });
+    }
+    const bool are_pairs = std::ranges::any_of(d.runs, [](const auto& r) { return has_pairs(r.outline); });
     const std::uint64_t lead = code_frames(c, rate);
-    if (has_pairs && d.gap_s * rate < static_cast<double>(lead))
+    if (are_pairs && d.gap_s * rate < static_cast<double>(lead))
         throw error(error_kind::bad_input, c.where,
                     fmt::format("code: it takes {:.4g} s, and the gap between two stimuli is {} s",
                                 static_cast<double>(lead) / rate, d.gap_s),
@@ -124,7 +130,9 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
     for (const code_event e : events)
         for (const stimulus& s : p.stimuli.all())
             j["code"]["Levels"][fmt::format("{}", code_number(*c, p.definition, e, s.motion, s.method))] =
-                fmt::format("{}, {}", to_string(e), condition_text(p.definition, s.motion, s.method));
+                fmt::format("{}, {}", to_string(e),
+                            condition_text(p.definition, s.motion,
+                                           p.definition.methods[s.method].made_of.value_or(s.method)));
     column("frame", c->channel ? "Frame of the stream at which the start bit begins; the code ends where the "
                                  "stimulus begins, frame_1 or frame_2 of the run's table"
                                : "Frame of the stream at which the lines switch");
