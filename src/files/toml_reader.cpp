@@ -234,6 +234,23 @@ source_place toml_table::where(std::string_view key) const
     return n ? where(*n) : where();
 }
 
+std::vector<std::string> toml_table::texts(std::string_view key, std::size_t most) const
+{
+    std::vector<std::string> all;
+    const toml::array* texts = list(key, "texts in quotes");
+    if (texts == nullptr)
+        return all;
+    for (const toml::node& n : *texts) {
+        if (!n.is_string())
+            fail_at(where(n), fmt::format("{} has {}", key, shown(n)),
+                    "texts in quotes, with commas between");
+        all.push_back(n.as_string()->get());
+    }
+    if (all.size() > most)
+        fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("at most {}", most));
+    return all;
+}
+
 void toml_table::fail(std::string_view why, std::string_view hint) const
 {
     fail_at(where(), why, hint);

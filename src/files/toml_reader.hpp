@@ -81,6 +81,8 @@ public:
     /// Returns an array of tables, [[key]]; an empty list if there is none.
     std::vector<toml_table> tables(std::string_view key) const;
     const toml::array* list(std::string_view key, std::string_view of_what) const;
+    /// Returns a list of texts, at most so many; an empty list if there is none.
+    std::vector<std::string> texts(std::string_view key, std::size_t most) const;
     const toml::node* node(std::string_view key) const { return table_->get(key); }
 
     /// Reads mirror and rotate_deg, which array and stroke files share. Returns the map that scales by

@@ -3,13 +3,14 @@
 derivatives. Usage: test_bids.py TOOL SOURCE_ROOT VALIDATOR"""
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 
 VALIDATOR = pathlib.Path(sys.argv.pop(3))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from experiments import SMALL, ExperimentTest  # noqa: E402
-from harness import main  # noqa: E402
+from harness import ROOT, main  # noqa: E402
 
 # A single author is enough for an example.
 HARMLESS = {"TOO_FEW_AUTHORS"}
@@ -37,6 +38,20 @@ class Folders(ExperimentTest):
             self.simulate(code, definition="park2016")
         told = self.valid(["01", "02"])
         self.assertEqual(sorted(told["tasks"]), ["similarity", "similarity-rating", "uniformity", "uniformity-rating"])
+
+    def test_questionnaires(self):
+        for code in ("01", "02"):
+            self.simulate(code, definition=ROOT / "examples/experiments/questionnaires.toml")
+        self.valid(["01", "02"])
+        self.simulate("03", definition=ROOT / "examples/experiments/questionnaires.toml")
+        (self.dir / "study/.bidsignore").unlink()  # one line of each participant is valid, too
+        self.valid(["01", "02", "03"])
+        # A questionnaire between three runs has two of each.
+        between = '[[run]]\nname = "tired"\ntask = "questionnaire"\nwhen = "between"\nitem = [{ name = "now", question = "?", kind = "text" }]\n'
+        self.write("between.toml", SMALL + between)
+        shutil.rmtree(self.dir / "study")
+        self.simulate("01", definition="between.toml")
+        self.valid(["01"])
 
     def test_void_trials_practice_and_derivatives(self):
         for code in ("A1", "b2"):

@@ -81,6 +81,10 @@ level_dbfs = -20
 name = "which"
 task = "identify"
 trials = 2
+[[run]]
+name = "form"
+task = "questionnaire"
+item = [{ name = "age", question = "?", kind = "number", range = [0, 99] }]
 """
 
 LINE = FELT.replace('task = "identify"', 'task = "rate"\nattribute = "even"\nquestion = "?"\nscale = "vas"\nlabels = ["no", "yes"]')

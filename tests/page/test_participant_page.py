@@ -8,7 +8,7 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import DESK, LINE, SHORT, ExperimentTest  # noqa: E402
+from experiments import DESK, LINE, SHORT, ExperimentTest, read_table  # noqa: E402
 from harness import main  # noqa: E402
 from pages import Session  # noqa: E402
 
@@ -279,6 +279,68 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         p.tap(x + 1 + part * (w - 2), y + h / 2)
         p.until("!document.querySelector('#answers button').disabled")
         return ask
+
+    def test_numbers_and_texts_are_typed(self):
+        self.write("form.toml", SHORT[:SHORT.index("[[run]]")].replace('consent = "Be at ease."\n', "") + """[[run]]
+name = "form"
+task = "questionnaire"
+title = "About you"
+text = "Some questions, which nobody but us will read."
+item = [
+  { name = "age", question = "How old are you?", kind = "number", range = [18, 99] },
+  { name = "free", question = "What else?", kind = "text" },
+  { name = "more", question = "Nothing else?", kind = "text" },
+  { name = "hand", question = "Which hand?", kind = "choice", choices = ["left", "right"] },
+]
+[[run]]
+name = "marks"
+task = "rate"
+attribute = "uniformity"
+trials = 1
+scale = 3
+""")
+        s = self.start("form.toml")
+        p = self.open(s)
+        ask = 0
+        for _ in (0, 1):
+            ask = self.click(p, "walk", 1, ask)
+        ask = self.asked(p, "questionnaire", ask)
+        self.picture(p, "form")
+        self.key(p, "questionnaire", " ")
+
+        def place(kind, ask):
+            return p.until(f"state.ask > {ask} && document.activeElement === document.querySelector('#answers {kind}:enabled') && state.ask")
+
+        def is_disabled():
+            return p.value("document.querySelector('#answers button').disabled")
+        ask = place("input", ask)
+        self.picture(p, "number")
+        self.assertTrue(is_disabled())
+        p.key("Enter")  # nothing is typed
+        for text, refused in (("a1", True), ("7", True), ("18", False)):
+            if text == "18":
+                p.value("document.activeElement.select()")
+            p.call("Input.insertText", text=text)
+            self.assertEqual(is_disabled(), refused, text)
+        self.assertEqual(p.value("[document.querySelector('#answers input').value, state.ask]"), ["18", ask])
+        p.key("Enter")
+        ask = place("textarea", ask)
+        self.picture(p, "text")
+        p.key("Digit1", "1")  # answers nothing
+        p.call("Input.insertText", text="1 2\nof äll " + "x" * 2000)  # the last do not fit
+        p.click("#answers button")
+        ask = place("textarea", ask)
+        self.assertEqual(p.value("document.querySelector('#answers textarea').value"), "")
+        p.click("#answers button")
+        ask = self.asked(p, "questionnaire", ask)
+        self.picture(p, "form-choice")
+        ask = self.key(p, "questionnaire", "2")
+        ask = self.click(p, "introduce", 1, ask)
+        self.click(p, "question", 1, ask)
+        self.assertEqual(s.end(), 0, s.said)
+        row, = read_table(self.dir / "study/phenotype/form.tsv")
+        self.assertEqual((row["age"], row["more"], row["hand"]), ("18", "n/a", "2"))
+        self.assertRegex(row["free"], r"^1 2\\nof äll x{1989}$")
 
     def test_a_line_answers_once_it_is_set(self):
         run = '[[run]]\nname = "%s"\ntask = "%s"\nattribute = "uniformity"\nquestion = "How even?"\ntrials = 1\n%s\n'

@@ -229,6 +229,30 @@ TEST_CASE("faults have their line")
     says(head + methods + run, "e.toml", "no [[motion]]");
     says(head + motion + run, "e.toml", "no [[method]]");
     says(head + motion + methods, "e.toml", "no [[run]]");
+    const std::string form = "[[run]]\nname = \"f\"\ntask = \"questionnaire\"\n";
+    const std::string item = "[[run.item]]\nname = \"i\"\nquestion = \"?\"\nkind = ";
+    const std::string choice = "\"choice\"\nchoices = [\"a\", \"b\"]\n";
+    says(head + motion + methods + form + item + choice, "e.toml", "each [[run]] is a questionnaire");
+    const auto form_says = [&](const std::string& own, int line, const char* what) {
+        // The run with trials ends in line 16.
+        says(head + motion + methods + run + form + own, ("e.toml:" + std::to_string(line) + ":").c_str(),
+             what);
+    };
+    form_says("trials = 3\n" + item + choice, 20, "unknown key 'trials'");
+    form_says("when = \"later\"\n" + item + choice, 20, "later");
+    form_says("", 17, "has no question");
+    form_says(item + choice + form + item + choice, 26, "\"f\" is there twice");
+    form_says(item + choice + item + choice, 26, "\"i\" is there twice");
+    form_says("[[run.item]]\nname = \"a b\"\n", 21, "name is 'a b'");
+    form_says("[[run.item]]\nname = \"after\"\nquestion = \"?\"\nkind = " + choice, 21, "there twice");
+    form_says(item + "\"choice\"\nchoices = [\"a\"]\n", 24, "a choice has 1 text");
+    form_says(item + "\"text\"\nrange = [1, 2]\n", 24, "range is not of a text");
+    form_says(item + "\"number\"\n", 20, "no range");
+    form_says(item + "\"number\"\nrange = [2, 1]\n", 24, "least and the greatest");
+    form_says(item + "\"number\"\nrange = [0, 10000]\n", 24, "least and the greatest");
+    form_says(item + "\"scale\"\n", 23, "a scale has 0 labels");
+    form_says(item + "\"scale\"\nscale = \"vas\"\n", 23, "0 labels");
+    form_says(item + "\"scale\"\nscale = 4\nlabels = [\"a\", \"b\", \"c\"]\n", 25, "3 labels");
     says(head + "level = { sl_db = 7, dbfs = -18 }\n" + motion + methods + run, "e.toml:3:", "both");
     says(head + "level = { dbfs = 3 }\n" + motion + methods + run, "e.toml:3:", "dbfs is 3");
     says(head + "seed = -1\n" + motion + methods + run, "e.toml:3:", "seed is -1");

@@ -87,6 +87,40 @@ TEST_CASE("void trials of practice do not come again")
     CHECK(f.next() == trial_step(0, 1));
 }
 
+TEST_CASE("questionnaires come before the first run, between runs before the break, and after the last")
+{
+    using enum questionnaire_time;
+    const auto ask = [](std::size_t form, std::size_t run = 0) {
+        return session_step{.what = step_kind::ask, .run = run, .form = form};
+    };
+    session_flow f({make_flow_run(1, 0, true), make_flow_run(1)}, false, 1,
+                   {{0, after}, {1, between}, {2, before, 0, true}, {3, before}});
+    f.felt();
+    CHECK(f.next() == ask(3)); // 2 was answered in an earlier session
+    f.pause();
+    CHECK(f.next().what == step_kind::pause);
+    f.go_on();
+    f.answered(ask(3));
+    f.go_on();
+    f.took(false);
+    CHECK(f.next() == ask(1));
+    CHECK(f.void_last()); // the run goes on, and its questionnaire comes after it
+    CHECK(f.next() == trial_step(0, 1, 2));
+    f.took(false);
+    f.answered(ask(1));
+    CHECK(f.next().what == step_kind::rest);
+    f.go_on();
+    f.go_on();
+    f.took(false);
+    CHECK(f.next() == ask(0));
+    f.answered(ask(0));
+    CHECK(f.next().what == step_kind::over);
+    // Only questions are left: nothing is walked.
+    run_queue done(1);
+    done.take(false);
+    CHECK(session_flow({{0, 0, done, false}}, false, 9, {{0, after}}).next() == ask(0));
+}
+
 TEST_CASE("the last trial can be made void once, until the next run begins")
 {
     session_flow f = begun({make_flow_run(2, 0, true), make_flow_run(1)});

@@ -310,6 +310,14 @@ void print_dry_run_json(const study::prepared_experiment& p)
     const std::vector<study::run_time> times = study::session_times(p);
     for (std::size_t i = 0; i < p.runs.size(); ++i)
         j["runs"].push_back(run_json(p, p.runs[i], times[i]));
+    j["questionnaires"] = json::array();
+    for (const study::questionnaire& q : d.questionnaires) {
+        json items = json::array();
+        for (const study::questionnaire_item& item : q.items)
+            items.push_back(item.name);
+        j["questionnaires"].push_back(
+            {{"name", q.name}, {"when", std::string(describe_time(q.when))}, {"items", items}});
+    }
     j["stimuli"] = study::stimulus_facts(p);
     j["warnings"] = p.warnings;
     fmt::print("{}\n", j.dump(1, ' ', false, json::error_handler_t::replace));
@@ -326,6 +334,9 @@ void print_dry_run_text(const study::prepared_experiment& p)
     for (const study::method_definition& m : d.methods)
         if (m.has_level() && !m.is_variant())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));
+    for (const study::questionnaire& q : d.questionnaires)
+        say(stdout, "questionnaire {}: {}, {}\n", q.name, describe_time(q.when),
+            counted(q.items.size(), "item"));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
         const study::trial_row r = study::planned_row(p, t, {});
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,

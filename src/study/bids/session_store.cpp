@@ -229,6 +229,17 @@ void session_store::append_event(const run_definition& r, const named_cells& cel
     keep([&] { write_line(event_table(r), cells); });
 }
 
+bool session_store::has_answers(const questionnaire& q, const std::string& after) const
+{
+    return folder_.has_answers(q, after);
+}
+
+void session_store::append_answers(const questionnaire& q, const std::string& after,
+                                   const std::vector<std::string>& answers)
+{
+    keep([&] { folder_.add_answers(q, after, answers); });
+}
+
 // Appends a line, or makes the table with it. Reads a table that this process did not write last, or that
 // somebody else has changed.
 void session_store::write_line(const fs::path& file, const named_cells& cells)

@@ -69,6 +69,12 @@ public:
     /// Adds a line to the events of a run, sub-CODE_task-NAME_events.tsv, in the order of the cells.
     void append_event(const run_definition& r, const named_cells& cells);
 
+    /// Return true if a questionnaire is answered, and add the answers; see study_folder. They are on the
+    /// disk when this returns. \throws error (runtime) as append().
+    bool has_answers(const questionnaire& q, const std::string& after) const;
+    void append_answers(const questionnaire& q, const std::string& after,
+                        const std::vector<std::string>& answers);
+
     /// Makes the run's last trial void, in a file written whole. \throws error (runtime).
     void make_last_void(const run_definition& r);
     /// Returns the time of the run's first sample; nothing before append().

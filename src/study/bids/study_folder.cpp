@@ -151,6 +151,65 @@ std::string task_text(const run_definition& r, const experiment_definition& d, b
     return json_text(j);
 }
 
+// Returns the first cells of a questionnaire's line: those that say whose it is, and when it was asked.
+named_cells find_key(const questionnaire& q, const std::string& code, session_number session,
+                     const std::string& after)
+{
+    named_cells key{{"participant_id", "sub-" + code}};
+    if (session)
+        key.emplace_back("session", fmt::format("{}", *session));
+    if (q.when == questionnaire_time::between)
+        key.emplace_back("after", after);
+    return key;
+}
+
+// Returns the text as one cell: a line end becomes \n, a backslash and the letter.
+std::string on_one_line(const std::string& answer)
+{
+    std::string line;
+    for (const char c : answer)
+        line += c == '\n' ? std::string("\\n") : std::string(1, c);
+    return line.empty() ? "n/a" : line;
+}
+
+// Returns the header of a new table, or the whole line.
+named_cells make_cells(const questionnaire& q, const std::string& code, session_number session,
+                       const std::string& after, const std::vector<std::string>& answers)
+{
+    named_cells cells = find_key(q, code, session, after);
+    for (std::size_t i = 0; i < q.items.size(); ++i)
+        cells.emplace_back(q.items[i].name, answers.empty() ? "" : on_one_line(answers[i]));
+    return cells;
+}
+
+text_table read_answers(const fs::path& folder, const questionnaire& q, session_number session)
+{
+    const fs::path file = folder / answers_path(q);
+    return is_on_disk(file) ? text_table(file)
+                            : text_table(file, header_line(make_cells(q, {}, session, {}, {})));
+}
+
+std::string questionnaire_text(const questionnaire& q, session_number session, bool simulated)
+{
+    ordered j;
+    j["MeasurementToolMetadata"]["Description"] = fmt::format(
+        "{}{}, asked {}{}{}", simulated ? std::string(simulated_note) + " " : "",
+        q.title.empty() ? q.name : q.title, describe_time(q.when), q.text.empty() ? "" : ". ", q.text);
+    j["participant_id"] = column_json("As in participants.tsv");
+    if (session)
+        j["session"] = column_json("Session of the participant, from 1");
+    if (q.when == questionnaire_time::between)
+        j["after"] = column_json("Run before it");
+    for (const questionnaire_item& item : q.items) {
+        j[item.name] = column_json(item.question);
+        const std::vector<std::string> labels = label_answers(item);
+        for (std::size_t i = 0; i < labels.size(); ++i)
+            if (!labels[i].empty())
+                j[item.name]["Levels"][fmt::format("{}", i + item.lowest)] = labels[i];
+    }
+    return json_text(j);
+}
+
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t microsecond_ns = 1000;
 constexpr std::size_t fraction_from = 20; // in 2026-11-21T14:03:00.000000Z
@@ -250,6 +309,9 @@ std::vector<fs::path> study_folder::list_files() const
     std::vector<fs::path> all;
     for (const run_definition& r : definition_.runs)
         all.push_back(folder_ / description_path(r.outline));
+    for (const questionnaire& q : definition_.questionnaires)
+        for (const char* extension : {".json", ".tsv"})
+            all.push_back(folder_ / answers_path(q, extension));
     for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
         all.push_back(folder_ / name);
     all.push_back(scans());
@@ -268,6 +330,14 @@ void study_folder::describe() const
     put(folder_ / "participants.json", participants_text(definition_, simulated_));
     for (const run_definition& r : definition_.runs)
         put(folder_ / description_path(r.outline), task_text(r, definition_, simulated_));
+    if (!definition_.questionnaires.empty()) {
+        make_folder(folder_ / "phenotype");
+        // bids-validator 1 wants exactly one line of each participant. There are several of a questionnaire
+        // between runs, and none after a session that was broken off.
+        ignore("phenotype/*.tsv");
+    }
+    for (const questionnaire& q : definition_.questionnaires)
+        put(folder_ / answers_path(q, ".json"), questionnaire_text(q, session(), simulated_));
 }
 
 fs::path study_folder::scans() const
@@ -288,6 +358,32 @@ void study_folder::check_lists() const
     const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
+    for (const questionnaire& q : definition_.questionnaires) {
+        const text_table answers = read_answers(folder_, q, session());
+        for (const auto& [column, text] : make_cells(q, code_, session(), {}, {}))
+            if (!answers.has(column))
+                throw error(error_kind::bad_input, source_place{answers.file(), 1},
+                            fmt::format("there is no column {}, which the questionnaire has", column),
+                            "give a questionnaire that was changed another name");
+    }
+}
+
+bool study_folder::has_answers(const questionnaire& q, const std::string& after) const
+{
+    const text_table t = read_answers(folder_, q, session());
+    const named_cells key = find_key(q, code_, session(), after);
+    for (std::size_t row = 0; row < t.rows(); ++row)
+        if (std::ranges::all_of(key, [&](const auto& c) { return t.cell(row, c.first) == c.second; }))
+            return true;
+    return false;
+}
+
+void study_folder::add_answers(const questionnaire& q, const std::string& after,
+                               const std::vector<std::string>& answers) const
+{
+    write_whole(
+        folder_ / answers_path(q),
+        read_answers(folder_, q, session()).with_line(make_cells(q, code_, session(), after, answers)));
 }
 
 bool study_folder::add_participant()
@@ -322,12 +418,18 @@ void study_folder::add_scan(const std::string& file_name, const std::string& acq
 
 void study_folder::ignore_cut_lines() const
 {
+    ignore("*.cut-*");
+}
+
+// Adds a line to .bidsignore.
+void study_folder::ignore(const std::string& pattern) const
+{
     const fs::path file = folder_ / ".bidsignore";
     std::string text = is_on_disk(file) ? read_file(file) : std::string();
-    if (("\n" + text).find("\n*.cut-*") != text.npos)
+    if (("\n" + text).find("\n" + pattern) != text.npos)
         return;
     text += text.empty() || text.ends_with('\n') ? "" : "\n";
-    write_whole(file, text + "*.cut-*\n");
+    write_whole(file, text + pattern + "\n");
 }
 
 std::string dataset_text(const experiment_definition& d, bool simulated)

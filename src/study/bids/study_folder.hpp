@@ -50,8 +50,9 @@ public:
     /// Lists the files that the session makes: descriptions and lists, without plans and trials.
     std::vector<std::filesystem::path> list_files() const;
 
-    /// Reads participants.tsv and scans(), if they are there. \throws error (bad_input) with file
-    /// and line: see read_participants(); if the first has another group for the participant.
+    /// Reads participants.tsv, scans() and the tables of questionnaires, if they are there.
+    /// \throws error (bad_input) with file and line: see read_participants(); if the first has another group
+    /// for the participant; if a questionnaire's table lacks a column.
     void check_lists() const;
 
     /// Adds a line to participants.tsv, with the group, and n/a in its other columns. Returns false if there
@@ -65,11 +66,20 @@ public:
     /// Returns the time that add_scan() entered for a table, if any.
     std::optional<std::string> scan_time(const std::string& file_name) const;
 
+    /// Returns true if the participant's answers to a questionnaire are in its table; `after`: name of the
+    /// run before it, empty unless it is asked between runs.
+    bool has_answers(const questionnaire& q, const std::string& after) const;
+
+    /// Adds them, in the order of the items, in a file written whole. \throws error.
+    void add_answers(const questionnaire& q, const std::string& after,
+                     const std::vector<std::string>& answers) const;
+
     /// Writes into .bidsignore that programs which read BIDS ignore the files of cut_file().
     void ignore_cut_lines() const;
 
 private:
     void refuse_others();
+    void ignore(const std::string& pattern) const;
 
     std::filesystem::path folder_;
     bool is_new_;

@@ -143,8 +143,6 @@ std::string write_choice(const options::option& o, std::string_view value)
 }
 
 constexpr unsigned most_trials = 10000;
-constexpr unsigned most_steps = 101;
-constexpr unsigned visual_most = 100;
 
 // Returns the places in `all` that a table names, in the order of `all`; every place if it names none.
 template <class T>
@@ -257,24 +255,6 @@ std::string name_in(const toml_table& t, std::string_view key)
     return text;
 }
 
-// Reads a list of texts, empty where there is none.
-std::vector<std::string> texts_in(const toml_table& t, std::string_view key, std::size_t most)
-{
-    std::vector<std::string> all;
-    const toml::array* list = t.list(key, "texts in quotes");
-    if (list == nullptr)
-        return all;
-    for (const toml::node& n : *list) {
-        if (!n.is_string())
-            detail::fail_at(t.where(n), fmt::format("{} has {}", key, detail::shown(n)),
-                            "texts in quotes, with commas between");
-        all.push_back(n.as_string()->get());
-    }
-    if (all.size() > most)
-        t.fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("at most {}", most));
-    return all;
-}
-
 void read_head(const toml_table& root, const extent& e, experiment_definition& d)
 {
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
@@ -295,7 +275,7 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
     d.order = t->choice("order", {"williams", "latin", "random"}).value_or(d.order);
     d.seed = read_seed(*t);
     d.consent = t->text("consent").value_or("");
-    d.authors = texts_in(*t, "authors", 1000);
+    d.authors = t->texts("authors", 1000);
 }
 
 masking_definition read_masking(const toml_table& root)
@@ -460,7 +440,7 @@ std::vector<std::string> read_choices(const toml_table& t, const run_outline& o,
     if (t.has("choices") &&
         (o.task == task_kind::rate || o.task == task_kind::identify || o.task == task_kind::estimate))
         t.fail("choices", fmt::format("choices is not of runs that {}", to_string(o.task)), "leave it out");
-    std::vector<std::string> choices = texts_in(t, "choices", 2);
+    std::vector<std::string> choices = t.texts("choices", 2);
     if (t.has("choices") && choices.size() != 2)
         t.fail("choices", fmt::format("choices has {}", counted(choices.size(), "text")),
                "one for each of the two answers");
@@ -507,7 +487,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");
     r.practice = t.whole("practice", 0, most_trials).value_or(0);
-    r.labels = texts_in(t, "labels", r.outline.visual ? 2 : r.outline.scale);
+    r.labels = t.texts("labels", r.outline.visual ? 2 : r.outline.scale);
     if (r.outline.visual && r.labels.size() != 2)
         t.fail(t.has("labels") ? "labels" : "scale",
                fmt::format("labels has {} for a visual analogue scale", counted(r.labels.size(), "text")),
@@ -598,9 +578,16 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     d.outline.name = d.name;
     std::vector<method_definition> variants;
     for (const toml_table& t : need_tables(root, "run")) {
+        if (is_questionnaire(t)) {
+            if (!e.outline_only)
+                d.questionnaires.push_back(read_questionnaire(t, d.questionnaires));
+            continue;
+        }
         d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d, variants));
         d.outline.runs.push_back(d.runs.back().outline);
     }
+    if (d.runs.empty())
+        root.fail("each [[run]] is a questionnaire", "an experiment has at least one run with trials");
     if (root.has("group"))
         d.outline.groups = read_all<group_outline>(root, "group", [&](const toml_table& t) {
             if (!e.outline_only)

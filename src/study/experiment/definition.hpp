@@ -17,6 +17,7 @@
 #include "options/option.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/page_words.hpp"
+#include "study/experiment/questionnaire.hpp"
 #include "study/masking/masking.hpp"
 
 namespace tactor::study {
@@ -115,6 +116,7 @@ struct experiment_definition {
     std::vector<motion_definition> motions = {};
     std::vector<method_definition> methods = {};
     std::vector<run_definition> runs = {};
+    std::vector<questionnaire> questionnaires = {};
     std::map<std::string, std::string> group_arrays = {}; ///< by group, of those that have their own
     std::string group = {};          ///< group whose runs `runs` are; empty: those of everybody
     session_number session = {};     ///< session that is held

@@ -409,10 +409,25 @@ std::vector<run_sequence> make_sequence(const experiment_definition& d, std::str
     return all;
 }
 
-session_flow::session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors)
-    : runs_(std::move(runs)), ask_consent_(consent), tactors_(tactors)
+session_flow::session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors,
+                           std::vector<flow_form> forms)
+    : runs_(std::move(runs)), ask_consent_(consent), tactors_(tactors), forms_(std::move(forms))
 {
     leave_done_run(false);
+}
+
+bool session_flow::is_due(const flow_form& f) const
+{
+    return !f.done &&
+           (f.when == questionnaire_time::before ||
+            (f.when == questionnaire_time::between && runs_[f.run].trials.done()) || run_ == runs_.size());
+}
+
+void session_flow::answered(const session_step& s)
+{
+    for (flow_form& f : forms_)
+        if (f.form == s.form && f.run == s.run)
+            f.done = true;
 }
 
 void session_flow::leave_done_run(bool rest)
@@ -429,16 +444,20 @@ void session_flow::leave_done_run(bool rest)
 
 session_step session_flow::next() const
 {
-    if (run_ == runs_.size())
+    const auto form = std::ranges::find_if(forms_, [this](const flow_form& f) { return is_due(f); });
+    const bool asks = form != forms_.end();
+    if (run_ == runs_.size() && !asks)
         return {.what = step_kind::over};
     if (ask_consent_)
         return {.what = step_kind::consent};
-    if (walked_ < tactors_)
+    if (walked_ < tactors_ && run_ < runs_.size())
         return {.what = step_kind::walk, .tactor = walked_};
-    if (place_ == place::rest)
+    if (place_ == place::rest && !asks)
         return {.what = step_kind::rest, .run = run_};
     if (paused_)
         return {.what = step_kind::pause, .run = run_};
+    if (asks)
+        return {.what = step_kind::ask, .run = form->run, .form = form->form};
     if (place_ == place::introduce)
         return {.what = step_kind::introduce, .run = run_};
     const flow_run& r = runs_[run_];

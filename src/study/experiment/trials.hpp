@@ -143,6 +143,7 @@ enum class step_kind {
     trial,     ///< a trial is played and answered: took()
     rest,      ///< a break between runs: go_on()
     pause,     ///< the experimenter's: go_on()
+    ask,       ///< a questionnaire is asked: answered()
     over,      ///< all runs are through
 };
 
@@ -152,6 +153,7 @@ struct session_step {
     std::size_t run = 0;      ///< place in the order of the session: from introduce to rest
     bool practice = false;    ///< the trial does not count
     pending_trial which = {}; ///< of practice the attempt is always 1
+    std::size_t form = 0;     ///< to ask: place in the definition's questionnaires
 
     friend bool operator==(const session_step&, const session_step&) = default;
 };
@@ -164,13 +166,22 @@ struct flow_run {
     bool rest = false; ///< a break follows, unless it is the last
 };
 
+/// A questionnaire at a place of the session.
+struct flow_form {
+    std::size_t form = 0; ///< place in the definition's questionnaires
+    questionnaire_time when = questionnaire_time::before;
+    std::size_t run = 0; ///< between: place of the run before it
+    bool done = false;
+};
+
 /// Number of void trials in a row that makes a pause, so that somebody looks.
 inline constexpr unsigned most_void_in_row = 5;
 
 class session_flow {
 public:
     /// Passes over runs that are done. A walk over `tactors` comes first.
-    session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors);
+    session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors,
+                 std::vector<flow_form> forms = {});
 
     session_step next() const;
 
@@ -180,6 +191,8 @@ public:
     void go_on();
     /// Takes a trial that is over and on the disk.
     void took(bool is_void);
+    /// Takes a questionnaire whose answers are on the disk: that of step_kind::ask.
+    void answered(const session_step& s);
 
     /// Makes the last trial that counted void: it comes again at the end of its run, which is void_run()
     /// before this call. Returns false if none can be made void: there was none in this session, it is void
@@ -192,12 +205,15 @@ public:
 private:
     enum class place { introduce, trials, rest };
 
+    /// Returns true if the questionnaire comes now.
+    bool is_due(const flow_form& f) const;
     /// Goes to the next run with trials left, if the present one has none.
     void leave_done_run(bool rest);
 
     std::vector<flow_run> runs_;
     bool ask_consent_;
     unsigned tactors_;
+    std::vector<flow_form> forms_;
     unsigned walked_ = 0;
     std::size_t run_ = 0;
     place place_ = place::introduce;

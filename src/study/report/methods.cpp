@@ -653,6 +653,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["runs"] = json::array();
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
         all["runs"].push_back(describe_run(f, d.experiment.runs[i], i));
+    all["questionnaires"] = list_questionnaires(f);
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["worths"] = std::ranges::any_of(d.experiment.runs, has_worths);

@@ -54,6 +54,7 @@ struct session_facts {
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
     std::vector<planned_stimulus> stimuli = {};
+    std::vector<std::size_t> answered = {}; ///< lines of the participant, by questionnaire of the design
     std::vector<trial_counts> counts = {}; ///< by run
 
     json_value facts() const { return {document, file, changed_file}; }
@@ -90,6 +91,10 @@ void write_report(const std::filesystem::path& file, const std::string& text, bo
 /// Returns all facts by the names that methods.md has for them.
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d,
                                      const nlohmann::ordered_json& analysis);
+
+/// Returns the questionnaires of all definitions: when each is asked, its items, and how often it was
+/// answered.
+nlohmann::ordered_json list_questionnaires(const study_facts& f);
 
 /// Returns methods.md, a template of Mustache with [[ and ]].
 std::string_view methods_template() noexcept;

@@ -32,6 +32,7 @@
 #include "study/data/dataset.hpp"
 #include "study/experiment/adaptive.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/session/questionnaire_session.hpp"
 #include "study/session/sync_codes.hpp"
 #include "synth/score/drive_room.hpp"
 
@@ -277,6 +278,16 @@ public:
             }
             if (s.what == step_kind::rest)
                 now_ += frames(p_.run_at(s.run).break_s);
+            if (s.what == step_kind::ask) {
+                const questionnaire& q = p_.definition.questionnaires[s.form];
+                const std::string after = name_run_before(p_, q, s.run);
+                store_.append_answers(
+                    q, after,
+                    draw_answers(q, fmt::format("{}/{}/{}/{}/{}", simulation_.seed, p_.definition.name,
+                                                p_.participant, q.name, after)));
+                flow_.answered(s);
+                continue;
+            }
             if (s.what != step_kind::trial) {
                 flow_.go_on();
                 continue;
@@ -636,9 +647,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
 
 bool finished(const prepared_experiment& p, const session_store& store)
 {
-    return std::all_of(p.runs.begin(), p.runs.end(), [&](const run_sequence& s) {
-        return replay(p, s, store.rows(p.definition.runs[s.run])).done();
-    });
+    return make_flow(p, store, false).next().what == step_kind::over;
 }
 
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person)
@@ -650,9 +659,21 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
         runs.push_back({static_cast<unsigned>(s.practice.size()), practised, replay(p, s, store.rows(r)),
                         r.break_s > 0.0});
     }
+    std::vector<flow_form> forms;
+    const std::vector<questionnaire>& all = p.definition.questionnaires;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t run = 0; run < (all[i].when == questionnaire_time::between ? runs.size() - 1 : 1);
+             ++run)
+            forms.push_back(
+                {i, all[i].when, run, store.has_answers(all[i], name_run_before(p, all[i], run))});
     const bool consent = with_person && !p.definition.consent.empty() && !store.facts().contains("consent");
     const std::size_t walk = with_person ? p.where.tactors.tactors.size() : 0;
-    return {std::move(runs), consent, static_cast<unsigned>(walk)};
+    return {std::move(runs), consent, static_cast<unsigned>(walk), std::move(forms)};
+}
+
+std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run)
+{
+    return q.when == questionnaire_time::between ? p.run_at(run).outline.name : "";
 }
 
 planned_trial find_trial(const prepared_experiment& p, const session_step& s, const session_store& store)

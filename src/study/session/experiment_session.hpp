@@ -114,11 +114,14 @@ void set_response(trial_row& row, const prepared_experiment& p, const run_defini
 /// of this session.
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows);
 
-/// Returns true if all trials of all runs are there. Throws as above.
+/// Returns true if all trials of all runs are there, and the answers to all questionnaires. Throws as above.
 bool finished(const prepared_experiment& p, const session_store& store);
 
 /// Makes the flow at the place where the session is. Only one with a person has consent and walk.
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person);
+
+/// Returns the name of the run before a questionnaire that is asked between runs; empty for others.
+std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run);
 
 /// Returns the trial of a step. One of an adaptive run has the value that follows from the answers so far.
 planned_trial find_trial(const prepared_experiment& p, const session_step& s, const session_store& store);

@@ -35,8 +35,8 @@ struct page_progress {
 
 /// Content of the participant's screen. Nothing in it says by which method a motion is rendered.
 struct page_screen {
-    /// Kind of screen: consent, walk, introduce, target, stimulus, question, right, wrong, rest, pause, wait,
-    /// over.
+    /// Kind of screen: consent, walk, introduce, target, stimulus, question, questionnaire, right, wrong,
+    /// rest, pause, wait, over.
     std::string name = "wait";
     std::string text = {};
     std::string question = {};

@@ -16,6 +16,7 @@
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/session/experiment_session.hpp"
+#include "study/session/questionnaire_session.hpp"
 
 namespace tactor::study {
 namespace {
@@ -228,6 +229,8 @@ void person_session::step(const session_step& s)
         return rest(s);
     case step_kind::pause:
         return pause();
+    case step_kind::ask:
+        return ask_questionnaire(s);
     case step_kind::over:
         return;
     }
@@ -355,6 +358,17 @@ void person_session::rest(const session_step& s)
         return find_device(); // the break begins again
     if (flow_.next() == s)
         flow_.go_on();
+}
+
+// Writes nothing before all is answered: what was killed before is asked anew.
+void person_session::ask_questionnaire(const session_step& s)
+{
+    const questionnaire& q = p_.definition.questionnaires[s.form];
+    const std::vector<std::string> answers =
+        study::ask_questionnaire(q, p_.definition.page, keys_, page_, [this](operator_key k) { obey(k); });
+    begin_store();
+    store_.append_answers(q, name_run_before(p_, q, s.run), answers);
+    flow_.answered(s);
 }
 
 void person_session::pause()

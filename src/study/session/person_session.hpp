@@ -58,6 +58,7 @@ private:
     void begin_store();
     void introduce(const session_step& s);
     void trial(const session_step& s);
+    void ask_questionnaire(const session_step& s);
     void rest(const session_step& s);
     void pause();
     /// Returns false if the last trial was made void, so that the session goes on.

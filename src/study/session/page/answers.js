@@ -11,6 +11,7 @@ function has_words_at_ends(choices) {
 function find_kind({screen, choices, pictures}) {
   if (pictures) return "pictures";
   if (choices.length === 1) return "begin";
+  if (screen === "questionnaire" && choices.every(c => c)) return "list";
   if (screen === "consent" || screen === "walk") return "plain";
   if (choices.length === 2) return "pair";
   if (choices.length > MOST_BUTTONS) return "line";
@@ -67,7 +68,8 @@ let focused = -1;
 
 // Shows the buttons of a screen. Those of the same question stay, with the keyboard's focus.
 export function show_answers(s, tactors, word, answer) {
-  const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen, s.entry, s.question]);
+  const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen, s.entry, s.question,
+    s.screen === "questionnaire" && s.progress]); // the next item may look the same
   const kind = choices.length ? find_kind(s) : s.entry ? "entry" : "", on_line = kind === "line";
   if (now !== kept || !kind) {
     kept = now;

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/questionnaire.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "files/toml_reader.hpp"
+
+namespace tactor::study {
+namespace {
+
+using detail::toml_table;
+
+constexpr unsigned most_choices = 50;
+constexpr unsigned greatest_number = 9999;
+
+// Reads a name that can be a column's or a file's on every disk and in every program.
+std::string plain_name(const toml_table& t)
+{
+    std::string name = t.need(t.text("name"), "name");
+    const std::string small = in_small_letters(name);
+    if (small.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != small.npos)
+        t.fail("name", fmt::format("name is {}", detail::shown(*t.node("name"))), "letters, digits and _");
+    return name;
+}
+
+// Reads the least and the greatest number.
+void read_range(const toml_table& t, questionnaire_item& item)
+{
+    if (!t.has("range"))
+        t.need(std::optional<unsigned>{}, "range");
+    const toml::array& range = t.pair(*t.node("range"), "range");
+    const auto low = range.get(0)->value_exact<std::int64_t>();
+    const auto high = range.get(1)->value_exact<std::int64_t>();
+    if (!low || !high || *low < 0 || *low >= *high || *high > greatest_number)
+        t.fail("range", "range is not the least and the greatest of whole numbers",
+               fmt::format("two of 0 to {}, as [0, 120]", greatest_number));
+    item.lowest = static_cast<unsigned>(*low);
+    item.greatest = static_cast<unsigned>(*high);
+}
+
+// Reads the number of steps, "vas", or a label for each step.
+void read_steps(const toml_table& t, questionnaire_item& item)
+{
+    item.labels = t.texts("labels", most_steps);
+    const toml::node* n = t.node("scale");
+    item.visual = n != nullptr && n->value_exact<std::string>() == "vas";
+    if (item.visual)
+        item.lowest = 0;
+    item.greatest = item.visual
+                        ? visual_most
+                        : t.whole("scale", 2, most_steps).value_or(static_cast<unsigned>(item.labels.size()));
+    const std::size_t labels = item.labels.size();
+    const bool fits = item.visual ? labels == 2 : labels == 0 || labels == 2 || labels == item.greatest;
+    if (item.greatest < 2 || !fits)
+        t.fail(t.has("labels") ? "labels" : "kind", fmt::format("a scale has {}", counted(labels, "label")),
+               item.visual ? "one for each end"
+                           : "one for each step, or scale with one for each end or none");
+}
+
+questionnaire_item read_item(const toml_table& t)
+{
+    t.only({"name", "question", "kind", "choices", "range", "labels", "scale"});
+    questionnaire_item item;
+    item.name = plain_name(t);
+    item.question = t.need(t.text("question"), "question");
+    constexpr std::array<std::string_view, 4> kinds{"choice", "number", "text", "scale"};
+    const std::string kind = t.need(t.choice("kind", {kinds.begin(), kinds.end()}), "kind");
+    item.kind = static_cast<item_kind>(std::ranges::find(kinds, kind) - kinds.begin());
+    constexpr std::array keys{std::pair("choices", item_kind::choice), std::pair("range", item_kind::number),
+                              std::pair("labels", item_kind::scale), std::pair("scale", item_kind::scale)};
+    for (const auto& [key, of] : keys)
+        if (item.kind != of && t.has(key))
+            t.fail(key, fmt::format("{} is not of a {}", key, kind),
+                   fmt::format("leave it out, or kind = \"{}\"", kinds[static_cast<std::size_t>(of)]));
+    if (item.kind == item_kind::choice) {
+        item.labels = t.texts("choices", most_choices);
+        item.greatest = static_cast<unsigned>(item.labels.size());
+        if (item.greatest < 2)
+            t.fail(t.has("choices") ? "choices" : "kind",
+                   fmt::format("a choice has {}", counted(item.greatest, "text")),
+                   "choices with two or more");
+    } else if (item.kind == item_kind::number) {
+        read_range(t, item);
+    } else if (item.kind == item_kind::scale) {
+        read_steps(t, item);
+    }
+    return item;
+}
+
+} // namespace
+
+bool is_questionnaire(const toml_table& run)
+{
+    return run.text("task") == "questionnaire";
+}
+
+questionnaire read_questionnaire(const toml_table& run, const std::vector<questionnaire>& others)
+{
+    run.only({"name", "task", "when", "title", "text", "item"});
+    questionnaire q;
+    q.name = plain_name(run);
+    for (const questionnaire& other : others)
+        if (in_small_letters(other.name) == in_small_letters(q.name))
+            run.fail("name", fmt::format("the questionnaire \"{}\" is there twice", q.name),
+                     "each has a file of its own");
+    const std::string when = run.choice("when", {"before", "between", "after"}).value_or("before");
+    q.when = when == "before"    ? questionnaire_time::before
+             : when == "between" ? questionnaire_time::between
+                                 : questionnaire_time::after;
+    q.title = run.text("title").value_or("");
+    q.text = run.text("text").value_or("");
+    for (const toml_table& t : run.tables("item")) {
+        questionnaire_item item = read_item(t);
+        // Columns that say whose answers a line has.
+        constexpr std::array<std::string_view, 4> taken{"participant_id", "session", "session_id", "after"};
+        if (std::ranges::count(taken, item.name) > 0 ||
+            std::ranges::count(q.items, item.name, &questionnaire_item::name) > 0)
+            t.fail("name", fmt::format("the column \"{}\" is there twice", item.name),
+                   "each item has a name of its own");
+        q.items.push_back(std::move(item));
+    }
+    if (q.items.empty())
+        run.fail(fmt::format("the questionnaire \"{}\" has no question", q.name), "add [[run.item]]");
+    return q;
+}
+
+std::filesystem::path answers_path(const questionnaire& q, const char* extension)
+{
+    return std::filesystem::path("phenotype") / (q.name + extension);
+}
+
+std::string_view describe_time(questionnaire_time t) noexcept
+{
+    return t == questionnaire_time::before    ? "before the first run"
+           : t == questionnaire_time::between ? "after each run but the last"
+                                              : "after the last run";
+}
+
+std::vector<std::string> label_answers(const questionnaire_item& item)
+{
+    if (item.kind == item_kind::number || item.kind == item_kind::text)
+        return {};
+    std::vector<std::string> all(item.greatest - item.lowest + 1);
+    if (item.labels.size() == all.size())
+        all = item.labels;
+    else if (!item.labels.empty()) {
+        all.front() = item.labels.front();
+        all.back() = item.labels.back();
+    }
+    return all;
+}
+
+} // namespace tactor::study

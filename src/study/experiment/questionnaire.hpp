@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Questionnaires of a definition: [[run]] with task = "questionnaire", which has no trials.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactor::detail {
+class toml_table;
+}
+
+namespace tactor::study {
+
+/// Steps of a scale, at most, and the greatest answer on a line.
+inline constexpr unsigned most_steps = 101;
+inline constexpr unsigned visual_most = 100;
+
+/// Place of a questionnaire in a session.
+enum class questionnaire_time {
+    before,  ///< the first run
+    between, ///< after each run but the last
+    after,   ///< the last run
+};
+
+/// Kind of answer.
+enum class item_kind { choice, number, text, scale };
+
+/// [[run.item]]: a question, and the answers that it may have.
+struct questionnaire_item {
+    std::string name; ///< column of the table: letters, digits and _
+    std::string question;
+    item_kind kind = item_kind::text;
+    std::vector<std::string> labels = {}; ///< choice: of each; scale: of each step, of both ends, or none
+    unsigned lowest = 1;                  ///< not of a text
+    unsigned greatest = 1;
+    bool visual = false; ///< scale: places on a line, without numbers
+};
+
+struct questionnaire {
+    std::string name; ///< phenotype/NAME.tsv: letters, digits and _
+    questionnaire_time when = questionnaire_time::before;
+    std::string title = {};
+    std::string text = {};
+    std::vector<questionnaire_item> items = {};
+};
+
+/// Returns true if [[run]] is a questionnaire. \throws error (bad_input) for a task that is no text.
+bool is_questionnaire(const detail::toml_table& run);
+
+/// Reads such a [[run]], after the `others`. \throws error (bad_input) with line and column.
+questionnaire read_questionnaire(const detail::toml_table& run, const std::vector<questionnaire>& others);
+
+/// Returns the path of its answers in a study's folder, phenotype/NAME.tsv, or that of their description.
+std::filesystem::path answers_path(const questionnaire& q, const char* extension = ".tsv");
+
+/// Returns "before the first run", "after each run but the last" or "after the last run".
+std::string_view describe_time(questionnaire_time t) noexcept;
+
+/// Lists the labels of the answers from `lowest` on, empty where the number is enough; none for number and
+/// text.
+std::vector<std::string> label_answers(const questionnaire_item& item);
+
+} // namespace tactor::study

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""Questionnaires of tactor experiment: asked at the terminal, by lines and on the page; their tables; sessions that go on."""
+import json
+
+from experiments import SHORT, PersonTest, Terminal, contents, read_table
+from harness import ROOT, main
+from pages import Session
+
+FORMS = SHORT.replace("practice = 1\n", "").replace("animation = true\n", "") + """[[run]]
+name = "about"
+task = "questionnaire"
+title = "About you"
+text = "Four questions."
+item = [
+  { name = "age", question = "Age?", kind = "number", range = [0, 120] },
+  { name = "hand", question = "Hand?", kind = "choice", choices = ["left", "right"] },
+  { name = "remark", question = "Remark?", kind = "text" },
+  { name = "ease", question = "Ease?", kind = "scale", scale = "vas", labels = ["ill", "well"] },
+]
+[[run]]
+name = "tired"
+task = "questionnaire"
+when = "between"
+[[run.item]]
+name = "now"
+question = "Tired?"
+kind = "scale"
+labels = ["no", "a little", "very"]
+[[run]]
+name = "end"
+task = "questionnaire"
+when = "after"
+[[run.item]]
+name = "remark"
+question = "Anything else?"
+kind = "text"
+[[run.item]]
+name = "again"
+question = "Again?"
+kind = "scale"
+scale = 5
+labels = ["never", "always"]
+"""
+AGREED = "y\n" * 3
+EXAMPLE = ROOT / "examples/experiments/questionnaires.toml"
+
+
+class Forms(PersonTest):
+    def setUp(self):
+        super().setUp()
+        self.write("short.toml", FORMS)
+
+    def told(self, name):
+        return [list(row.values()) for row in read_table(self.dir / f"study/phenotype/{name}.tsv")]
+
+
+class AtTheTerminal(Forms):
+    def test_letters_are_text_and_the_experimenter_s_keys_elsewhere(self):
+        t = Terminal(self, self.args())
+        t.answer("Do you agree", "y")
+        for i in (0, 1):
+            t.answer(f"{i}: Did you feel it", "y")
+        t.answer("About you\\s+Four questions.\\s+Age\\? 0 to 120: ", "121\n")
+        t.answer("no answer: 0 to 120: ", "p3\x7f33\n")  # a pause comes
+        t.answer("Hand\\? 1 left, 2 right: ", "32")
+        t.answer("Remark\\? ", "rvpgq é\x7fë\x1b[Dx\n")
+        t.answer("Ease\\? 0 \\(ill\\) to 100 \\(well\\): ", "70\n")
+        t.answer("A pause", "g")
+        t.answer("Any key begins", " ")
+        for _ in (1, 2):
+            t.answer("Which one\\? 1 or 2: ", "1")
+        t.answer("Tired\\? 1 no, 2 a little, 3 very: ", "2")
+        t.answer("(?s)A break.*Any key begins", " ")
+        for _ in (1, 2):
+            t.answer("How even\\?.*: ", "1")
+        t.answer("Anything else\\? ", "\n")
+        t.answer("Again\\? 1 \\(never\\) to 5 \\(always\\): ", "5")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertIn("rvpgq é\b \bëx", t.all)
+        self.assertEqual(self.told("about"), [["sub-01", "33", "2", "rvpgq ëx", "70"]])
+        self.assertEqual(read_table(self.dir / "study/phenotype/tired.tsv"), [{"participant_id": "sub-01", "after": "pairs", "now": "2"}])
+        self.assertEqual(self.told("end"), [["sub-01", "n/a", "5"]])
+
+    def test_lines_are_whole_texts(self):
+        lines = AGREED + "33\n1\n q  \"x\"\n0\n" + "1\n1\n" + "3\n" + "1\n1\n" + '"quoted" n/a\n9\n1\n'
+        said = self.ok(*self.args(), stdin=lines).stdout
+        self.assertIn("That is no answer: 1 (never) to 5 (always)", said)
+        self.assertEqual(self.told("about"), [["sub-01", "33", "1", " q  \"x\"", "0"]])
+        self.assertEqual(self.told("end")[0][1], '"""quoted"" n/a"')  # or it would be read without its quotes
+        self.assertIn("finished", self.ok(*self.args("--resume"), stdin="").stdout)
+
+    def test_ctrl_c_in_a_text_ends(self):
+        t = Terminal(self, self.args())
+        t.answer("agree", "y")
+        for i in (0, 1):
+            t.answer(f"{i}: Did you feel it", "y")
+        t.answer("Age\\?", "1\n")
+        t.answer("Hand\\?", "1")
+        t.answer("Remark\\? ", "abc\x03")
+        self.assertEqual(t.end(), 130)
+        self.assertFalse((self.dir / "study").exists())
+
+
+class OnThePage(Forms):
+    def start(self, *more):
+        return Session(self, self.args("--display", "page", *more))
+
+    def begin(self, p, agrees=True):
+        if agrees:
+            p.answer("consent", 1)
+        for _ in (0, 1):
+            p.answer("walk", 1)
+
+    def test_a_form_is_asked_anew_until_it_is_complete_and_then_no_more(self):
+        s = self.start()
+        p = s.participant()
+        self.begin(p)
+        asked = p.answer("questionnaire", 1)
+        self.assertEqual((asked["question"], asked["text"], asked["choices"]), ("About you", "Four questions.", ["Begin"]))
+        p.answer("questionnaire", 33)
+        p.answer("questionnaire", 1)
+        p.until("questionnaire")
+        s.process.kill()
+        s.end()
+        self.assertFalse((self.dir / "study/phenotype/about.tsv").exists())
+        s = self.start()
+        p = s.participant()
+        self.begin(p)
+        p.answer("questionnaire", 1)
+        asked = p.answer("questionnaire", 121)
+        self.assertEqual((asked["entry"], asked["progress"]["trial"], asked["progress"]["trials"]), ({"lowest": 0, "greatest": 120}, 1, 4))
+        p.answer("questionnaire", 0)
+        p.answer("questionnaire", 2)
+        s.key("p")
+        s.told("a pause comes")
+        asked = p.until("questionnaire")
+        self.assertEqual(asked["entry"], {"most": 2000})
+        p.say(ask=asked["ask"], text="x" * 2001)
+        self.assertEqual(p.until("questionnaire")["ask"], asked["ask"])
+        p.say(ask=asked["ask"], text="two\nlines\tand\x07\n€")
+        self.assertEqual(len(p.answer("questionnaire", 101)["choices"]), 101)
+        p.until("pause", asked=False)
+        s.process.kill()  # the form is complete
+        s.end()
+        self.assertEqual(self.told("about"), [["sub-01", "0", "2", "two\\nlines and\\n€", "100"]])
+        s = self.start("--resume")
+        p = s.participant()
+        self.begin(p, agrees=False)
+        p.answer("introduce", 1)
+        for _ in (1, 2):
+            p.answer("question", 1)
+        p.until("questionnaire")
+        s.key("q")
+        self.assertEqual(s.end(), 130)
+        self.assertFalse((self.dir / "study/phenotype/tired.tsv").exists())
+        s = self.start("--resume")
+        p = s.participant()
+        self.begin(p, agrees=False)
+        p.answer("questionnaire", 3)
+        p.answer("introduce", 1)
+        for _ in (1, 2):
+            p.answer("question", 1)
+        p.until("questionnaire")  # all trials are done
+        s.process.kill()
+        s.end()
+        s = self.start("--resume")
+        p = s.participant()
+        asked = p.until("questionnaire")  # and nothing is left to be felt
+        p.say(ask=asked["ask"], text="")
+        p.answer("questionnaire", 1)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual(self.told("tired"), [["sub-01", "pairs", "3"]])
+        self.assertEqual(self.told("end"), [["sub-01", "n/a", "1"]])
+        self.assertIn("finished", self.ok(*self.args("--resume")).stdout)
+
+
+class Tables(Forms):
+    def test_answers_are_drawn_and_lines_of_others_stay(self):
+        self.simulate("01", definition="short.toml")
+        whole = contents(self.dir / "study")
+        table = self.dir / "study/phenotype/about.tsv"
+        self.assertEqual(self.told("about")[0][3], "simulated")
+        added = table.read_text().replace("age\t", "rater\tage\t").replace("sub-01\t", "sub-01\tA. B.\t").rstrip("\n")
+        table.write_text(added)
+        self.simulate("02", definition="short.toml")
+        self.assertTrue(table.read_text().startswith(added + "\nsub-02\tn/a\t"), table.read_text())
+        # A session that goes on draws what it would have drawn.
+        table.write_bytes(whole["phenotype/about.tsv"])
+        last = self.dir / "study/phenotype/end.tsv"
+        last.unlink()
+        self.simulate("01", "--resume", definition="short.toml")
+        self.assertEqual(last.read_bytes(), whole["phenotype/end.tsv"])
+        report = self.ok("report", "study").stdout
+        self.assertIn("**Questionnaire about**: About you, before the first run, 4 items. Answered by 1 of 2 participants, 1 time in all.", report)
+        self.assertIn("**Questionnaire tired**: after each run but the last, 1 item. Answered by 2 of 2 participants, 2 times in all.", report)
+        self.assertEqual(list(self.analysis()["runs"]), ["pairs", "marks"])
+        self.ok("experiment", "short.toml", "--simulate", "seed=1", "--power", "2", "--studies", "1")
+        table.write_text("participant_id\tage\n")
+        self.simulate("03", definition="short.toml", status=2, says=("phenotype/about.tsv", "hand"))
+
+    def test_the_description_has_questions_and_levels(self):
+        self.simulate("01", definition="short.toml")
+        told = json.loads((self.dir / "study/phenotype/about.json").read_text())
+        self.assertIn("About you, asked before the first run. Four questions.", told["MeasurementToolMetadata"]["Description"])
+        self.assertEqual(told["age"], {"Description": "Age?"})
+        self.assertEqual(told["hand"], {"Description": "Hand?", "Levels": {"1": "left", "2": "right"}})
+        self.assertEqual(told["ease"]["Levels"], {"0": "ill", "100": "well"})
+
+    def test_a_dry_run_lists_them(self):
+        self.assertIn("questionnaire end: after the last run, 2 items\n", self.ok("experiment", "short.toml", "--dry-run").stdout)
+        told = json.loads(self.ok("experiment", "short.toml", "--dry-run", "--format", "json").stdout)["questionnaires"]
+        self.assertEqual(told[1], {"name": "tired", "when": "after each run but the last", "items": ["now"]})
+
+    def test_the_example_runs(self):
+        self.assertIn("symptoms: after the last run, 16 items", self.ok("experiment", EXAMPLE, "--dry-run").stdout)
+        self.simulate("01", definition=EXAMPLE)
+        row, = read_table(self.dir / "study/phenotype/symptoms.tsv")
+        self.assertEqual(len(row), 17)
+        self.assertLessEqual({v for k, v in row.items() if k != "participant_id"}, set("1234"))
+        about, = read_table(self.dir / "study/phenotype/demographics.tsv")
+        self.assertIn(int(about["age"]), range(18, 121))
+
+
+if __name__ == "__main__":
+    main()
