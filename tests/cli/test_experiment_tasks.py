@@ -193,6 +193,7 @@ class Tasks(ExperimentTest):
         self.assertIn("pse against -24", text)
         report = self.ok("report", "study").stdout
         self.assertIn("chosen by the answers from -40 to -8; standard -24", report)
+        self.assertEqual({line.split(" | ")[-1] for line in report.splitlines() if line.startswith("| east | park |")}, {"all |"})
 
     def test_power_is_that_of_the_main_figure(self):
         self.write("tasks.toml", tasks("values", "words", "same"))

@@ -57,7 +57,8 @@ void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code
     auto at = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.first == fact; });
     if (at == all.end())
         at = all.emplace(at, fact, std::vector<std::string>());
-    at->second.push_back(code);
+    if (at->second.empty() || at->second.back() != code) // two stimuli of a session may be the same
+        at->second.push_back(code);
 }
 
 bool is_simulated(const session_facts& s)
