@@ -26,13 +26,11 @@
 #include "files/plan/plan_members.hpp"
 #include "session/device.hpp"
 #include "session/environment.hpp"
-#include "session/process.hpp"
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/adaptive.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/session/questionnaire_session.hpp"
 #include "study/session/sync_codes.hpp"
 #include "synth/score/drive_room.hpp"
 
@@ -247,133 +245,6 @@ json rest_facts(const prepared_experiment& p)
     }
     return all;
 }
-
-constexpr double pause_s = 0.5; // from an answer to what comes next
-
-// Begin of a simulated session's clock: the year 2000, because its trials have no real time.
-constexpr std::int64_t epoch_ns = 946684800LL * 1000000000LL;
-
-class simulated_session {
-public:
-    simulated_session(const prepared_experiment& p, const simulation& s, session_store& store)
-        : p_(p),
-          simulation_(s),
-          store_(store),
-          codes_(p, store, nullptr, nullptr),
-          flow_(make_flow(p, store, false))
-    {
-    }
-
-    int hold()
-    {
-        go_to_end_of_lines();
-        std::optional<run_tables> tables;
-        std::optional<simulated_observer> who;
-        for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next()) {
-            if (const int signal = stop_.poll())
-                return signal;
-            if (s.what == step_kind::introduce) {
-                tables.emplace(store_, p_.run_at(s.run));
-                who.emplace(simulation_, p_.definition, p_.run_at(s.run), p_.stimuli, p_.participant);
-            }
-            if (s.what == step_kind::rest)
-                now_ += frames(p_.run_at(s.run).break_s);
-            if (s.what == step_kind::ask) {
-                const questionnaire& q = p_.definition.questionnaires[s.form];
-                const std::string after = name_run_before(p_, q, s.run);
-                store_.append_answers(
-                    q, after,
-                    draw_answers(q, fmt::format("{}/{}/{}/{}/{}", simulation_.seed, p_.definition.name,
-                                                p_.participant, q.name, after)));
-                flow_.answered(s);
-                continue;
-            }
-            if (s.what != step_kind::trial) {
-                flow_.go_on();
-                continue;
-            }
-            const trial_row row = play(s, *who, find_trial(p_, s, store_));
-            tables->at(s).add(row, utc_ns(now_), p_.render.rate);
-            note_codes(s, row);
-            codes_.write(p_.run_at(s.run), row, tables->at(s));
-            pass(row);
-            flow_.took(row.is_void);
-        }
-        return 0;
-    }
-
-private:
-    std::uint64_t frames(double seconds) const
-    {
-        return static_cast<std::uint64_t>(std::llround(seconds * p_.render.rate));
-    }
-
-    std::int64_t utc_ns(std::uint64_t frame) const
-    {
-        const std::uint64_t rate = p_.render.rate;
-        const auto microseconds = frame / rate * 1000000 + frame % rate * 1000000 / rate;
-        return epoch_ns + static_cast<std::int64_t>(microseconds) * 1000;
-    }
-
-    // Sets the clock after a trial from its line alone: a session that goes on has nothing else.
-    void pass(const trial_row& row)
-    {
-        now_ = row.frame_1.value_or(now_) + frames(row.duration_s) +
-               frames(row.response_time_s.value_or(0.0)) + frames(pause_s);
-    }
-
-    // Sets the clock of a session that goes on.
-    void go_to_end_of_lines()
-    {
-        for (const run_sequence& s : p_.runs) {
-            const run_definition& r = p_.definition.runs[s.run];
-            for (const trial_row& row : store_.practice_rows(r))
-                pass(row);
-            const std::vector<trial_row> rows = store_.rows(r);
-            for (const trial_row& row : rows)
-                pass(row);
-            if (replay(p_, s, rows).done())
-                now_ += frames(r.break_s);
-        }
-    }
-
-    trial_row play(const session_step& s, const simulated_observer& who, const planned_trial& t)
-    {
-        const run_definition& r = p_.run_at(s.run);
-        if (r.animation)
-            now_ += frames(p_.definition.motions[t.motion].drawn.motion.duration_s());
-        now_ += codes_.lead(s);
-        const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
-        trial_row row = planned_row(p_, t, s.which);
-        row.stream = 1;
-        row.frame_1 = now_;
-        if (t.method_2)
-            row.frame_2 = now_ + p_.stimuli.second(t);
-        row.is_void = a.is_void;
-        row.xruns = a.is_void ? 1 : 0;
-        if (!a.is_void)
-            set_response(row, p_, r, a.response, a.response_time_ms * 1e-3);
-        return row;
-    }
-
-    void note_codes(const session_step& s, const trial_row& row)
-    {
-        if (s.practice)
-            return;
-        const planned_trial& t = find_trial(p_, s, store_);
-        codes_.note_stimuli(t, now_, p_.stimuli.frames(t), utc_ns(now_));
-        const std::uint64_t then = now_ + p_.stimuli.frames(t) + frames(row.response_time_s.value_or(0.0));
-        codes_.note(row.is_void ? code_event::made_void : code_event::answer, t, then, utc_ns(then));
-    }
-
-    const prepared_experiment& p_;
-    const simulation& simulation_;
-    session_store& store_;
-    sync_codes codes_;
-    session_flow flow_;
-    session::interrupt stop_;
-    std::uint64_t now_ = 0; ///< frame of the virtual stream
-};
 
 } // namespace
 
@@ -723,11 +594,6 @@ double run_table::onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_
     if (first_frame_ && stream == first_stream_)
         return (static_cast<double>(frame) - static_cast<double>(*first_frame_)) / rate;
     return std::max(0.0, static_cast<double>(at_ns - began_ns_.value_or(at_ns)) * 1e-9);
-}
-
-int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store)
-{
-    return simulated_session(p, s, store).hold();
 }
 
 } // namespace tactor::study
