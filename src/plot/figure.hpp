@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Whole pictures: of strokes with their views, of predicted percepts, and of bars; what they say of a plan.
+/// Whole pictures: of strokes with their views, of predicted percepts, and of bars and curves; what they say
+/// of a plan.
 #pragma once
 
 #include <cstddef>
@@ -67,7 +68,7 @@ struct bar_panel {
     std::string title = {};
     std::string y_title = {};
     double y_from = 0.0;
-    double y_to = 1.0;                ///< above y_from; bars end here
+    double y_to = 1.0;                ///< above y_from; bars end here, and begin at the value closest to 0
     std::optional<double> level = {}; ///< a dashed line, such as chance
     std::vector<std::string> groups = {};
     std::vector<bar_series> series = {}; ///< each has as many bars as there are groups
@@ -85,22 +86,55 @@ struct matrix_panel {
     std::vector<std::vector<std::size_t>> counts = {}; ///< by row, then column
 };
 
-struct bar_figure {
+struct weighted_dot {
+    spot at;             ///< in units of the axes
+    double weight = 1.0; ///< the area grows with it
+};
+
+/// A function, and the values to which it was fitted.
+struct curve {
+    std::string name = {};       ///< empty: not in the legend
+    std::size_t colour = 0;      ///< see stroke_colour()
+    bool thick = false;          ///< a mean; else a line among others
+    std::vector<spot> line = {}; ///< in units of the axes, by x
+    std::vector<weighted_dot> dots = {};
+};
+
+/// An axis of curves.
+struct curve_axis {
+    std::string title = {};
+    double from = 0.0;
+    double to = 1.0;                  ///< above `from`
+    std::optional<double> level = {}; ///< a dashed line across, such as chance
+    bool logs = false;                ///< the values are decimal logarithms
+};
+
+struct curve_panel {
+    std::string title = {};
+    curve_axis x = {};
+    curve_axis y = {};
+    std::vector<curve> curves = {}; ///< the first lowest
+    std::string key = {};           ///< beside the title, such as what the largest dot means
+};
+
+struct panel_figure {
     std::string title = {};
     bool heading = true; ///< true: the title is above the picture
     double width_mm = 170.0;
     std::string note = {};   ///< under the picture
     std::string across = {}; ///< text across each panel, such as "simulated"
-    std::vector<bar_panel> panels = {};
-    std::vector<matrix_panel> matrices = {}; ///< after the panels
+    std::vector<bar_panel> bars = {};
+    std::vector<curve_panel> curves = {};    ///< after the bars
+    std::vector<matrix_panel> matrices = {}; ///< after the curves
 };
 
-/// Draws the panels, two beside each other from 120 mm width on. Each panel is an SVG group of kind "bars"
-/// with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error
-/// bar of kind "error", a dot of kind "value", a line between dots of kind "value-line". A matrix is a group
-/// of kind "matrix" with data-title: each cell, of kind "cell", is the darker the larger its share of the
-/// row.
-canvas draw_bar_figure(const bar_figure& f);
+/// Draws the panels, two beside each other from 120 mm width on. Each panel of bars is an SVG group of kind
+/// "bars" with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar",
+/// its error bar of kind "error", a dot of kind "value", a line between dots of kind "value-line". One of
+/// curves is of kind "curves", with data-x0 and data-x-scale, too: lines are of kind "curve" or "mean-curve",
+/// dots of kind "dot". A matrix is a group of kind "matrix" with data-title: each cell, of kind "cell", is
+/// the darker the larger its share of the row.
+canvas draw_panels(const panel_figure& f);
 
 /// Returns the vibration, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of
 /// 60 to 400 Hz", "brush.wav along the path"; with ", AM of 30 Hz" if it is modulated.

@@ -190,6 +190,20 @@ TEST_CASE("a clipped line is inside the box, and keeps its part inside")
     }
 }
 
+TEST_CASE("logarithmic ticks are at round numbers, with fewer of them over more decades")
+{
+    const auto labels = [](double lo, double hi) {
+        const ticks t = log_ticks(std::log10(lo), std::log10(hi), 7);
+        std::vector<std::string> all;
+        for (const double v : t.at)
+            all.push_back(t.label(v));
+        return all;
+    };
+    CHECK(labels(0.9, 60.0) == std::vector<std::string>{"1", "2", "5", "10", "20", "50"});
+    CHECK(labels(0.05, 2000.0) == std::vector<std::string>{"0.1", "1", "10", "100", "1000"});
+    CHECK(labels(2.0, 6.0) == std::vector<std::string>{"2", "3", "4", "5", "6"});
+}
+
 TEST_CASE("a line that only passes through is cut at both sides")
 {
     const auto parts = clip({{-10.0, 5.0}, {30.0, 5.0}}, {0.0, 0.0, 20.0, 10.0});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The commands that read a study: analyze and report.
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,10 +13,10 @@
 
 #include <tactor/error.hpp>
 
+#include "cli/analyze/analyze_figure.hpp"
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/settings.hpp"
 #include "core/split.hpp"
-#include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/process.hpp"
 #include "study/analysis/analysis_json.hpp"
@@ -73,15 +72,6 @@ void make_derivatives(const std::filesystem::path& folder, const std::filesystem
         std::filesystem::create_directories(ours, ignored);
 }
 
-// The error bars of a figure.
-enum class error_bars { se, within, ci };
-
-// Names in --bars and words in the figure's note, in the order of error_bars.
-constexpr std::array<std::pair<const char*, const char*>, 3> all_error_bars{
-    {{"se", "standard errors"},
-     {"within", "95 % intervals within participants (Cousineau-Morey)"},
-     {"ci", "95 % intervals of the means"}}};
-
 struct analyze_options {
     std::string folder;
     std::string format = "text";
@@ -90,87 +80,6 @@ struct analyze_options {
     picture_options picture{.width_mm = 170.0};
     study::selection who;
 };
-
-// Returns the ends of an error bar.
-std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind,
-                                         const study::interval& possible)
-{
-    if (kind == error_bars::se)
-        return t.se ? std::optional(study::interval{*t.mean - *t.se, *t.mean + *t.se}) : std::nullopt;
-    const std::optional<study::interval>& i = kind == error_bars::within ? t.ci_within : t.ci;
-    return i ? std::optional(study::cut_to(*i, possible)) : std::nullopt;
-}
-
-plot::bar_series make_bars(const std::string& name, const study::by_motion& b, error_bars kind,
-                           const study::interval& possible)
-{
-    plot::bar_series s{name};
-    for (std::size_t m = 0; m < b.motion.size(); ++m)
-        s.bars.push_back({*b.motion[m].mean, find_ends(b.motion[m], kind, possible), b.motion_values[m]});
-    s.bars.push_back({*b.all.mean, find_ends(b.all, kind, possible), b.all_values});
-    return s;
-}
-
-plot::bar_panel make_panel(const study::run_analysis& r, error_bars kind)
-{
-    const study::interval possible = study::possible_values(r.run);
-    plot::bar_panel p;
-    p.title = fmt::format("{} (n = {})", r.run.name, r.n);
-    p.groups = r.run.motions;
-    p.groups.emplace_back("all");
-    p.joined = r.run.motions.size();
-    switch (r.run.task) {
-    case study::task_kind::choose:
-        p.level = 50.0;
-        p.y_to = 100.0;
-        if (has_worths(r.run)) {
-            p.y_title = "chosen (% of its trials)";
-            break;
-        }
-        p.y_title = fmt::format("{} chosen (%)", r.run.methods.back());
-        p.series.push_back(make_bars("", r.cells[0], kind, possible));
-        return p;
-    case study::task_kind::rate:
-        p.y_title = "mean rating";
-        p.y_from = r.run.lowest_rating();
-        p.y_to = r.run.scale;
-        break;
-    case study::task_kind::identify:
-        p.y_title = "correct (%)";
-        p.level = study::chance(r.run);
-        p.y_to = 100.0;
-        break;
-    default:
-        break;
-    }
-    for (std::size_t m = 0; m < r.run.methods.size(); ++m)
-        p.series.push_back(make_bars(r.run.methods[m], r.cells[m], kind, possible));
-    return p;
-}
-
-// Draws means with error bars and each participant by motion, a panel for each run, as the paper's figures 8
-// and 9, and the answers of runs that identify.
-plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, error_bars kind)
-{
-    plot::bar_figure f;
-    f.title = o.choose_title(a.experiment);
-    f.heading = o.has_title();
-    f.width_mm = o.width_mm;
-    f.note = fmt::format("Means over participants; error bars: {}; dots and thin lines: participants.",
-                         all_error_bars[static_cast<std::size_t>(kind)].second);
-    f.across = a.simulated ? "simulated" : "";
-    for (const study::run_analysis& r : a.runs) {
-        if (r.n == 0 || find_task(r.run.task).measures)
-            continue;
-        f.panels.push_back(make_panel(r, kind));
-        for (std::size_t m = 0; m < r.confusion.size(); ++m)
-            f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, r.run.methods[m]), "played",
-                                  "answered", r.run.motions, r.confusion[m]});
-    }
-    if (!f.matrices.empty())
-        f.note += " Answers: their number, the darker the larger the share of the motion that was played.";
-    return plot::draw_bar_figure(f);
-}
 
 void draw(const analyze_options& o, const study::analysis& a)
 {
@@ -236,7 +145,8 @@ int run_analyze(command_line& line)
                       "format of the output; tsv has a line for each trial, for R; wide has a line for each "
                       "participant, for JASP and SPSS (default text)");
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw means with error bars, each participant, and the answers of identify",
+             "also draw means with error bars, psychometric functions, each participant, and the answers of "
+             "identify",
              [&o](const std::string& t) {
                  plot::find_format(t);
                  o.picture.file = t;

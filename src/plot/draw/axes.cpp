@@ -47,30 +47,6 @@ std::vector<spot> thin_out(const std::vector<spot>& line)
     return out;
 }
 
-// Draws samples of lines and their names, in rows up to `width`, from (x, y) down. Returns the height, also
-// without a canvas.
-double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
-{
-    double at = x;
-    double row = y;
-    for (const series& s : lines) {
-        const double need = sample_length + 3.0 + text_width(s.name, small_text);
-        if (at > x && at + need > x + width) {
-            at = x;
-            row += legend_row;
-        }
-        if (c != nullptr) {
-            const double middle = row + legend_row / 2.0;
-            c->line({at, middle}, {at + sample_length, middle}, s.look, {.kind = "legend"});
-            c->text({at + sample_length + 3.0, middle + cap_height(small_text) / 2.0},
-                    shorten(s.name, small_text, width - sample_length - 3.0), {.size = small_text},
-                    {.kind = "legend"});
-        }
-        at += need + 8.0;
-    }
-    return at > x ? row + legend_row - y : 0.0;
-}
-
 struct segment {
     spot from;
     spot to;
@@ -100,16 +76,20 @@ std::optional<segment> clip_segment(spot a, spot b, box w)
 }
 
 // Returns ticks whose labels do not touch along a horizontal axis.
-ticks horizontal_ticks(const scale& x)
+ticks horizontal_ticks(const scale& x, bool logs)
 {
     const double length = std::abs(x.page_to - x.page_from);
     ticks t;
     for (std::size_t most = 11; most > 1; --most) {
-        t = nice_ticks(x.from, x.to, most);
+        t = logs ? log_ticks(x.from, x.to, most) : nice_ticks(x.from, x.to, most);
         double widest = 0.0;
-        for (const double v : t.at)
-            widest = std::max(widest, text_width(t.label(v), small_text));
-        if (t.at.size() < 2 || t.step * std::abs(x.per_unit()) >= widest + 7.0 || widest + 7.0 > length)
+        double closest = length;
+        for (std::size_t i = 0; i < t.at.size(); ++i) {
+            widest = std::max(widest, text_width(t.label(t.at[i]), small_text));
+            if (i > 0)
+                closest = std::min(closest, (t.at[i] - t.at[i - 1]) * std::abs(x.per_unit()));
+        }
+        if (t.at.size() < 2 || closest >= widest + 7.0 || widest + 7.0 > length)
             break;
     }
     return t;
@@ -129,6 +109,8 @@ double distance(spot p, spot a, spot b) noexcept
 
 std::string ticks::label(double v) const
 {
+    if (logs)
+        return number(std::pow(10.0, v));
     const int decimals = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 12);
     const std::string s = fmt::format("{:.{}f}", v, decimals);
     return s.find_first_not_of("-0.") == std::string::npos ? s.substr(s[0] == '-' ? 1 : 0) : s;
@@ -157,12 +139,31 @@ ticks nice_ticks(double lo, double hi, std::size_t most)
         }
 }
 
-void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title)
+ticks log_ticks(double lo, double hi, std::size_t most)
+{
+    ticks t;
+    t.logs = true;
+    if (hi - lo < 1.0) {
+        for (const double v : nice_ticks(std::pow(10.0, lo), std::pow(10.0, hi), most).at)
+            t.at.push_back(std::log10(v));
+        return t;
+    }
+    for (double decade = std::floor(lo); decade <= hi; decade += 1.0)
+        for (const double factor : {1.0, 2.0, 5.0})
+            if (const double v = decade + std::log10(factor); v >= lo && v <= hi)
+                t.at.push_back(v);
+    if (t.at.size() > most)
+        std::erase_if(t.at, [](double v) { return v != std::round(v); });
+    return t;
+}
+
+void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title,
+                          bool logs)
 {
     const group g(c, {.kind = "axis",
                       .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
                                {"x-scale", fmt::format("{:.9g}", x.per_unit())}}});
-    const ticks t = horizontal_ticks(x);
+    const ticks t = horizontal_ticks(x, logs);
     const style thin{.stroke = ink, .width = 0.6};
     for (const double v : t.at)
         if (grid_top < y)
@@ -243,6 +244,28 @@ std::vector<spot> simplify(const std::vector<spot>& line, double tolerance)
         if (keep[i])
             out.push_back(line[i]);
     return out;
+}
+
+double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
+{
+    double at = x;
+    double row = y;
+    for (const series& s : lines) {
+        const double need = sample_length + 3.0 + text_width(s.name, small_text);
+        if (at > x && at + need > x + width) {
+            at = x;
+            row += legend_row;
+        }
+        if (c != nullptr) {
+            const double middle = row + legend_row / 2.0;
+            c->line({at, middle}, {at + sample_length, middle}, s.look, {.kind = "legend"});
+            c->text({at + sample_length + 3.0, middle + cap_height(small_text) / 2.0},
+                    shorten(s.name, small_text, width - sample_length - 3.0), {.size = small_text},
+                    {.kind = "legend"});
+        }
+        at += need + 8.0;
+    }
+    return at > x ? row + legend_row - y : 0.0;
 }
 
 box draw_chart(canvas& c, const chart& ch)

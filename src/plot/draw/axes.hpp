@@ -26,12 +26,16 @@ struct scale {
 struct ticks {
     double step = 1.0;
     std::vector<double> at = {};
+    bool logs = false; ///< values are decimal logarithms, and labels are of their numbers
 
     /// Returns the label of a value, with as many decimals as the step needs.
     std::string label(double v) const;
 };
 /// Returns at most `most` ticks in lo ... hi, and at least one if lo <= 0 <= hi.
 ticks nice_ticks(double lo, double hi, std::size_t most);
+/// Returns at most `most` ticks at round numbers whose decimal logarithms are in lo ... hi; from a decade on
+/// at 1, 2 and 5 times the powers of ten, or at these alone.
+ticks log_ticks(double lo, double hi, std::size_t most);
 
 inline constexpr double small_text = 6.0; ///< pt, the least at one print column
 inline constexpr double label_text = 6.5;
@@ -44,8 +48,9 @@ inline constexpr double axis_height = 19.0;
 inline constexpr double axis_gap = 1.5;
 
 /// Draws a line at y, ticks and labels under it, `title` under these, and light lines from `grid_top` down to
-/// the line.
-void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title);
+/// the line. `logs`: the values are decimal logarithms.
+void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title,
+                          bool logs = false);
 
 /// Draws a line at the left of `inside` with ticks and labels, light lines across, and `title` upwards with
 /// its foot at title_x.
@@ -58,6 +63,10 @@ struct series {
     std::vector<spot> values = {}; ///< in units of the axes
     style look = {.stroke = ink, .width = 0.8};
 };
+
+/// Draws samples of lines and their names, in rows up to `width`, from (x, y) down. Returns the height, also
+/// without a canvas.
+double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width);
 
 /// Area between two lines of a chart.
 struct chart_band {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/words.hpp"
 #include "study/statistics/tests.hpp"
@@ -161,6 +162,7 @@ response_times summarise_times(const run_outline& run, const std::vector<const r
 void add_measures(run_analysis& r, const std::vector<person_trials>& people, sigmoid kind)
 {
     r.measures = measure_run(r.run, people, kind);
+    r.function = kind;
     for (const person_trials& p : people)
         r.codes.push_back(p.code);
 }
@@ -285,12 +287,23 @@ void warn_of_figures(analysis& a, const run_analysis& r)
             if (c.test.n > 1 && !c.test.t)
                 warn(fmt::format("{}, {} - {}", r.run.methods[row], r.run.motions[c.a], r.run.motions[c.b]),
                      "no variance over participants, so no t test");
-    for (const measured_condition& c : r.measures)
-        for (std::size_t i = 0; i < c.people.size(); ++i)
-            for (const auto& [figure, value] : list_measures(r.run, c.people[i]))
-                if (!value)
-                    warn(fmt::format("{}sub-{}, {}", c.name.empty() ? "" : c.name + ", ", r.codes[i], figure),
-                         "the answers do not determine it");
+    const std::vector<named_measure> figures = list_measures(r.run, {});
+    for (std::size_t k = 0; k < figures.size(); ++k) {
+        std::vector<std::string> whose;
+        for (std::size_t i = 0; i < r.codes.size(); ++i) {
+            std::vector<std::string> in;
+            for (const measured_condition& c : r.measures)
+                if (!list_measures(r.run, c.people[i])[k].second)
+                    in.push_back(c.name.empty() ? "all trials" : c.name);
+            if (!in.empty())
+                whose.push_back(
+                    "sub-" + r.codes[i] +
+                    (in.size() < r.measures.size() ? fmt::format(" ({})", fmt::join(in, ", ")) : ""));
+        }
+        if (!whose.empty())
+            warn(figures[k].first,
+                 fmt::format("the answers do not determine it: {}", fmt::join(whose, ", ")));
+    }
     if (r.n == 1)
         a.no_figures.push_back(r.run.name + ": one participant: tests need two");
 }

@@ -67,6 +67,7 @@ struct run_analysis {
     /// Tasks that measure: all trials, then each condition, if there are several.
     std::vector<measured_condition> measures = {};
     std::vector<std::string> codes = {}; ///< of the participants in them
+    sigmoid function = sigmoid::normal;  ///< of their psychometric functions
     /// identify: answers by method, motion and motion answered, all participants.
     std::vector<std::vector<std::vector<std::size_t>>> confusion = {};
 };

@@ -36,6 +36,20 @@ std::optional<double> estimate_exponent(const run_outline& run, const std::vecto
     return stevens_exponent(ratios, numbers);
 }
 
+std::vector<value_estimate> normalise_estimates(const std::vector<trial>& trials)
+{
+    std::map<double, std::vector<double>> logs;
+    for (const trial& t : trials)
+        logs[t.value].push_back(std::log(t.response));
+    double all = 0.0;
+    for (const auto& [value, own] : logs)
+        all += mean(own) / static_cast<double>(logs.size());
+    std::vector<value_estimate> estimates;
+    for (const auto& [value, own] : logs)
+        estimates.push_back({value, std::exp(mean(own) - all), own.size()});
+    return estimates;
+}
+
 measured_condition measure_condition(const run_outline& run, const std::string& name,
                                      const std::vector<std::pair<std::string, std::vector<trial>>>& people,
                                      sigmoid kind)
@@ -66,6 +80,8 @@ person_measures measure_trials(const run_outline& run, const std::vector<trial>&
     person_measures m;
     if (run.task == task_kind::estimate) {
         m.exponent = estimate_exponent(run, trials);
+        if (m.exponent)
+            m.estimates = normalise_estimates(trials);
         return m;
     }
     const auto count = [&](bool signal, bool positive) {

@@ -24,6 +24,13 @@ struct detection {
     sensitivity found = {};
 };
 
+/// Estimates of one value.
+struct value_estimate {
+    double value = 0.0;
+    double ratio = 1.0; ///< of the geometric mean of its estimates to that of all values
+    std::size_t n = 0;  ///< estimates
+};
+
 /// Results of a participant, those that the run's task has.
 struct person_measures {
     std::vector<answer_block> blocks = {}; ///< answers by value, ascending
@@ -32,6 +39,7 @@ struct person_measures {
     psychometric_bootstrap bootstrap = {};
     std::optional<detection> detected = {};
     std::optional<double> exponent = {};
+    std::vector<value_estimate> estimates = {}; ///< by value, ascending; empty without an exponent
 };
 
 /// Measures trials of a participant. The bootstrap draws from `seed`; empty: there is none.

@@ -95,6 +95,13 @@ constexpr std::string_view to_string(task_kind t) noexcept
     return find_task(t).name;
 }
 
+/// A text that may differ between sessions, as the words of another language do.
+struct loose_text {
+    std::string text = {};
+
+    friend bool operator==(const loose_text&, const loose_text&) noexcept { return true; }
+};
+
 struct run_outline {
     std::string name;
     std::string file_name; ///< the name's letters and digits, which name its files
@@ -109,6 +116,7 @@ struct run_outline {
     std::vector<double> values = {};       ///< of `vary`, ascending
     std::optional<double> standard = {};   ///< value of the other stimulus; none: there is no other
     bool catches = false;                  ///< detect: some trials have no stimulus
+    loose_text second_word = {};           ///< of two by which one stimulus is judged
 
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
     friend bool operator==(const run_outline&, const run_outline&) = default;

@@ -429,6 +429,9 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     o.motions = names_at(r.motions, d.motions);
     o.methods = names_at(r.methods, d.methods);
     read_variation(t, r);
+    if (find_task(o.task).varies && !o.standard)
+        if (std::vector<std::string> words = t.texts("choices", 2); words.size() == 2)
+            o.second_word.text = std::move(words[1]);
     o.trials = read_trials(t, o);
     check_cells(t, o);
     return r;

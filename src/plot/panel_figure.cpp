@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -81,8 +82,9 @@ void draw_bars(canvas& c, const bar_panel& p, const scale& y, box inside)
 {
     for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
         const double height = p.series[i].bars[g].height;
-        const double top = y(std::clamp(height, p.y_from, p.y_to));
-        c.rect({x, top, width, y(p.y_from) - top},
+        const double end = y(std::clamp(height, p.y_from, p.y_to));
+        const double foot = y(std::clamp(0.0, p.y_from, p.y_to));
+        c.rect({x, std::min(end, foot), width, std::abs(foot - end)},
                {.fill = fill_colour(i, p.series.size()), .stroke = ink, .width = 0.5},
                {.kind = "bar",
                 .title = fmt::format("{}: {}", clean(p.groups[g]), number(height)),
@@ -183,6 +185,74 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
     draw_legend(c, p, inside.x, where.bottom() - 2.0, inside.width);
 }
 
+void draw_dots(canvas& c, const curve_panel& p, const scale& x, const scale& y)
+{
+    constexpr double largest = 2.3;
+    constexpr double least = 0.5;
+    double heaviest = 0.0;
+    for (const curve& one : p.curves)
+        for (const weighted_dot& d : one.dots)
+            heaviest = std::max(heaviest, d.weight);
+    for (const curve& one : p.curves)
+        for (const weighted_dot& d : one.dots)
+            c.circle({x(d.at.x), y(d.at.y)}, std::max(least, largest * std::sqrt(d.weight / heaviest)),
+                     {.fill = with_alpha(stroke_colour(one.colour), 0.3),
+                      .stroke = with_alpha(ink, 0.6),
+                      .width = 0.3},
+                     {.kind = "dot", .data = {{"weight", number(d.weight)}}});
+}
+
+void draw_curves(canvas& c, const curve_panel& p, const scale& x, const scale& y, box inside)
+{
+    for (const curve& one : p.curves) {
+        std::vector<spot> on_page;
+        for (const spot& v : one.line)
+            on_page.push_back({x(v.x), y(v.y)});
+        const style look{.stroke = with_alpha(stroke_colour(one.colour), one.thick ? 1.0 : 0.5),
+                         .width = one.thick ? 1.6 : 0.5};
+        for (const std::vector<spot>& part : clip(on_page, inside))
+            c.poly(simplify(part, 0.05), false, look, {.kind = one.thick ? "mean-curve" : "curve"});
+    }
+}
+
+void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across, box where)
+{
+    std::vector<series> named;
+    for (const curve& one : p.curves)
+        if (!one.name.empty())
+            named.push_back({clean(one.name), {}, {.stroke = stroke_colour(one.colour), .width = 1.6}});
+    const double legend = draw_line_legend(nullptr, named, 0.0, 0.0, where.width - 30.0);
+    const double top = 14.0 + legend;
+    const box inside{where.x + 28.0, where.y + top, where.width - 30.0,
+                     where.height - top - axis_height - 2.0};
+    const scale x{p.x.from, p.x.to, inside.x, inside.right()};
+    const scale y{p.y.from, p.y.to, inside.bottom(), inside.y};
+    const group one(c, {.kind = "curves",
+                        .data = {{"title", clean(p.title)},
+                                 {"x0", fmt::format("{:.9g}", x(0.0))},
+                                 {"x-scale", fmt::format("{:.9g}", x.per_unit())},
+                                 {"y0", fmt::format("{:.9g}", y(0.0))},
+                                 {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
+    const double key = text_width(p.key, small_text);
+    c.text({where.right(), where.y + cap_height(title_text)}, p.key,
+           {.size = small_text, .anchor = align::end, .ink = dark_grey}, {.kind = "key"});
+    draw_panel_title(c, p.title, {where.x, where.y, where.width - key - 6.0, where.height});
+    draw_line_legend(&c, named, inside.x, where.y + 11.0, inside.width);
+    draw_vertical_axis(c, y, p.y.logs ? log_ticks(y.from, y.to, 7) : nice_ticks(y.from, y.to, 7), inside,
+                       shorten(clean(p.y.title), label_text, inside.height),
+                       inside.x - 24.0 + cap_height(label_text));
+    draw_horizontal_axis(c, x, inside.bottom(), inside.y, shorten(clean(p.x.title), label_text, inside.width),
+                         p.x.logs);
+    const style guide{.stroke = ink, .width = 0.6, .dash = 2.5};
+    if (p.y.level)
+        c.line({inside.x, y(*p.y.level)}, {inside.right(), y(*p.y.level)}, guide, {.kind = "level"});
+    if (p.x.level)
+        c.line({x(*p.x.level), inside.y}, {x(*p.x.level), inside.bottom()}, guide, {.kind = "level"});
+    write_across(c, across, inside);
+    draw_dots(c, p, x, y);
+    draw_curves(c, p, x, y, inside);
+}
+
 // Returns a colour from white, for no share, to blue.
 colour tint(double share)
 {
@@ -245,7 +315,7 @@ void draw_matrix_panel(canvas& c, const matrix_panel& p, const std::string& acro
 
 } // namespace
 
-canvas draw_bar_figure(const bar_figure& f)
+canvas draw_panels(const panel_figure& f)
 {
     canvas c = make_canvas(f.width_mm);
     c.title = clean(f.title);
@@ -259,17 +329,20 @@ canvas draw_bar_figure(const bar_figure& f)
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
-    const std::size_t count = f.panels.size() + f.matrices.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const double x = margin + (width + between) * static_cast<double>(i % columns);
-        const box where{x, y, width, panel_height};
-        if (i < f.panels.size())
-            draw_bar_panel(c, f.panels[i], across, where);
-        else
-            draw_matrix_panel(c, f.matrices[i - f.panels.size()], across, where);
-        if ((i + 1) % columns == 0 || i + 1 == count)
-            y += panel_height + 8.0;
-    }
+    std::size_t count = 0;
+    const auto draw_each = [&](const auto& panels, const auto& draw) {
+        for (const auto& p : panels) {
+            if (count % columns == 0 && count > 0)
+                y += panel_height + 8.0;
+            draw(c, p, across,
+                 {margin + (width + between) * static_cast<double>(count % columns), y, width, panel_height});
+            ++count;
+        }
+    };
+    draw_each(f.bars, draw_bar_panel);
+    draw_each(f.curves, draw_curve_panel);
+    draw_each(f.matrices, draw_matrix_panel);
+    y += count > 0 ? panel_height + 8.0 : 0.0;
     y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 6, "note");
     c.height = y + margin;
     return c;
