@@ -29,7 +29,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "session"}, "tactor-analysis/1": {"runs{}.groups"}}
+            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
@@ -41,12 +41,14 @@ BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10
 # Objects whose keys are names given by users.
 MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "runs{}.chosen", "runs{}.chosen{}.motion",
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
-        "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups"}
+        "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
+        "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
+        "runs{}.exponent.participants", "runs{}.by"}
 
 
 def member(at):
-    """Returns the place of a member of a map. A group in a run is described as a run is."""
-    return "runs{}" if at == "runs{}.groups" else at + "{}"
+    """Returns the place of a member of a map. A group or a condition in a run is described as a run is."""
+    return "runs{}" if at in ("runs{}.groups", "runs{}.by") else at + "{}"
 
 
 def list_paths(value, at=""):
@@ -86,6 +88,42 @@ name = "form"
 task = "questionnaire"
 item = [{ name = "age", question = "?", kind = "number", range = [0, 99] }]
 """
+
+# Tasks that measure, with two conditions.
+MEASURED = FELT.partition("[[run]]")[0] + """[[run]]
+name = "longer"
+task = "constant"
+question = "?"
+vary = "length_mm"
+values = [4, 8]
+standard = 6
+trials_per_value = 4
+[[run]]
+name = "felt"
+task = "detect"
+vary = "level_dbfs"
+values = [-40, -30, -20]
+catch = 0.2
+trials = 20
+[[run]]
+name = "some"
+task = "detect"
+catch = 0.5
+trials = 8
+[[run]]
+name = "same"
+task = "same-different"
+methods = ["park", "soft"]
+trials = 16
+[[run]]
+name = "size"
+task = "estimate"
+question = "?"
+vary = "level_dbfs"
+values = [-30, -20]
+trials = 8
+"""
+MEASURED = MEASURED.replace("[[run]]", '[[method]]\nname = "soft"\nlevel_dbfs = -30\n[[run]]', 1)
 
 LINE = FELT.replace('task = "identify"', 'task = "rate"\nattribute = "even"\nquestion = "?"\nscale = "vas"\nlabels = ["no", "yes"]')
 
@@ -173,6 +211,9 @@ class Schemas(ToolTest):
         self.write("line.toml", LINE)
         self.write("grouped.toml", FELT.replace("name", "sessions = 2\nname", 1) + '[[group]]\nname = "a"\n')
         self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a", "--session", "1")
+        self.write("measured.toml", MEASURED)
+        for code in "123":
+            self.ok("experiment", "measured.toml", "--participant", code, "-o", "measured", "--simulate", f"seed={code},jnd=4,sigma=0.2,dprime=1")
         for study in ("missing", "three-by-three", "among"):
             studies.STUDIES[study](self.dir / study)
         texts = [self.ok(*args, "--format", "json").stdout for args in (
@@ -189,7 +230,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

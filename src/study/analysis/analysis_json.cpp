@@ -179,31 +179,31 @@ void add_identify(json& j, const run_analysis& r)
     }
 }
 
-json psychometric_json(const run_outline& run, const measured_condition& c,
-                       const std::vector<std::string>& codes)
+json psychometric_json(const run_analysis& r, const measured_condition& c)
 {
     json people = json::object();
-    for (std::size_t i = 0; i < codes.size(); ++i) {
+    for (std::size_t i = 0; i < r.codes.size(); ++i) {
         const person_measures& m = c.people[i];
         json blocks = json::array();
         for (const answer_block& b : m.blocks)
             blocks.push_back({{"value", b.x}, {"n", b.n}, {"positive", b.k}});
-        people[codes[i]] = {{"alpha", m.fit ? json(m.fit->parameters.threshold) : json(nullptr)},
-                            {"beta", m.fit ? json(m.fit->parameters.slope) : json(nullptr)},
-                            {"lapse", m.fit ? json(m.fit->parameters.lapse) : json(nullptr)},
-                            {"guess", m.guess},
-                            {"pse", m.fit ? or_null(m.fit->pse) : json(nullptr)},
-                            {"jnd", m.fit ? or_null(m.fit->jnd) : json(nullptr)},
-                            {"threshold", m.fit ? json(m.fit->parameters.threshold) : json(nullptr)},
-                            {"ci",
-                             {{"pse", interval_json(m.bootstrap.pse)},
-                              {"jnd", interval_json(m.bootstrap.jnd)},
-                              {"threshold", interval_json(m.bootstrap.threshold)}}},
-                            {"deviance", m.fit ? json(m.fit->deviance) : json(nullptr)},
-                            {"p_gof", or_null(m.bootstrap.p_gof)},
-                            {"answers", std::move(blocks)}};
+        people[r.codes[i]] = {{"alpha", m.fit ? json(m.fit->parameters.threshold) : json(nullptr)},
+                              {"beta", m.fit ? json(m.fit->parameters.slope) : json(nullptr)},
+                              {"lapse", m.fit ? json(m.fit->parameters.lapse) : json(nullptr)},
+                              {"guess", m.guess},
+                              {"pse", m.fit ? or_null(m.fit->pse) : json(nullptr)},
+                              {"jnd", m.fit ? or_null(m.fit->jnd) : json(nullptr)},
+                              {"threshold", m.fit ? json(m.fit->parameters.threshold) : json(nullptr)},
+                              {"ci",
+                               {{"pse", interval_json(m.bootstrap.pse)},
+                                {"jnd", interval_json(m.bootstrap.jnd)},
+                                {"threshold", interval_json(m.bootstrap.threshold)}}},
+                              {"deviance", m.fit ? json(m.fit->deviance) : json(nullptr)},
+                              {"p_gof", or_null(m.bootstrap.p_gof)},
+                              {"answers", std::move(blocks)}};
     }
-    json j{{"axis", run.on_db_axis ? "dB" : "linear"},
+    json j{{"function", r.function == sigmoid::normal ? "normal" : "logistic"},
+           {"axis", r.run.on_db_axis ? "dB" : "linear"},
            {"participants", std::move(people)},
            {"mean", json::object()}};
     for (const auto& [figure, t] : c.figures)
@@ -246,13 +246,13 @@ void add_measures(json& j, const run_analysis& r)
     const auto add = [&](json& to, const measured_condition& c) {
         if (r.run.task == task_kind::estimate)
             to["exponent"] = exponent_json(c, r.codes);
-        if (!r.run.vary.empty() && r.run.task != task_kind::estimate)
-            to["psychometric"] = psychometric_json(r.run, c, r.codes);
-        if (r.run.catches || r.run.task == task_kind::same_different)
-            to["dprime"] = dprime_json(c, r.codes);
+        else if (r.run.task != task_kind::same_different)
+            to["psychometric"] = r.run.vary.empty() ? json(nullptr) : psychometric_json(r, c);
+        if (r.run.task == task_kind::same_different || r.run.task == task_kind::detect)
+            to["dprime"] =
+                r.run.task == task_kind::detect && !r.run.catches ? json(nullptr) : dprime_json(c, r.codes);
     };
-    if (!r.run.vary.empty())
-        j["vary"] = r.run.vary;
+    j["vary"] = r.run.vary.empty() ? json(nullptr) : json(r.run.vary);
     j["against"] = or_null(measured_against(r.run));
     for (const measured_condition& c : r.measures)
         add(c.name.empty() ? j : j["by"][c.name], c);
