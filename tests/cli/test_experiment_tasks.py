@@ -6,6 +6,7 @@ import json
 
 from experiments import DESK, ExperimentTest, contents
 from harness import main
+from pictures import Svg
 
 TASKS = """[experiment]
 name = "measures"
@@ -189,11 +190,58 @@ class Tasks(ExperimentTest):
         self.assertAlmostEqual(float(wide[0]["values.pse"]), runs["values"]["psychometric"]["participants"]["01"]["pse"])
         tsv = self.ok("analyze", "study", "--format", "tsv").stdout
         self.assertIn("# glmer(positive ~ value * 1", tsv.replace("value + ", "value * 1 + ", 1))
-        text = self.ok("analyze", "study").stdout
-        self.assertIn("pse against -24", text)
+        told = self.ok("analyze", "study", "-o", "a.svg")
+        self.assertIn("pse against -24", told.stdout)
+        steps = runs["stairs"]["psychometric"]["participants"]
+        self.assertIn("stairs: jnd: the answers do not determine it: " + ", ".join(f"sub-{c}" for c in steps), told.stderr)
+        self.check_picture(runs)
+        self.check_report(runs)
+
+    def check_picture(self, runs):
+        """Each participant's answers are points of their size, and d' is a bar."""
+        panels = {p.get("data-title"): p for p in Svg(self.dir / "a.svg").all("curves")}
+        place = lambda panel, e: tuple((float(e.get(c)) - float(panel.get(f"data-{axis}0"))) / float(panel.get(f"data-{axis}-scale"))
+                                       for c, axis in (("cx", "x"), ("cy", "y")))
+        self.assertEqual(list(panels), ["values (n = 6)", "words (n = 6)", "bayes (n = 6)", "park:east (stairs, n = 6)",
+                                        "soft:east (stairs, n = 6)", "felt (n = 6)", panels_end := list(panels)[-1]])
+        self.assertRegex(panels_end, r"size \(n = 6\), exponent 0\.\d\d")
+        for title, name in (("values (n = 6)", "values"), ("bayes (n = 6)", "bayes"), ("felt (n = 6)", "felt")):
+            panel = panels[title]
+            dots = [e for e in panel.iter() if e.get("class") == "dot"]
+            answers = [a for p in runs[name]["psychometric"]["participants"].values() for a in p["answers"]]
+            self.assertEqual(len(dots), len(answers))
+            most = max(a["n"] for a in answers)
+            radius = max(float(e.get("r")) for e in dots)
+            for dot, a in zip(dots, answers):
+                x, y = place(panel, dot)
+                self.assertAlmostEqual(x, a["value"], delta=0.05)
+                self.assertAlmostEqual(y, 100 * a["positive"] / a["n"], delta=0.05)
+                self.assertEqual(float(dot.get("data-weight")), a["n"])
+                self.assertAlmostEqual(float(dot.get("r")), max(0.5, radius * (a["n"] / most) ** 0.5), delta=0.02)
+            fitted = sum(p["alpha"] is not None for p in runs[name]["psychometric"]["participants"].values())
+            self.assertEqual([sum(e.get("class") == kind for e in panel.iter()) for kind in ("curve", "mean-curve")], [fitted, 1])
+        words = "".join(panels["words (n = 6)"].itertext())
+        self.assertIn('answered "two" (%)', words)
+        self.assertIn("length (mm)", words)
+        self.assertEqual([p.get("data-title") for p in Svg(self.dir / "a.svg").all("bars")], ["there (n = 6)", "same (n = 6)"])
+
+    def check_report(self, runs):
         report = self.ok("report", "study").stdout
-        self.assertIn("chosen by the answers from -40 to -8; standard -24", report)
+        for text in ("chosen by the answers from -40 to -8; standard -24", "Trials without a stimulus, called none, with silence that is as long: 20 %",
+                     "slopes (standard deviations of the normal) of 0.8, 1.692, 3.578, 7.566, 16 and lapses of 0, 0.02, 0.04",
+                     "staircases (Levitt 1971) from 200, 40: a step down after 2 positive answers in a row", "steps of 40, 20, the next",
+                     "| east | park | level\\_dbfs -60 to -8 (35 values) |", "| 35 plans | all |", "| east | park | length\\_mm 20, speed\\_mm\\_s 100 |",
+                     "Stimulus called standard: by the same method, with level\\_dbfs of -24", "- Watson, A. B.", "- Levitt, H.", "- Stevens, S. S."):
+            self.assertIn(text, report)
         self.assertEqual({line.split(" | ")[-1] for line in report.splitlines() if line.startswith("| east | park |")}, {"all |"})
+        for text in ("**standard.**", "**none.**", "sub-01, sub-01", "- Holm, S."):
+            self.assertNotIn(text, report)
+        one = runs["values"]["psychometric"]["participants"]["01"]
+        self.assertIn(f"| sub-01 | {one['pse']:.4g} | {one['ci']['pse'][0]:.4g} to {one['ci']['pse'][1]:.4g} | {one['jnd']:.4g} |", report)
+        there = runs["there"]["dprime"]
+        self.assertIn(f"| d' | {there['mean']:.4g} | {there['se']:.4g} |", report)
+        self.assertIn(f"| sub-02 | {runs['size']['exponent']['participants']['02']:.4g} |", report)
+        self.assertIn("over speed\\_mm\\_s, soft:east:", report)
 
     def test_power_is_that_of_the_main_figure(self):
         self.write("tasks.toml", tasks("values", "words", "same"))

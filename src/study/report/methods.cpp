@@ -11,7 +11,6 @@
 #include <variant>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tactor/render.hpp>
 #include <tactor/version.hpp>
@@ -21,6 +20,7 @@
 #include "options/option.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/experiment/trials.hpp"
+#include "study/report/facts.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
@@ -28,62 +28,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr const char* not_recorded = "not recorded";
-
-template <class Texts>
-std::string join(const Texts& texts, std::string_view between = ", ")
-{
-    return fmt::format("{}", fmt::join(texts, between));
-}
-
 std::string list_subjects(const std::vector<std::string>& codes)
 {
     return "sub-" + join(codes, ", sub-");
-}
-
-// Returns "all" for a fact of everybody.
-std::string name_subjects(const study_facts& f, const std::vector<std::string>& codes)
-{
-    return codes.size() == f.sessions.size() ? "all" : list_subjects(codes);
-}
-
-// Facts in the order in which they came, each with the sessions that have it.
-template <class Fact>
-using shared_facts = std::vector<std::pair<Fact, std::vector<std::string>>>;
-
-template <class Fact>
-void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code)
-{
-    auto at = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.first == fact; });
-    if (at == all.end())
-        at = all.emplace(at, fact, std::vector<std::string>());
-    if (at->second.empty() || at->second.back() != code) // two stimuli of a session may be the same
-        at->second.push_back(code);
-}
-
-bool is_simulated(const session_facts& s)
-{
-    return s.facts()["simulated"].truth().value_or(false);
-}
-
-// Returns a fact of a session in words: "none" where it is null.
-std::string fact_text(const session_facts& s, const std::string& key)
-{
-    if (!s.document.contains(key))
-        return not_recorded;
-    const std::string words = s.facts()[key].words();
-    return words.empty() ? "none" : words;
-}
-
-// Returns what the openings of the device have under a key, each once.
-std::string stream_text(const session_facts& s, const std::string& key)
-{
-    std::set<std::string> seen;
-    for (const json_value& one : s.facts()["streams"].list())
-        seen.insert(one[key].there() ? one[key].words() : "none");
-    if (seen.empty())
-        return is_simulated(s) ? "simulated" : not_recorded;
-    return join(seen, "; ");
 }
 
 std::string ages_text(const study_facts& f)
@@ -259,267 +206,6 @@ json list_calibrations(const study_facts& f)
     return all;
 }
 
-// Lists the different texts about the plans of a session.
-template <class F>
-std::string join_plans(const session_facts& s, const F& text, const char* between = ", ")
-{
-    std::set<std::string> seen;
-    for (const planned_stimulus& p : s.stimuli)
-        seen.insert(text(p));
-    seen.erase("");
-    return join(seen, between);
-}
-
-std::vector<double> list_burst_numbers(const json_value& plan, const char* key)
-{
-    std::vector<double> all;
-    for (const json_value& b : plan["bursts"].list())
-        if (const auto v = b[key].number())
-            all.push_back(*v);
-    return all;
-}
-
-// Describes the wave, its phase and envelope, and the rise times of actuators.
-std::string describe_sound(const planned_stimulus& p)
-{
-    const json_value plan = p.facts();
-    const json_value stroke = plan["stroke"];
-    std::string text = stroke["waveform"].text().value_or("sine");
-    for (const char* key :
-         {"carrier_hz", "noise_seed", "am_hz", "am_depth", "texture", "texture_mm", "course"})
-        if (stroke[key].there())
-            text += fmt::format(", {} {}", key, stroke[key].words());
-    text += fmt::format(", phase {}", plan["render"]["phase"].words());
-    const json_value envelope = plan["render"]["envelope"];
-    text += envelope.there() ? ", envelope " + envelope.words() : ", raised-cosine ramps";
-    for (const json_value& t : plan["array"]["tactors"].list())
-        if (t["rise_s"].there())
-            text += fmt::format(", tactor {} rises in {} s", t["tactor"].words(), t["rise_s"].words());
-    return text;
-}
-
-std::string describe_carrier(const session_facts& s)
-{
-    std::vector<double> ramps;
-    for (const planned_stimulus& p : s.stimuli)
-        for (const double ramp_s : list_burst_numbers(p.facts(), "ramp_s"))
-            ramps.push_back(ramp_s);
-    return s.stimuli.empty() ? ""
-                             : fmt::format("{}; ramps of {} s at both ends of a burst",
-                                           join_plans(s, describe_sound, "; "), range_text(ramps));
-}
-
-std::string law_text(const session_facts& s)
-{
-    std::set<std::string> laws;
-    if (s.design)
-        for (const method_definition& m : s.design->methods)
-            laws.insert(fmt::format("$\\mathrm{{SOA}} = {}\\,d + {}\\,\\mathrm{{s}}$ with burst duration $d$",
-                                    plain_number(m.options.plan.profile.slope),
-                                    plain_number(m.options.plan.profile.intercept_s)));
-    return join(laws, " and ");
-}
-
-// Lists the methods in the order in which they came.
-json list_methods(const study_facts& f)
-{
-    std::vector<std::string> names;
-    for (const session_facts& s : f.sessions)
-        for (const planned_stimulus& p : s.stimuli)
-            if (std::find(names.begin(), names.end(), p.method) == names.end())
-                names.push_back(p.method);
-    json all = json::array();
-    for (const std::string& name : names) {
-        const auto kinds = [&](const char* key) {
-            return join_texts(f, [&](const session_facts& s) {
-                return join_plans(s, [&](const planned_stimulus& p) {
-                    return p.method == name ? p.facts()[key].words() : "";
-                });
-            });
-        };
-        const std::string options = join_texts(f, [&](const session_facts& s) -> std::string {
-            if (s.design)
-                for (const method_definition& m : s.design->methods)
-                    if (m.name == name)
-                        return method_options(m.options);
-            return "";
-        });
-        all.push_back({{"name", name},
-                       {"algorithm", kinds("algorithm")},
-                       {"phantom", kinds("phantom")},
-                       {"options", options}});
-    }
-    return all;
-}
-
-json describe_stimulus(const planned_stimulus& p)
-{
-    const json_value plan = p.facts();
-    const auto number = [](const json_value& v) { return v.there() ? plain_number(v.need_number()) : "-"; };
-    const std::vector<double> bursts_s = list_burst_numbers(plan, "duration_s");
-    return {{"motion", p.motion},
-            {"method", p.method},
-            {"path", plan["stroke"]["name"].words()},
-            {"target_s", number(plan["stroke"]["duration_s"])},
-            {"length_mm", number(plan["stroke"]["length_mm"])},
-            {"soa_s", number(plan["soa_s"])},
-            {"bursts", bursts_s.empty() ? "continuous"
-                                        : fmt::format("{} of {} s", bursts_s.size(), range_text(bursts_s))},
-            {"total_s", number(plan["total_s"])},
-            {"overlaps", plan["conflicts"].list().size()},
-            {"hash", p.hash}};
-}
-
-json list_stimuli(const study_facts& f)
-{
-    shared_facts<json> rows;
-    for (const session_facts& s : f.sessions)
-        for (const planned_stimulus& p : s.stimuli)
-            add_fact(rows, describe_stimulus(p), s.code);
-    json all = json::array();
-    for (const auto& [row, codes] : rows) {
-        all.push_back(row);
-        all.back()["who"] = name_subjects(f, codes);
-    }
-    return all;
-}
-
-// Lists what is noted of motions, and what the planner warned of.
-std::set<std::string> list_notes(const study_facts& f)
-{
-    std::set<std::string> notes;
-    for (const session_facts& s : f.sessions)
-        for (const planned_stimulus& p : s.stimuli) {
-            if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
-                notes.insert(fmt::format("{}: {}", p.motion, note));
-            for (const json_value& w : p.facts()["warnings"].list())
-                notes.insert(fmt::format("{} by {}: {}", p.motion, p.method, w.need_text()));
-        }
-    return notes;
-}
-
-// Describes a task that measures, with the values.
-std::string describe_measure(const run_outline& r)
-{
-    std::string text = fmt::format("{} ({})", find_task(r.task).trial, join(r.methods));
-    if (!r.vary.empty())
-        text += fmt::format(
-            "; {} {} {}", r.vary, r.task == task_kind::adaptive ? "chosen by the answers from" : "of",
-            r.task == task_kind::adaptive
-                ? fmt::format("{} to {}", plain_number(r.values.front()), plain_number(r.values.back()))
-                : join(r.values));
-    if (r.standard)
-        text += fmt::format("; standard {}", plain_number(*r.standard));
-    return text + (r.catches ? "; some trials without a stimulus" : "");
-}
-
-std::string describe_task(const run_outline& r)
-{
-    const std::string methods = join(r.methods);
-    if (r.task == task_kind::choose)
-        return fmt::format("two stimuli of one motion, by {}, one after the other; one was chosen",
-                           has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
-    if (r.task == task_kind::rate)
-        return fmt::format("one stimulus ({}), rated from {}", methods, rating_range(r));
-    if (r.task == task_kind::identify)
-        return fmt::format("one stimulus ({}); one of {} was named", methods,
-                           counted(r.motions.size(), "motion"));
-    return describe_measure(r);
-}
-
-std::string describe_pause(double s)
-{
-    return s > 0.0 ? plain_number(s) + " s" : "none";
-}
-
-json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
-{
-    const auto fact = [&](const std::function<std::string(const run_definition&)>& text) {
-        return join_texts(f, [&](const session_facts& s) {
-            return s.design ? text(s.design->runs.at(run)) : std::string();
-        });
-    };
-    return {
-        {"name", o.name},
-        {"task", to_string(o.task)},
-        {"asked", describe_task(o)},
-        {"motions", join(o.motions)},
-        {"attribute", fact([](const run_definition& r) { return r.attribute; })},
-        {"question", fact([](const run_definition& r) { return r.question; })},
-        {"animation", join_texts(f,
-                                 [run](const session_facts& s) {
-                                     if (!s.design)
-                                         return std::string();
-                                     return s.design->runs.at(run).animation ? stream_text(s, "display")
-                                                                             : std::string("no");
-                                 })},
-        {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
-        {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
-        {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
-        {"choices",
-         fact([](const run_definition& r) { return r.choices.empty() ? "none" : join(r.choices); })},
-        {"blocks", fact([](const run_definition& r) {
-             return r.blocks.empty() ? "none" : fmt::format("the {}, ordered like the runs", r.blocks);
-         })},
-        {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
-        {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
-}
-
-// Lists the motions that were mirrored for the hand that wore the array.
-std::string mirrored_text(const session_facts& s)
-{
-    std::vector<std::string> mirrored;
-    if (s.design && s.facts()["hand"].words() == "left")
-        for (const motion_definition& m : s.design->motions)
-            if (m.mirror)
-                mirrored.push_back(m.name);
-    return mirrored.empty() ? "none" : join(mirrored);
-}
-
-// Lists the days on which a session was held, UTC.
-std::string days_text(const session_facts& s)
-{
-    std::set<std::string> days;
-    const auto add = [&days](const std::string& time) { days.insert(time.substr(0, time.find('T'))); };
-    add(s.facts()["date"].words());
-    for (const json_value& one : s.facts()["streams"].list())
-        add(one["opened"].words());
-    days.erase("");
-    return days.empty() ? not_recorded : join(days);
-}
-
-std::string walk_text(const session_facts& s)
-{
-    std::set<std::string> felt;
-    for (const json_value& one : s.facts()["walk"].list())
-        felt.insert(one["tactor"].words());
-    return felt.empty() && is_simulated(s) ? "simulated" : fmt::format("{}", felt.size());
-}
-
-// Returns what was so in a session, with the trials of each run that count, void ones, and those of them with
-// gaps in the sound.
-json describe_session(const session_facts& s)
-{
-    json row{
-        {"code", s.code}, {"days", days_text(s)}, {"mirrored", mirrored_text(s)}, {"walk", walk_text(s)}};
-    for (const char* key : {"group", "order", "seed", "hand"})
-        row[key] = fact_text(s, key);
-    if (const json_value at = s.facts()["order_row"]; at.there())
-        row["order"] = fmt::format("{} (row {})", fact_text(s, "order"), at.words());
-    for (const char* key : {"display", "masking", "masker"})
-        row[key] = stream_text(s, key);
-    const auto at = s.facts()["consent"].text();
-    row["consent"] = at                                      ? *at
-                     : s.design && s.design->consent.empty() ? "not asked for"
-                     : is_simulated(s)                       ? "simulated"
-                                                             : not_recorded;
-    row["counts"] = json::array();
-    for (const trial_counts& c : s.counts)
-        row["counts"].push_back(fmt::format("{} / {} / {}", c.valid, c.voids,
-                                            c.xruns ? fmt::format("{}", *c.xruns) : not_recorded));
-    return row;
-}
-
 // Cuts the intervals of means to the values that a mean may have: one from t knows no bounds.
 void cut_intervals(json& results, double low, double high)
 {
@@ -557,6 +243,30 @@ std::vector<run_outline> add_groups(json& runs, const experiment_outline& e)
     return all;
 }
 
+// Lists the results of all trials and of each condition of a task that measures. Only the main figure of each
+// is tested, if there is something against which.
+json list_measured(const json& run)
+{
+    json all = json::array();
+    const auto add = [&](const json& name, const json& from) {
+        json one{{"condition", name}};
+        for (const char* key : {"psychometric", "dprime", "exponent"})
+            one[key] = from.value(key, json(false));
+        if (one["psychometric"].is_object())
+            for (auto& [figure, test] : one["psychometric"]["tests"].items())
+                if (figure == "jnd" || run.at("against").is_null())
+                    for (const char* key : {"t", "df", "p", "p_signflip", "d", "d_ci"})
+                        test[key] = nullptr;
+        all.push_back(std::move(one));
+    };
+    if (run.contains("against"))
+        add(false, run);
+    const json by = run.value("by", json::object());
+    for (const auto& [name, own] : by.items())
+        add(name, own);
+    return all;
+}
+
 // Adds to each run what its tables need: names of motions, and lists of Tukey's comparisons.
 json describe_results(json runs, const dataset& d)
 {
@@ -573,6 +283,7 @@ json describe_results(json runs, const dataset& d)
         if (run.contains("bradley_terry"))
             add_rows(run["bradley_terry"]);
         run["motions"] = o.motions;
+        run["measured"] = run.at("n") == 0 ? json::array() : list_measured(run);
         run["compared"] = json::array();
         const auto add = [&run](const json& within, const json& rows) {
             if (!rows.empty() && !rows[0].at("q").is_null())
@@ -631,6 +342,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                 equations[p.facts()[key].need_text()] = true;
     all["stimuli"] = list_stimuli(f);
     all["recorded"] = !all["stimuli"].empty();
+    all["valued"] = std::ranges::any_of(all["stimuli"], [](const json& s) { return s.at("value") != ""; });
     all["notes"] = list_notes(f);
     all["gap"] = definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; });
     all["rest"] = definition([](const experiment_definition& e) {
@@ -657,7 +369,21 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["questionnaires"] = list_questionnaires(f);
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
-    all["worths"] = std::ranges::any_of(d.experiment.runs, has_worths);
+    const auto has_run = [&d](const auto& what) { return std::ranges::any_of(d.experiment.runs, what); };
+    all["worths"] = has_run(has_worths);
+    all["has_cells"] = has_run([](const run_outline& r) { return !find_task(r.task).measures; });
+    all["has_functions"] = has_run([](const run_outline& r) {
+        return find_task(r.task).measures && r.task != task_kind::estimate && !r.vary.empty();
+    });
+    all["has_differences"] =
+        has_run([](const run_outline& r) { return r.task == task_kind::same_different; });
+    all["has_dprime"] = all["has_differences"] || has_run([](const run_outline& r) { return r.catches; });
+    all["has_exponents"] = has_run([](const run_outline& r) { return r.task == task_kind::estimate; });
+    for (const session_facts& s : f.sessions)
+        if (s.design)
+            for (const run_definition& r : s.design->runs)
+                if (r.outline.task == task_kind::adaptive)
+                    all[r.adaptive.down == 0 ? "has_quest" : "has_staircases"] = true;
     all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
     all["sessions"] = json::array();
     for (const session_facts& s : f.sessions)
@@ -675,6 +401,34 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["results"] = describe_results(analysis.at("runs"), d);
     all["warnings"] = analysis.at("warnings");
     return all;
+}
+
+std::string name_subjects(const study_facts& f, const std::vector<std::string>& codes)
+{
+    return codes.size() == f.sessions.size() ? "all" : list_subjects(codes);
+}
+
+bool is_simulated(const session_facts& s)
+{
+    return s.facts()["simulated"].truth().value_or(false);
+}
+
+std::string fact_text(const session_facts& s, const std::string& key)
+{
+    if (!s.document.contains(key))
+        return not_recorded;
+    const std::string words = s.facts()[key].words();
+    return words.empty() ? "none" : words;
+}
+
+std::string stream_text(const session_facts& s, const std::string& key)
+{
+    std::set<std::string> seen;
+    for (const json_value& one : s.facts()["streams"].list())
+        seen.insert(one[key].there() ? one[key].words() : "none");
+    if (seen.empty())
+        return is_simulated(s) ? "simulated" : not_recorded;
+    return join(seen, "; ");
 }
 
 std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text)

@@ -33,7 +33,8 @@ std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::pat
     std::vector<planned_stimulus> all;
     for (const json_value& one : s.facts()["stimuli"].list()) {
         planned_stimulus p{
-            one["motion"].need_text(), one["method"].need_text(), one["sha256"].need_text(), {}, {}};
+            one["motion"].need_text(), one["method"].need_text(), one["sha256"].need_text(), {}, {},
+            one["value"].number()};
         const fs::path file = plans / (fs::path(p.hash).filename().string() + ".json");
         p.file = file.string();
         const std::string text = read_file(file);

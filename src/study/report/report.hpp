@@ -33,6 +33,7 @@ struct planned_stimulus {
     std::string hash;
     std::string file;
     nlohmann::ordered_json plan;
+    std::optional<double> value = {}; ///< of what its run varies
 
     json_value facts() const { return {plan, file, changed_file}; }
 };

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "study/analysis/analysis.hpp"
+#include "study/report/facts.hpp"
+
+namespace tactor::study {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Describes a task that measures, with the values.
+std::string describe_measure(const run_outline& r)
+{
+    std::string text = fmt::format("{} ({})", find_task(r.task).trial, join(r.methods));
+    if (!r.vary.empty())
+        text += fmt::format(
+            "; {} {} {}", r.vary, r.task == task_kind::adaptive ? "chosen by the answers from" : "of",
+            r.task == task_kind::adaptive
+                ? fmt::format("{} to {}", plain_number(r.values.front()), plain_number(r.values.back()))
+                : join(r.values));
+    if (r.standard)
+        text += fmt::format("; standard {}", plain_number(*r.standard));
+    return text;
+}
+
+std::string describe_task(const run_outline& r)
+{
+    const std::string methods = join(r.methods);
+    if (r.task == task_kind::choose)
+        return fmt::format("two stimuli of one motion, by {}, one after the other; one was chosen",
+                           has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
+    if (r.task == task_kind::rate)
+        return fmt::format("one stimulus ({}), rated from {}", methods, rating_range(r));
+    if (r.task == task_kind::identify)
+        return fmt::format("one stimulus ({}); one of {} was named", methods,
+                           counted(r.motions.size(), "motion"));
+    return describe_measure(r);
+}
+
+// Describes the procedure of an adaptive run.
+std::string describe_procedure(const run_definition& r)
+{
+    const adaptive_options& a = r.adaptive;
+    const std::vector<double>& values = r.outline.values;
+    const double step = values[1] - values[0];
+    const auto list = [](const std::vector<double>& numbers) {
+        std::vector<std::string> texts;
+        for (const double v : numbers)
+            texts.push_back(plain_number(v, 4));
+        return join(texts);
+    };
+    std::string text = fmt::format("{} in each condition, values from {} in steps of {}; ",
+                                   counted(a.tracks, "track"), range_text(values), plain_number(step));
+    if (a.down == 0)
+        return text +
+               fmt::format("QUEST+ (Watson 2017): the value whose answer is expected to leave the least "
+                           "entropy; before the first answer all thresholds among the values, slopes "
+                           "(standard deviations of the normal) of {} and lapses of {} are equally "
+                           "likely",
+                           list(a.slopes), list(a.lapses));
+    std::vector<double> steps;
+    for (const std::size_t places : a.steps)
+        steps.push_back(static_cast<double>(places) * step);
+    std::vector<double> start;
+    for (const std::size_t place : a.start)
+        start.push_back(values[place]);
+    return text +
+           fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
+                       "after each other answer, which leads to {:.1f} % positive answers; steps of {}, "
+                       "the next from every second reversal on",
+                       list(start), counted(a.down, "positive answer"), 100.0 * std::pow(0.5, 1.0 / a.down),
+                       list(steps));
+}
+
+// Lists the motions that were mirrored for the hand that wore the array.
+std::string mirrored_text(const session_facts& s)
+{
+    std::vector<std::string> mirrored;
+    if (s.design && s.facts()["hand"].words() == "left")
+        for (const motion_definition& m : s.design->motions)
+            if (m.mirror)
+                mirrored.push_back(m.name);
+    return mirrored.empty() ? "none" : join(mirrored);
+}
+
+// Lists the days on which a session was held, UTC.
+std::string days_text(const session_facts& s)
+{
+    std::set<std::string> days;
+    const auto add = [&days](const std::string& time) { days.insert(time.substr(0, time.find('T'))); };
+    add(s.facts()["date"].words());
+    for (const json_value& one : s.facts()["streams"].list())
+        add(one["opened"].words());
+    days.erase("");
+    return days.empty() ? not_recorded : join(days);
+}
+
+std::string walk_text(const session_facts& s)
+{
+    std::set<std::string> felt;
+    for (const json_value& one : s.facts()["walk"].list())
+        felt.insert(one["tactor"].words());
+    return felt.empty() && is_simulated(s) ? "simulated" : fmt::format("{}", felt.size());
+}
+
+} // namespace
+
+std::string describe_pause(double s)
+{
+    return s > 0.0 ? plain_number(s) + " s" : "none";
+}
+
+nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
+{
+    const auto fact = [&](const std::function<std::string(const run_definition&)>& text) {
+        return join_texts(f, [&](const session_facts& s) {
+            return s.design ? text(s.design->runs.at(run)) : std::string();
+        });
+    };
+    return {
+        {"name", o.name},
+        {"task", to_string(o.task)},
+        {"asked", describe_task(o)},
+        {"motions", join(o.motions)},
+        {"attribute", fact([](const run_definition& r) { return r.attribute; })},
+        {"question", fact([](const run_definition& r) { return r.question; })},
+        {"animation", join_texts(f,
+                                 [run](const session_facts& s) {
+                                     if (!s.design)
+                                         return std::string();
+                                     return s.design->runs.at(run).animation ? stream_text(s, "display")
+                                                                             : std::string("no");
+                                 })},
+        {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
+        {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
+        {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
+        {"choices",
+         fact([](const run_definition& r) { return r.choices.empty() ? "none" : join(r.choices); })},
+        {"procedure", o.task == task_kind::adaptive ? json(fact(describe_procedure)) : json(false)},
+        {"standard", o.standard ? json(fmt::format("by the same method, with {} of {}", o.vary,
+                                                   plain_number(*o.standard)))
+                                : json(false)},
+        {"catch", o.catches ? json(fact([](const run_definition& r) {
+             return fmt::format("{} %", plain_number(100.0 * r.catch_share));
+         }))
+                            : json(false)},
+        {"blocks", fact([](const run_definition& r) {
+             return r.blocks.empty() ? "none" : fmt::format("the {}, ordered like the runs", r.blocks);
+         })},
+        {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
+        {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
+}
+
+nlohmann::ordered_json describe_session(const session_facts& s)
+{
+    json row{
+        {"code", s.code}, {"days", days_text(s)}, {"mirrored", mirrored_text(s)}, {"walk", walk_text(s)}};
+    for (const char* key : {"group", "order", "seed", "hand"})
+        row[key] = fact_text(s, key);
+    if (const json_value at = s.facts()["order_row"]; at.there())
+        row["order"] = fmt::format("{} (row {})", fact_text(s, "order"), at.words());
+    for (const char* key : {"display", "masking", "masker"})
+        row[key] = stream_text(s, key);
+    const auto at = s.facts()["consent"].text();
+    row["consent"] = at                                      ? *at
+                     : s.design && s.design->consent.empty() ? "not asked for"
+                     : is_simulated(s)                       ? "simulated"
+                                                             : not_recorded;
+    row["counts"] = json::array();
+    for (const trial_counts& c : s.counts)
+        row["counts"].push_back(fmt::format("{} / {} / {}", c.valid, c.voids,
+                                            c.xruns ? fmt::format("{}", *c.xruns) : not_recorded));
+    return row;
+}
+
+} // namespace tactor::study

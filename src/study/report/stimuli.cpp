@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "study/report/facts.hpp"
+
+namespace tactor::study {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Lists the different texts about the plans of a session.
+template <class F>
+std::string join_plans(const session_facts& s, const F& text, const char* between = ", ")
+{
+    std::set<std::string> seen;
+    for (const planned_stimulus& p : s.stimuli)
+        seen.insert(text(p));
+    seen.erase("");
+    return join(seen, between);
+}
+
+std::vector<double> list_burst_numbers(const json_value& plan, const char* key)
+{
+    std::vector<double> all;
+    for (const json_value& b : plan["bursts"].list())
+        if (const auto v = b[key].number())
+            all.push_back(*v);
+    return all;
+}
+
+// Describes the wave, its phase and envelope, and the rise times of actuators.
+std::string describe_sound(const planned_stimulus& p)
+{
+    const json_value plan = p.facts();
+    const json_value stroke = plan["stroke"];
+    std::string text = stroke["waveform"].text().value_or("sine");
+    for (const char* key :
+         {"carrier_hz", "noise_seed", "am_hz", "am_depth", "texture", "texture_mm", "course"})
+        if (stroke[key].there())
+            text += fmt::format(", {} {}", key, stroke[key].words());
+    text += fmt::format(", phase {}", plan["render"]["phase"].words());
+    const json_value envelope = plan["render"]["envelope"];
+    text += envelope.there() ? ", envelope " + envelope.words() : ", raised-cosine ramps";
+    for (const json_value& t : plan["array"]["tactors"].list())
+        if (t["rise_s"].there())
+            text += fmt::format(", tactor {} rises in {} s", t["tactor"].words(), t["rise_s"].words());
+    return text;
+}
+
+// Tests whether a name is that of a method; else it stands for a standard, or for silence.
+bool is_method(const session_facts& s, const std::string& name)
+{
+    return !s.design || std::ranges::any_of(s.design->methods, [&](const method_definition& m) {
+        return m.name == name && !m.is_variant();
+    });
+}
+
+// Returns the option whose value a stimulus has; empty: none.
+std::string find_varied(const session_facts& s, const planned_stimulus& p)
+{
+    if (p.value && s.design)
+        for (const run_definition& r : s.design->runs) {
+            const run_outline& o = r.outline;
+            const bool is_its = is_method(s, p.method) ? std::ranges::count(o.methods, p.method) != 0 &&
+                                                             std::ranges::count(o.values, *p.value) != 0
+                                                       : o.standard == p.value;
+            if (is_its && std::ranges::count(o.motions, p.motion) != 0)
+                return o.vary;
+        }
+    return {};
+}
+
+// Plans that are shown in one row.
+struct stimulus_row {
+    std::map<std::string, std::set<double>> values = {}; // by option
+    std::vector<const planned_stimulus*> plans = {};     // different ones
+    std::vector<std::string> codes = {};                 // of the participants
+};
+
+json describe_stimuli(const stimulus_row& row)
+{
+    const auto range = [&row](const auto& get) {
+        std::vector<double> all;
+        for (const planned_stimulus* p : row.plans)
+            if (const auto v = get(p->facts()).number())
+                all.push_back(*v);
+        return all.empty() ? "-" : range_text(all);
+    };
+    std::set<std::string> paths;
+    std::vector<double> counts;
+    std::vector<double> bursts_s;
+    std::vector<double> overlaps;
+    for (const planned_stimulus* p : row.plans) {
+        const json_value plan = p->facts();
+        const std::vector<double> own = list_burst_numbers(plan, "duration_s");
+        paths.insert(plan["stroke"]["name"].words());
+        counts.push_back(static_cast<double>(own.size()));
+        bursts_s.insert(bursts_s.end(), own.begin(), own.end());
+        overlaps.push_back(static_cast<double>(plan["conflicts"].list().size()));
+    }
+    std::vector<std::string> values;
+    for (const auto& [option, all] : row.values)
+        values.push_back(
+            option + " " +
+            (row.plans.size() == 1
+                 ? join(all)
+                 : fmt::format("{} ({} values)", range_text({all.begin(), all.end()}), all.size())));
+    return {{"motion", row.plans[0]->motion},
+            {"method", row.plans[0]->method},
+            {"value", join(values)},
+            {"path", join(paths)},
+            {"target_s", range([](const json_value& p) { return p["stroke"]["duration_s"]; })},
+            {"length_mm", range([](const json_value& p) { return p["stroke"]["length_mm"]; })},
+            {"soa_s", range([](const json_value& p) { return p["soa_s"]; })},
+            {"bursts", bursts_s.empty()
+                           ? "continuous"
+                           : fmt::format("{} of {} s", range_text(counts), range_text(bursts_s))},
+            {"total_s", range([](const json_value& p) { return p["total_s"]; })},
+            {"overlaps", range_text(overlaps)},
+            {"hash", row.plans.size() == 1 ? fmt::format("`{}`", row.plans[0]->hash)
+                                           : counted(row.plans.size(), "plan")}};
+}
+
+} // namespace
+
+std::string describe_carrier(const session_facts& s)
+{
+    std::vector<double> ramps;
+    for (const planned_stimulus& p : s.stimuli)
+        for (const double ramp_s : list_burst_numbers(p.facts(), "ramp_s"))
+            ramps.push_back(ramp_s);
+    return s.stimuli.empty() ? ""
+                             : fmt::format("{}; ramps of {} s at both ends of a burst",
+                                           join_plans(s, describe_sound, "; "), range_text(ramps));
+}
+
+std::string law_text(const session_facts& s)
+{
+    std::set<std::string> laws;
+    if (s.design)
+        for (const method_definition& m : s.design->methods)
+            laws.insert(fmt::format("$\\mathrm{{SOA}} = {}\\,d + {}\\,\\mathrm{{s}}$ with burst duration $d$",
+                                    plain_number(m.options.plan.profile.slope),
+                                    plain_number(m.options.plan.profile.intercept_s)));
+    return join(laws, " and ");
+}
+
+nlohmann::ordered_json list_methods(const study_facts& f)
+{
+    std::vector<std::string> names;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            if (is_method(s, p.method) && std::ranges::count(names, p.method) == 0)
+                names.push_back(p.method);
+    json all = json::array();
+    for (const std::string& name : names) {
+        const auto kinds = [&](const char* key) {
+            return join_texts(f, [&](const session_facts& s) {
+                return join_plans(s, [&](const planned_stimulus& p) {
+                    return p.method == name ? p.facts()[key].words() : "";
+                });
+            });
+        };
+        const std::string options = join_texts(f, [&](const session_facts& s) -> std::string {
+            if (s.design)
+                for (const method_definition& m : s.design->methods)
+                    if (m.name == name)
+                        return method_options(m.options);
+            return "";
+        });
+        all.push_back({{"name", name},
+                       {"algorithm", kinds("algorithm")},
+                       {"phantom", kinds("phantom")},
+                       {"options", options}});
+    }
+    return all;
+}
+
+nlohmann::ordered_json list_stimuli(const study_facts& f)
+{
+    constexpr std::size_t most_values = 12;   // of an option in rows of their own
+    using place = std::array<std::string, 3>; // motion, method, and an option or a plan
+    std::map<place, std::set<double>> values;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            if (p.value)
+                values[{p.motion, p.method, find_varied(s, p)}].insert(*p.value);
+    std::vector<std::pair<place, stimulus_row>> rows;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli) {
+            const std::string varied = find_varied(s, p);
+            place key{p.motion, p.method, varied};
+            if (!p.value || values.at(key).size() <= most_values)
+                key[2] = p.hash;
+            auto at = std::ranges::find(rows, key, &decltype(rows)::value_type::first);
+            if (at == rows.end())
+                at = rows.insert(at, {key, {}});
+            stimulus_row& row = at->second;
+            if (p.value)
+                row.values[varied].insert(*p.value);
+            if (std::ranges::none_of(row.plans, [&p](const auto* one) { return one->hash == p.hash; }))
+                row.plans.push_back(&p);
+            if (row.codes.empty() || row.codes.back() != s.code)
+                row.codes.push_back(s.code);
+        }
+    json all = json::array();
+    for (const auto& [key, row] : rows) {
+        all.push_back(describe_stimuli(row));
+        all.back()["who"] = name_subjects(f, row.codes);
+    }
+    return all;
+}
+
+std::set<std::string> list_notes(const study_facts& f)
+{
+    std::set<std::string> notes;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli) {
+            if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
+                notes.insert(fmt::format("{}: {}", p.motion, note));
+            for (const json_value& w : p.facts()["warnings"].list())
+                notes.insert(fmt::format("{} by {}: {}", p.motion, p.method, w.need_text()));
+        }
+    return notes;
+}
+
+} // namespace tactor::study
