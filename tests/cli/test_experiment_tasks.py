@@ -3,9 +3,10 @@
 import csv
 import io
 import json
+import re
 
 from experiments import DESK, ExperimentTest, contents
-from harness import main
+from harness import ROOT, main
 from pictures import Svg
 
 TASKS = """[experiment]
@@ -274,6 +275,31 @@ class Tasks(ExperimentTest):
             told = self.refused(2, "experiment", "tasks.toml", "--dry-run").stderr
             line = 1 + [x.split(" =")[0] for x in text.splitlines()].index(at or "[[run]]")
             self.assertIn(f"tasks.toml:{line}:", told, (run, new, told))
+
+    def test_the_shipped_studies_run_from_definition_to_figure(self):
+        experiments = ROOT / "examples/experiments"
+        for name, spec, groups, sessions, check in (
+                ("numerosity", "jnd=0.14", [()], [()], lambda r: self.assertAlmostEqual(r["more"]["psychometric"]["mean"]["pse"], 0.77, delta=0.05)),
+                ("speed-jnd", "jnd=14", [()], [()], lambda r: self.assertAlmostEqual(r["faster"]["psychometric"]["mean"]["jnd"], 14, delta=5)),
+                ("pleasantness", "sigma=20", [()], [("--session", "1"), ("--session", "2")], lambda r: self.assertEqual(r["pleasant"]["trials"], 320)),
+                ("directions", "sigma=10", [("--group", "three-by-three"), ("--group", "two-by-four")], [()],
+                 lambda r: self.assertEqual(set(r["direction"]["groups"]), {"three-by-three", "two-by-four"}))):
+            for i in range(1, 5):
+                for session in sessions:
+                    self.ok("experiment", experiments / f"{name}.toml", "--participant", f"{i:02}", "-o", name, "--simulate", f"seed={i},{spec}",
+                            *groups[i % len(groups)], *session)
+            check(json.loads(self.ok("analyze", name, "-o", f"{name}.svg", "--format", "json").stdout)["runs"])
+            self.assertIn("<svg", (self.dir / f"{name}.svg").read_text(encoding="utf-8"))
+            self.ok("report", name)
+
+    def test_the_power_of_the_shipped_studies_is_as_their_lines_say(self):
+        lines = (ROOT / "examples/experiments/README.md").read_text(encoding="utf-8")
+        for command in re.findall("^    tactor (.*)", lines.replace("\\\n", " "), re.M):
+            args = command.split()
+            args[1] = ROOT / args[1]
+            runs = json.loads(self.ok(*args, "--format", "json").stdout)["runs"]
+            stated = re.search(rf"\[{args[1].name}\].*\| (\d+) %", lines).group(1)
+            self.assertEqual([round(100 * r["power"][0]["power"]) for r in runs], [int(stated)], command)
 
 
 if __name__ == "__main__":
