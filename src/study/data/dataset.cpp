@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <set>
 #include <utility>
 
@@ -21,93 +20,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr unsigned most_count = 1000000000;
 constexpr std::size_t sha256_digits = 64;
-
-std::string written(const std::string& text)
-{
-    return text.empty() ? "n/a" : text;
-}
-
-// Microseconds: a twentieth of a frame at 48 kHz.
-std::string written(double seconds)
-{
-    return fmt::format("{:.6f}", seconds);
-}
-
-template <class T>
-std::string written(const T& v)
-{
-    return fmt::format("{}", v);
-}
-
-template <class T>
-std::string written(const std::optional<T>& v)
-{
-    return v ? written(*v) : "n/a";
-}
-
-// Reads a cell as the type of the member that it goes to; a missing one leaves it as it is.
-struct cell_reader {
-    const text_table& table;
-    std::size_t row;
-    const trial_column& column;
-
-    void into(std::string& v) const { v = table.cell(row, column.name).value_or(""); }
-    void into(bool& v) const { v = table.truth(row, column.name); }
-    void into(double& v) const { v = table.number(row, column.name).value_or(v); }
-    void into(unsigned& v) const { v = table.whole(row, column.name, column.least, most_count).value_or(v); }
-    void into(std::uint64_t& v) const
-    {
-        const double frame = table.number(row, column.name).value_or(0.0);
-        if (frame < 0.0 || frame > 9e15 || frame != std::floor(frame))
-            table.refuse(row, fmt::format("{} is no frame", column.name), "a whole number");
-        v = static_cast<std::uint64_t>(frame);
-    }
-    template <class T>
-    void into(std::optional<T>& v) const
-    {
-        if (table.cell(row, column.name))
-            into(v.emplace());
-    }
-};
-
-template <class T>
-cell_value to_value(const T& v)
-{
-    return v;
-}
-
-template <class T>
-cell_value to_value(const std::optional<T>& v)
-{
-    return *v;
-}
-
-cell_value read_value(const text_table& t, std::size_t row, const trial_column& c)
-{
-    if (!t.has(c.name) || !t.cell(row, c.name))
-        return {};
-    trial_row r;
-    return std::visit(
-        [&](auto member) {
-            cell_reader{t, row, c}.into(r.*member);
-            return to_value(r.*member);
-        },
-        c.member);
-}
-
-// Adds all cells of a line; of columns that are not in trial_columns, the texts.
-void add_cells(trial_cells& into, const text_table& t, std::size_t row)
-{
-    for (const trial_column& c : trial_columns)
-        into.emplace_back(c.name, read_value(t, row, c));
-    for (const std::string& name : t.columns())
-        if (std::ranges::find(trial_columns, name, &trial_column::name) == trial_columns.end()) {
-            const auto text = t.cell(row, name);
-            into.emplace_back(name, text ? cell_value(std::string(*text)) : cell_value());
-        }
-}
 
 namespace fs = std::filesystem;
 
@@ -485,80 +398,6 @@ std::vector<session_number> list_sessions(const fs::path& folder, std::string_vi
     return {all.begin(), all.end()};
 }
 
-const std::array<trial_column, 23> trial_columns{{
-    {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
-     &trial_row::onset_s},
-    {"duration", "From the first frame of the first stimulus to the last of the last, the gap included", "s",
-     &trial_row::duration_s},
-    {"trial", "Place in the sequence, from 1; a trial that comes again keeps it", "", &trial_row::trial,
-     column_use::analysis, 1},
-    {"attempt", "How often the trial has been begun", "", &trial_row::attempt, column_use::analysis, 1},
-    {"group", "Group of the participant", "", &trial_row::group, column_use::some},
-    {"session", "Number of the session, from 1", "", &trial_row::session, column_use::some, 1},
-    {"motion", "Target motion; the methods are how it was rendered", "", &trial_row::motion,
-     column_use::analysis},
-    {"method_1", "Method of the first stimulus", "", &trial_row::method_1, column_use::analysis},
-    {"method_2", "Method of the second stimulus; n/a where there is one only", "", &trial_row::method_2},
-    {"response", "", "", &trial_row::response, column_use::analysis},
-    {"response_time", "From the last stimulus frame at the DAC to the answer", "s",
-     &trial_row::response_time_s, column_use::analysis},
-    {"early", "Whether the answer came sooner after the stimulus than min_response_s; n/a without an answer",
-     "", &trial_row::early, column_use::nobody},
-    {"rating", "The rating; n/a where nothing is rated", "", &trial_row::rating},
-    {"value", "Value of what the run varies, of the comparison; n/a in a trial without a stimulus", "",
-     &trial_row::value, column_use::values},
-    {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::tracks, 1},
-    {"intensity_estimate", "The number that the participant gave", "", &trial_row::intensity_estimate,
-     column_use::numbers},
-    {"void", "Whether the trial does not count; it comes again at the end of the run", "",
-     &trial_row::is_void, column_use::analysis},
-    {"xruns", "Gaps in the sound while the stimuli played, as the device tells them", "", &trial_row::xruns},
-    {"stream", "Counts openings of the device, from 1", "", &trial_row::stream},
-    {"frame_1", "First frame of the first stimulus in that stream", "", &trial_row::frame_1},
-    {"frame_2", "First frame of the second stimulus in that stream", "", &trial_row::frame_2},
-    {"plan_1", "SHA-256 of the first stimulus' plan: sourcedata/sub-CODE/plans", "", &trial_row::plan_1},
-    {"plan_2", "SHA-256 of the second stimulus' plan", "", &trial_row::plan_2},
-}};
-
-bool has_column(const run_outline& run, column_use use) noexcept
-{
-    switch (use) {
-    case column_use::values:
-        return !run.vary.empty();
-    case column_use::tracks:
-        return run.task == task_kind::adaptive;
-    case column_use::numbers:
-        return run.task == task_kind::estimate;
-    default:
-        return true;
-    }
-}
-
-named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs)
-{
-    named_cells cells;
-    for (const trial_column& c : trial_columns) {
-        std::string text = std::visit([&](auto member) { return written(r.*member); }, c.member);
-        if (c.use == column_use::some ? text != "n/a" : std::ranges::any_of(runs, [&](auto* run) {
-                return has_column(*run, c.use);
-            }))
-            cells.emplace_back(c.name, std::move(text));
-    }
-    return cells;
-}
-
-std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
-{
-    for (const trial_column& c : trial_columns)
-        if (c.use != column_use::nobody && c.use != column_use::some && has_column(run, c.use))
-            t.need_column(c.name);
-    std::vector<trial_row> all(t.rows());
-    for (const trial_column& c : trial_columns)
-        for (std::size_t i = 0; i < all.size() && t.has(c.name); ++i)
-            std::visit([&](auto member) { cell_reader{t, i, c}.into(all[i].*member); }, c.member);
-    return all;
-}
-
 bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept
 {
     if (run.task == task_kind::detect)
@@ -667,30 +506,6 @@ dataset select_group(const dataset& d, const group_outline& g)
             own.data.push_back(d.data[i]);
         }
     return own;
-}
-
-std::vector<trial_cells> read_study(const fs::path& folder, const selection& who)
-{
-    const dataset d = read_dataset(folder, who);
-    std::vector<trial_cells> all;
-    for (const std::string& code : d.participants) {
-        const std::vector<session_number> sessions = list_sessions(folder, code);
-        for (const run_outline& run : d.experiment.runs)
-            for (const session_number session : sessions) {
-                const fs::path file = table_path(code, session, run);
-                if (!is_there(folder, file))
-                    continue;
-                const text_table t(folder / file);
-                for (std::size_t row = 0; row < t.rows(); ++row) {
-                    all.push_back({{"participant", code},
-                                   {"run", run.name},
-                                   {"task", std::string(to_string(run.task))},
-                                   {"simulated", d.simulated}});
-                    add_cells(all.back(), t, row);
-                }
-            }
-    }
-    return all;
 }
 
 } // namespace tactor::study
