@@ -33,7 +33,8 @@ class Figures(AnalyzeTest):
             self.assertGreater(len(golden), 100)
             told = self.analysis(self.study(name))
             self.assertEqual(list(check_r.differences(golden, told)), [], name)
-            places = {p for p, _ in check_r.flat(told) if p.startswith("runs.")}
+            # Results of a group are those of a study of it alone (test_experiment.py).
+            places = {p for p, _ in check_r.flat(told) if p.startswith("runs.") and p.split(".")[2] != "groups"}
             mine = {p for p in places if not any(g == p or g.startswith(p + ".") for g in golden)}
             self.assertEqual({p for p in mine if p.split(".")[-1] not in known}, set(), name)
 
@@ -96,6 +97,16 @@ class Figures(AnalyzeTest):
         # Opens nothing of the others.
         (folder / "sub-01/beh/sub-01_task-similarity_beh.tsv").write_text("nonsense")
         self.assertEqual(some, self.analysis(folder, "--participants", "02,05,11,12"))
+
+    def test_groups_are_compared_unless_one_only_took_part(self):
+        # R 4.2.2, car: Anova(lm(values ~ group), type = 3) with contr.sum
+        self.assertIn("  groups compared:\n    group: F(1, 10) = 0.48, p = 0.503; eta squared partial 0.046, generalised\n           0.023\n", self.ok("analyze", self.study("grouped")).stdout)
+        self.assertIn("| group:motion | 3.584 | 2, 20 | 0.04674 | 0.6159 | 0.07584 |", self.ok("report", "grouped").stdout)
+        told = self.analysis("grouped", "--participants", "01,02")
+        self.assertEqual(told["runs"]["which"]["groups"]["palm"]["n"], 2)
+        self.assertEqual({e["F"] for e in told["runs"]["which"]["group_anova"].values()}, {None})
+        self.assertIn("which: groups: too few participants to compare them", told["warnings"])
+        self.assertNotIn("groups compared", self.ok("analyze", "grouped", "--participants", "01,02").stdout)
 
 
 class Forms(AnalyzeTest):

@@ -7,7 +7,8 @@ args <- commandArgs(TRUE)
 folder <- args[1]
 runs <- read.delim(args[2], header = FALSE, quote = "", col.names = c("name", "task", "motions", "methods"))
 has_car <- requireNamespace("car", quietly = TRUE)
-people <- sub("^sub-", "", read.delim(file.path(folder, "participants.tsv"), colClasses = "character")$participant_id)
+list_of_people <- read.delim(file.path(folder, "participants.tsv"), colClasses = "character")
+people <- sub("^sub-", "", list_of_people$participant_id)
 
 say <- function(place, value) cat(place, "\t", if (is.null(value) || is.na(value)) "NA" else sprintf("%.17g", value), "\n", sep = "")
 agree <- function(a, b, what) if (abs(a - b) > 1e-8 * max(1, abs(a))) stop(what, ": ", a, " is not ", b)
@@ -158,6 +159,34 @@ effects <- function(place, values, factors) {
     agree(car$pval.adjustments[name, "Pr(>F[HF])"], p_hf, "car: p of Huynh and Feldt")
   }
 }
+# Groups compared by car with sums of squares of type III; the group again by aov, from the means of participants.
+compare_groups <- function(place, values, group, factors) {
+  keep <- options(contrasts = c("contr.sum", "contr.poly"))
+  on.exit(options(keep))
+  design <- as.formula(paste("~", paste(names(factors), collapse = "*")))
+  s <- suppressWarnings(summary(car::Anova(lm(values ~ group), idata = factors, idesign = design, type = 3), multivariate = FALSE))
+  table <- unclass(s$univariate.tests)
+  agree(table["group", "F value"], summary(aov(rowMeans(values) ~ group))[[1]][1, "F value"], "aov: F of groups")
+  all_error <- sum(table[!grepl("group", rownames(table)), "Error SS"])
+  for (name in setdiff(rownames(table), "(Intercept)")) {
+    at <- function(k) paste0(place, ".", name, ".", k)
+    e <- table[name, ]
+    adjusted <- function(column) if (name %in% rownames(s$pval.adjustments)) s$pval.adjustments[name, column]
+    spherical <- function(column) if (name %in% rownames(s$sphericity.tests)) s$sphericity.tests[name, column]
+    say(at("F"), e["F value"])
+    say(at("df1"), e["num Df"])
+    say(at("df2"), e["den Df"])
+    say(at("p"), e["Pr(>F)"])
+    say(at("epsilon_gg"), adjusted("GG eps"))
+    say(at("p_gg"), adjusted("Pr(>F[GG])"))
+    say(at("epsilon_hf"), adjusted("HF eps"))
+    say(at("p_hf"), adjusted("Pr(>F[HF])"))
+    say(at("mauchly_w"), spherical("Test statistic"))
+    say(at("mauchly_p"), spherical("p-value"))
+    say(at("eta2_partial"), e["Sum Sq"] / (e["Sum Sq"] + e["Error SS"]))
+    say(at("eta2_generalised"), e["Sum Sq"] / (e["Sum Sq"] + all_error))
+  }
+}
 pairs <- function(place, values, motions) {
   e <- squares(values, list(motion = factor(motions, motions)))$effects$motion
   i <- 0
@@ -220,6 +249,7 @@ for (k in seq_len(nrow(runs))) {
   first <- c()
   compared <- NULL
   answered <- list()
+  group <- NULL
   confusion <- array(0, c(length(methods), length(motions), length(motions)), list(methods, motions, motions))
   for (code in people) {
     d <- trials_of(run, code)
@@ -239,6 +269,7 @@ for (k in seq_len(nrow(runs))) {
     cells <- tapply(scores, list(factor(row, rows), factor(motion, motions)), mean)
     if (anyNA(cells)) next
     compared <- rbind(compared, d)
+    group <- c(group, list_of_people$group[match(code, people)])
     for (r in rows) values[[r]] <- rbind(values[[r]], cells[r, ])
     first <- c(first, 100 * mean(d$response == "1"))
     answered <- c(answered, list(d))
@@ -253,6 +284,9 @@ for (k in seq_len(nrow(runs))) {
   by_motion <- factor(motions, motions)
   cells <- within(do.call(cbind, values)) # by row, then motion
   all <- within(matrix(sapply(values, rowMeans), ncol = length(rows)))
+  by_cell <- data.frame(method = factor(rep(rows, each = length(motions)), rows), motion = rep(by_motion, length(rows)))
+  if (!is.null(group) && !several)
+    compare_groups(paste0(place, ".group_anova"), do.call(cbind, values), factor(group), if (length(rows) > 1) by_cell else by_cell["motion"])
   cells_of <- function(i) cells[, (i - 1) * length(motions) + seq_along(motions), drop = FALSE]
   if (task == "choose") {
     if (several) {
@@ -277,9 +311,7 @@ for (k in seq_len(nrow(runs))) {
       say_ends(paste0(at, ".ci_within"), if (what == "all") all[, k] else cells_of(k)[, match(what, motions)])
     }
     test(paste0(place, ".paired"), rowMeans(values[[length(methods)]]) - rowMeans(values[[1]]), 0, paired = TRUE)
-    wide <- do.call(cbind, values)
-    effects(paste0(place, ".anova"), wide,
-            data.frame(method = factor(rep(methods, each = length(motions)), methods), motion = rep(by_motion, length(methods))))
+    effects(paste0(place, ".anova"), do.call(cbind, values), by_cell)
     for (m in methods) pairs(paste0(place, ".tukey.", m), values[[m]], motions)
   } else {
     say(paste0(place, ".chance"), 100 / length(motions))

@@ -124,7 +124,7 @@ cat(hits / times, over_all)
 # Reads the table of --format wide as people do: each column by its own name, with numbers or nothing.
 WIDE = """
 d <- read.csv("wide.csv")
-for (n in setdiff(names(d), c("participant_id", "simulated"))) {
+for (n in setdiff(names(d), c("participant_id", "simulated", "group"))) {
   stopifnot(is.numeric(d[[n]]))
   cat(n, "\\t", sprintf("%.17g", mean(d[[n]], na.rm = TRUE)), "\\n", sep = "")
 }

@@ -45,9 +45,9 @@ def run(name, task, trials, motions=None, methods=None, scale=None):
         k: v for k, v in (("motions", motions), ("methods", methods), ("scale", scale)) if v}
 
 
-def definition(name, motions, methods, runs):
+def definition(name, motions, methods, runs, groups=()):
     text = f'[experiment]\nname = "{name}"\n'
-    for kind, names in (("motion", motions), ("method", methods)):
+    for kind, names in (("motion", motions), ("method", methods), ("group", groups)):
         text += "".join(f"[[{kind}]]\nname = {json.dumps(n)}\n" for n in names)
     for r in runs:
         text += "[[run]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in r.items())
@@ -72,18 +72,20 @@ def table(rows):
         "\t".join(str(row.get(c, "n/a")) for c in COLUMNS) + "\n" for row in rows)
 
 
-def write_study(folder, text, people, answers, simulated=False, void=None):
-    """Writes a study; answers(code, run, cell, n) is the answer of the n-th trial of a cell, or None without one."""
+def write_study(folder, text, people, answers, simulated=False, void=None, groups=None):
+    """Writes a study; answers(code, run, cell, n) is the answer of the n-th trial of a cell, or None without one.
+    groups: the group of each code, if the study has groups."""
     motions, methods = names_in(text)
     (folder / "sourcedata").mkdir(parents=True)
-    (folder / "participants.tsv").write_text("participant_id\tage\tsex\thandedness\n" + "".join(
-        f"sub-{c}\tn/a\tn/a\tn/a\n" for c in people))
+    (folder / "participants.tsv").write_text("participant_id\tage\tsex\thandedness" + "\tgroup" * bool(groups) + "\n" + "".join(
+        f"sub-{c}\tn/a\tn/a\tn/a" + (f"\t{groups[c]}" if groups else "") + "\n" for c in people))
     shuffle = Numbers(4711)
     for code in people:
         beh, source = folder / f"sub-{code}/beh", folder / f"sourcedata/sub-{code}"
         beh.mkdir(parents=True)
         source.mkdir()
-        (source / "session.json").write_text(json.dumps({"simulated": simulated, "experiment": {"text": text}}))
+        (source / "session.json").write_text(json.dumps({"simulated": simulated, "experiment": {"text": text}} | (
+            {"group": groups[code]} if groups else {})))
         for r in split_runs(text):
             rows, seen = [], {}
             every = cells(r, motions, methods)
@@ -232,8 +234,24 @@ def among(folder):
     write_study(folder, text, list(own), answers, void=17)
 
 
+def grouped(folder):
+    """Makes two groups of unequal sizes, which differ in what the last method does for them, and in which motions."""
+    text = definition("grouped", FOUR[:3], TWO, [run("taste", "choose", 24), run("marks", "rate", 24), run("which", "identify", 18)],
+                      ["palm", "arm"])
+    numbers = Numbers(1953)
+    groups = {f"{i:02}": "palm" if i % 5 < 3 else "arm" for i in range(1, 13)}
+    own = {code: 0.4 * numbers.normal() + 0.5 * (group == "palm") for code, group in groups.items()}
+
+    def answers(code, r, cell, n):
+        if r["task"] != "identify":
+            lift = 0.3 * FOUR.index(cell[0]) * (groups[code] == "arm")
+            return likes(numbers, lambda m: max(-1.5, min(1.8, own[code] + lift)))(code, r | {"last": "park2016"}, cell, n)
+        return cell[0] if numbers.unit() < 0.5 + own[code] / 4 else FOUR[numbers.below(3)]
+    write_study(folder, text, list(groups), answers, groups=groups)
+
+
 STUDIES = {"simulated": simulated, "ties": ties, "missing": missing, "constant": constant, "two-levels": two_levels,
-           "few": few, "three-by-three": three_by_three, "among": among}
+           "few": few, "three-by-three": three_by_three, "among": among, "grouped": grouped}
 
 
 def for_r(folder, file):

@@ -100,7 +100,7 @@ constexpr const char* column_legend =
     "number of motions; signs is the exact p of all changes of sign; d is the effect size, (mean - guessing) "
     "/ sd.";
 
-void print_effect(const char* name, const study::effect& e)
+void print_effect(const std::string& name, const study::effect& e)
 {
     if (e.f)
         fmt::print("{}", wrapped(fmt::format("  {}: ", name), effect_text(e)));
@@ -309,6 +309,12 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
         print_measures(r);
         break;
     }
+    const auto by_group = study::list_group_effects(r);
+    if (std::ranges::any_of(by_group, [](const auto& one) { return one.second && one.second->f; }))
+        fmt::print("  groups compared:\n");
+    for (const auto& [name, e] : by_group)
+        if (e != nullptr)
+            print_effect(fmt::format("  {}", name), *e);
     if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
 }
@@ -332,8 +338,7 @@ std::string write_worth_model(const study::run_outline& r, const std::string& fa
 std::string write_model(const study::run_outline& r, const std::vector<study::group_outline>& groups)
 {
     std::string motion = r.motions.size() > 1 ? "motion" : "1";
-    // Groups that have all of the run are compared: of others the group cannot be told from what it lacks.
-    if (std::ranges::count_if(groups, [&](const auto& g) { return std::ranges::count(g.runs, r) != 0; }) > 1)
+    if (study::has_groups(r, groups))
         motion = motion == "1" ? "group" : "(group * motion)";
     const bool has_method =
         r.task != task_kind::choose && r.task != task_kind::same_different && r.methods.size() > 1;

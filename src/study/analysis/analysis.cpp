@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -114,6 +116,19 @@ void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
     r.paired = test_mean(differences, 0.0, rounding_in(r.run));
 }
 
+// Compares the groups of the participants in all cells of a run.
+mixed_anova compare_groups(const run_outline& run, const std::vector<cell_values>& all,
+                           const std::vector<std::string>& groups)
+{
+    const std::set<std::string> names(groups.begin(), groups.end());
+    if (names.size() < 2)
+        return {};
+    std::vector<std::size_t> numbers;
+    for (const std::string& g : groups)
+        numbers.push_back(static_cast<std::size_t>(std::distance(names.begin(), names.find(g))));
+    return analyse_groups(lay_out_cells(all, 0, count_rows(run), run.motions.size()), numbers);
+}
+
 void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
 {
     const std::size_t motions = r.run.motions.size();
@@ -175,6 +190,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     std::vector<cell_values> all;
     std::vector<const run_data*> data;
     std::vector<person_trials> people;
+    std::vector<std::string> groups;
     std::vector<double> first;
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
@@ -197,6 +213,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         if (measures)
             continue;
         all.push_back(*std::move(v));
+        groups.push_back(d.groups.empty() ? "" : d.groups[i]);
         const auto first_chosen = std::ranges::count(own.trials, 1U, &trial::response);
         first.push_back(100.0 * static_cast<double>(first_chosen) / static_cast<double>(own.trials.size()));
     }
@@ -207,6 +224,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         return r;
     }
     analyse_values(r, all);
+    if (has_groups(r.run, d.experiment.groups) && !has_worths(r.run))
+        r.groups_compared = compare_groups(r.run, all, groups);
     if (r.run.task == task_kind::choose)
         r.first_interval = test_mean(first, 50.0);
     if (has_worths(r.run))
@@ -268,16 +287,22 @@ void warn_of_figures(analysis& a, const run_analysis& r)
                  fmt::format("the choices between it and {}, also by way of others, go one way or are "
                              "missing, so it is not finite",
                              r.run.methods[0]));
-    for (const auto& [name, e] : {std::pair<const char*, const effect&>{"method", r.effects.first},
-                                  {"motion", r.effects.second},
-                                  {"method:motion", r.effects.interaction}}) {
+    const auto warn_of_effect = [&](const std::string& name, const effect& e) {
         if (e.ms_error && !e.f)
             warn(name, "the error has no variance, so no F");
         if (e.epsilon_gg && !e.epsilon_hf)
             warn(name, "too few participants for the epsilon of Huynh and Feldt");
         if (e.epsilon_gg && !e.mauchly_w)
             warn(name, "too few participants, or too little variance, for Mauchly's test");
-    }
+    };
+    warn_of_effect("method", r.effects.first);
+    warn_of_effect("motion", r.effects.second);
+    warn_of_effect("method:motion", r.effects.interaction);
+    for (const auto& [name, e] : list_group_effects(r))
+        if (e != nullptr)
+            warn_of_effect(fmt::format("groups compared, {}", name), *e);
+    if (r.groups_compared && !r.groups_compared->group.ms_error)
+        warn("groups", "too few participants to compare them");
     for (std::size_t row = 0; row < r.pairs.size(); ++row)
         if (!r.pairs[row].empty() && !r.pairs[row][0].q && r.n > 1)
             warn(r.run.task == task_kind::choose ? "motion" : r.run.methods[row],
@@ -365,6 +390,33 @@ std::string name_result(std::string_view run, std::string_view group)
 bool has_worths(const run_outline& run) noexcept
 {
     return run.task == task_kind::choose && run.methods.size() > 2;
+}
+
+bool has_groups(const run_outline& run, const std::vector<group_outline>& groups)
+{
+    return std::ranges::count_if(groups,
+                                 [&](const auto& g) { return std::ranges::count(g.runs, run) != 0; }) > 1;
+}
+
+std::vector<std::pair<const char*, const effect*>> list_group_effects(const run_analysis& r)
+{
+    if (!r.groups_compared)
+        return {};
+    const mixed_anova& m = *r.groups_compared;
+    const bool has_rows = count_rows(r.run) > 1;
+    const bool has_motions = r.run.motions.size() > 1;
+    const auto there = [](bool varies, const effect& e) { return varies ? &e : nullptr; };
+    std::vector<std::pair<const char*, const effect*>> all{
+        {"group", &m.group},
+        {"motion", there(has_motions, m.within.second)},
+        {"group:motion", there(has_motions, m.by_group.second)}};
+    if (r.run.task != task_kind::choose)
+        all.insert(all.end(),
+                   {{"method", there(has_rows, m.within.first)},
+                    {"group:method", there(has_rows, m.by_group.first)},
+                    {"method:motion", there(has_rows && has_motions, m.within.interaction)},
+                    {"group:method:motion", there(has_rows && has_motions, m.by_group.interaction)}});
+    return all;
 }
 
 std::size_t chosen_method(const trial& t) noexcept

@@ -59,6 +59,9 @@ struct run_analysis {
     t_test paired = {};
     /// choose between two methods: `second` is of motions. rate: `first` of methods, `second` of motions.
     anova effects = {};
+    /// Groups that have all of the run, compared; choose among three methods or more has none. Without
+    /// figures where fewer than two groups have participants.
+    std::optional<mixed_anova> groups_compared = {};
     /// Pairs of motions: choose between two methods: one list. rate: one for each method, from that method's
     /// own one-way analysis.
     std::vector<std::vector<comparison>> pairs = {};
@@ -88,6 +91,12 @@ double chance(const run_outline& run) noexcept;
 
 /// Tests whether a run chooses among three methods or more: each has a row of cells and a worth.
 bool has_worths(const run_outline& run) noexcept;
+
+/// Tests whether two groups or more have all of a run: of others the group cannot be told from what it lacks.
+bool has_groups(const run_outline& run, const std::vector<group_outline>& groups);
+
+/// Returns the effects of `groups_compared` by name, as "group:motion"; null where a factor has one level.
+std::vector<std::pair<const char*, const effect*>> list_group_effects(const run_analysis& r);
 
 /// `kind`: of the psychometric functions.
 analysis analyse(const dataset& d, sigmoid kind = sigmoid::normal);

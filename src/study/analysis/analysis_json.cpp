@@ -283,6 +283,8 @@ json run_json(const run_analysis& r)
         add_measures(j, r);
         break;
     }
+    for (const auto& [name, e] : list_group_effects(r))
+        j["group_anova"][name] = e != nullptr ? effect_json(*e, 2) : json(nullptr);
     j["trials"] = r.trials;
     j["early"] = r.early;
     j["response_time"] = times_json(r.times);

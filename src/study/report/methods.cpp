@@ -273,8 +273,9 @@ json describe_results(json runs, const dataset& d)
     for (const run_outline& o : add_groups(runs, d.experiment)) {
         json& run = runs.at(o.name);
         if (run.at("n") == 0) // nobody answered all of it
-            for (const char* key : {"preference", "chosen", "first_interval", "bradley_terry", "means",
-                                    "paired", "anova", "tukey", "correct", "confusion", "pairs"})
+            for (const char* key :
+                 {"preference", "chosen", "first_interval", "bradley_terry", "means", "paired", "anova",
+                  "group_anova", "tukey", "correct", "confusion", "pairs"})
                 run.erase(key);
         const interval possible = possible_values(o);
         for (const char* key : {"preference", "chosen", "means", "correct"})
