@@ -43,7 +43,7 @@ py::list read_study(const std::string& folder, const codes& only, const codes& w
 std::string analyze_study(const std::string& folder, const codes& only, const codes& without)
 {
     const without_lock free;
-    const study::dataset d = study::read_dataset(folder, select_participants(only, without));
+    const study::dataset d = study::read_dataset({folder}, select_participants(only, without));
     return study::make_analysis_json(study::analyse(d)).dump();
 }
 

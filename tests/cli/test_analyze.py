@@ -108,6 +108,22 @@ class Figures(AnalyzeTest):
         self.assertIn("which: groups: too few participants to compare them", told["warnings"])
         self.assertNotIn("groups compared", self.ok("analyze", "grouped", "--participants", "01,02").stdout)
 
+    def test_folders_of_one_experiment_are_analysed_as_one(self):
+        whole = self.analysis(self.study("missing"))
+        for name, codes in (("one", "ABCD"), ("two", "EFGL")):
+            shutil.copytree(self.dir / "missing", self.dir / name)
+            people = self.dir / name / "participants.tsv"
+            people.write_text("".join(line for line in people.read_text().splitlines(True) if line[4] in codes or line[:4] != "sub-"))
+            for path in (self.dir / name).glob("**/sub-??"):
+                if path.name[4] not in codes:
+                    shutil.rmtree(path)
+        self.assertEqual(self.analysis("one", "two"), whole)
+        self.assertEqual(self.analysis("one", "two", "--participants", "A1,F6"), self.analysis("missing", "--participants", "A1,F6"))
+        self.ok("analyze", "one", "two", "-o", "one/derivatives/tactor/a.svg")
+        self.refused(2, "analyze", "one", "missing")
+        self.refused(2, "analyze", "one", self.study("constant"))
+        self.refused(2, "analyze", self.study("simulated"), "one")
+
 
 class Forms(AnalyzeTest):
     def test_no_printed_interval_is_beyond_a_per_cent_or_a_scale(self):

@@ -51,10 +51,9 @@ void parse_excluded(std::string_view text, study::selection& who)
     }
 }
 
-// Adds DIR, --participants and --exclude.
-void add_study_options(CLI::App& command, std::string& folder, study::selection& who)
+// Adds --participants and --exclude.
+void add_selection(CLI::App& command, study::selection& who)
 {
-    command.add_option("DIR", folder, "folder of the study, as tactor experiment wrote it")->required();
     add_text(command, "--participants", "CODES", "participants to include (default all)",
              [&who](const std::string& t) { who.only = parse_codes("--participants", t); });
     add_text(command, "--exclude", "CODE[:REASON],...",
@@ -73,7 +72,7 @@ void make_derivatives(const std::filesystem::path& folder, const std::filesystem
 }
 
 struct analyze_options {
-    std::string folder;
+    std::vector<std::filesystem::path> folders;
     std::string format = "text";
     error_bars bars = error_bars::se;
     study::sigmoid function = study::sigmoid::normal;
@@ -87,14 +86,14 @@ void draw(const analyze_options& o, const study::analysis& a)
         throw error(error_kind::bad_input, "-o", "there is nothing to draw",
                     "no run has a participant with a trial in each cell");
     plot::check_output(o.picture.file, o.picture.force);
-    make_derivatives(o.folder, o.picture.file);
+    make_derivatives(o.folders.front(), o.picture.file);
     session::tell_of_pipe_to_write(o.picture.file);
     plot::save(draw_analysis(a, o.picture, o.bars), o.picture.file, o.picture.dpi, o.picture.force);
 }
 
 int analyze(const analyze_options& o)
 {
-    const study::dataset d = study::read_dataset(o.folder, o.who);
+    const study::dataset d = study::read_dataset(o.folders, o.who);
     const study::analysis a = study::analyse(d, o.function);
     if (!o.picture.file.empty())
         draw(o, a);
@@ -119,7 +118,7 @@ struct report_options {
 
 int report(const report_options& o)
 {
-    const study::dataset d = study::read_dataset(o.folder, o.who);
+    const study::dataset d = study::read_dataset({o.folder}, o.who);
     const study::study_facts f = study::read_facts(o.folder, d);
     const study::analysis a = study::analyse(d);
     const std::string text = study::methods_text(f, d, study::make_analysis_json(a));
@@ -140,7 +139,10 @@ int run_analyze(command_line& line)
 {
     analyze_options o;
     CLI::App& c = line.app;
-    add_study_options(c, o.folder, o.who);
+    c.add_option("DIR", o.folders,
+                 "folder of the study, as tactor experiment wrote it; several are analysed as one")
+        ->required();
+    add_selection(c, o.who);
     add_format_option(c, o.format, {"text", "json", "tsv", "wide"},
                       "format of the output; tsv has a line for each trial, for R; wide has a line for each "
                       "participant, for JASP and SPSS (default text)");
@@ -176,7 +178,8 @@ int run_report(command_line& line)
 {
     report_options o;
     CLI::App& c = line.app;
-    add_study_options(c, o.folder, o.who);
+    c.add_option("DIR", o.folder, "folder of the study, as tactor experiment wrote it")->required();
+    add_selection(c, o.who);
     add_text(c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
              [&o](const std::string& t) {
                  if (std::filesystem::path(t).extension() != ".md")

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -60,6 +61,22 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
             throw error(error_kind::bad_input, source_place{path.string()},
                         "it is of nobody in participants.tsv", "add a line, or move it away");
     }
+}
+
+// Reads the codes in a folder.
+std::vector<std::string> read_codes(const fs::path& folder)
+{
+    std::error_code failed;
+    if (!fs::is_directory(fs::status(folder, failed)))
+        throw error(error_kind::bad_input, source_place{folder.string()},
+                    failed ? failed.message() : "it is no folder", "name the folder of a study")
+            .with_os_code(failed ? failed.value() : ENOTDIR);
+    const std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
+    if (known.empty())
+        throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
+                    "nobody is in it", "tactor experiment adds a line for each participant");
+    refuse_strangers(folder, known);
+    return known;
 }
 
 // Returns an error about an option that selects participants, which each front end spells.
@@ -201,10 +218,10 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
 
 class reader {
 public:
-    explicit reader(const fs::path& folder) : folder_(folder) {}
-
-    void add(const std::string& code)
+    // Adds a participant, whose files are in a folder.
+    void add(const std::string& code, const fs::path& folder)
     {
+        folder_ = folder;
         set_.participants.push_back(code);
         set_.data.emplace_back();
         set_.groups.emplace_back();
@@ -468,22 +485,24 @@ run_data read_run(const text_table& t, const run_outline& run)
     return d;
 }
 
-dataset read_dataset(const fs::path& folder, const selection& who)
+dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
 {
-    std::error_code failed;
-    if (!fs::is_directory(fs::status(folder, failed)))
-        throw error(error_kind::bad_input, source_place{folder.string()},
-                    failed ? failed.message() : "it is no folder", "name the folder of a study")
-            .with_os_code(failed ? failed.value() : ENOTDIR);
-    const std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
-    if (known.empty())
-        throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
-                    "nobody is in it", "tactor experiment adds a line for each participant");
-    refuse_strangers(folder, known);
-    reader r(folder);
+    std::vector<std::string> known;
+    std::map<std::string, fs::path> homes;
+    for (const fs::path& folder : folders)
+        for (const std::string& code : read_codes(folder)) {
+            const auto [home, is_new] = homes.emplace(code, folder);
+            if (!is_new)
+                throw error(
+                    error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
+                    fmt::format("sub-{} is in {} too", code, (home->second / "participants.tsv").string()),
+                    "a code is of one participant: rename one of them");
+            known.push_back(code);
+        }
+    reader r;
     std::vector<left_out> excluded;
     for (const std::string& code : select(known, who, excluded))
-        r.add(code);
+        r.add(code, homes.at(code));
     dataset d = r.finish();
     d.excluded = std::move(excluded);
     return d;

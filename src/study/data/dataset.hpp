@@ -321,13 +321,13 @@ std::vector<std::string> read_participants(const text_table& t);
 /// Reads the trials of a run. \throws error (bad_input) with file and line: see read_dataset().
 run_data read_run(const text_table& t, const run_outline& run);
 
-/// Reads the folder; of participants who are not selected nothing is opened.
+/// Reads one folder or more of one experiment; of participants who are not selected nothing is opened.
 /// \throws error (bad_input) with file and line for what is not as the head of this file says: a code that is
-///         not known, nobody left, a folder of somebody who is not in participants.tsv, experiments that
-///         differ, real and simulated sessions together, sessions that the experiment does not have or of
-///         two groups, names that the experiment does not know, answers out
-///         of range, a trial that counts twice.
-dataset read_dataset(const std::filesystem::path& folder, const selection& who);
+///         not known or in two folders, nobody left, a folder of somebody who is not in participants.tsv,
+///         experiments that differ, real and simulated sessions together, sessions that the experiment does
+///         not have or of two groups, names that the experiment does not know, answers out of range, a trial
+///         that counts twice.
+dataset read_dataset(const std::vector<std::filesystem::path>& folders, const selection& who);
 
 /// Returns a run as the participant's group has it, with the motions and methods of their trials.
 const run_outline& find_run(const dataset& d, std::size_t participant, std::size_t run);

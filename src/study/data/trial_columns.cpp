@@ -178,7 +178,7 @@ std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
 
 std::vector<trial_cells> read_study(const std::filesystem::path& folder, const selection& who)
 {
-    const dataset d = read_dataset(folder, who);
+    const dataset d = read_dataset({folder}, who);
     std::vector<trial_cells> all;
     for (const std::string& code : d.participants) {
         const std::vector<session_number> sessions = list_sessions(folder, code);
