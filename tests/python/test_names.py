@@ -51,7 +51,7 @@ HAS_NOT = {
     "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",
-    "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings edge_kind pull_kind":
+    "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings code_settings edge_kind pull_kind":
         "lines are the configuration's; a player opens them",
     "reopen_alsa": "make a Player again",
     "drive_time_fault": "a Player warns",
