@@ -10,17 +10,28 @@
 
 namespace tactor::synth {
 
+namespace {
+
+// Returns an empty score for the same array, rate and channels.
+std::shared_ptr<score::impl> begin_like(const score::impl& model)
+{
+    auto s = std::make_shared<score::impl>();
+    s->tactors = model.tactors;
+    s->limits = model.limits;
+    s->guards = model.guards;
+    s->channels = model.channels;
+    s->rate = model.rate;
+    s->asked.resize(model.asked.size());
+    return s;
+}
+
+} // namespace
+
 score join_scores(const std::vector<placed_score>& parts)
 {
     const score::impl& first = detail::access::of(parts.front().score);
-    auto all = std::make_shared<score::impl>();
-    all->tactors = first.tactors;
-    all->limits = first.limits;
-    all->guards = first.guards;
-    all->channels = first.channels;
-    all->rate = first.rate;
+    auto all = begin_like(first);
     all->marker = first.marker;
-    all->asked.resize(first.asked.size());
     for (const placed_score& p : parts) {
         const score::impl& one = detail::access::of(p.score);
         for (std::size_t i = 0; i < one.plans.size() && !one.is_code; ++i) {
@@ -46,14 +57,7 @@ score join_scores(const std::vector<placed_score>& parts)
 
 score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, unsigned number)
 {
-    const score::impl& model = detail::access::of(like);
-    auto s = std::make_shared<score::impl>();
-    s->tactors = model.tactors;
-    s->limits = model.limits;
-    s->guards = model.guards;
-    s->channels = model.channels;
-    s->rate = model.rate;
-    s->asked.resize(model.asked.size());
+    auto s = begin_like(detail::access::of(like));
     s->marker = channel;
     s->marker_level = 0.5;
     s->is_code = true;
