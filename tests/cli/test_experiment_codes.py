@@ -3,9 +3,10 @@
 samples, tests/vm from a card and lines."""
 import json
 import os
+import signal
 import subprocess
 
-from experiments import DESK, SMALL, PersonTest, contents, read_table
+from experiments import DESK, SHORT, SMALL, PersonTest, contents, read_table
 from harness import ROOT, main
 
 RATE = 48000
@@ -107,6 +108,20 @@ class Codes(PersonTest):
         self.assertEqual([code for _, _, code in marks], [e["code"] for e in events + self.events("marks")])
         # The time of a marker is that of its event; the markers of both stimuli are sent after them.
         self.assertAlmostEqual(float(marks[1][0]) - float(marks[0][0]), float(events[1]["onset"]) - float(events[0]["onset"]), 2)
+
+    def test_an_answer_is_kept_though_the_session_ends_while_its_code_is_sent(self):
+        self.write("desk.toml", DESK + "[sync]\ncode = { channel = 2, bit_ms = 20 }\n")  # a code takes 180 ms
+        self.write("short.toml", SHORT.replace("gap_s = 0.1", "gap_s = 0.3"))
+        process = self.start_tool(*self.args(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        process.stdin.write("y\n" * 3 + "1\n" * 2)
+        process.stdin.flush()
+        for _ in "practice", "trial":
+            while not process.stdout.readline().endswith("1 or 2: 1\n"):
+                pass
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        self.assertEqual(self.answers(), [("1", "1", "false", "1")])
+        self.assertEqual([e["event"] for e in self.events("pairs")][:2], ["stimulus", "stimulus"])
 
     def test_a_library_that_is_none_is_refused(self):
         self.write("desk.toml", DESK + "[sync]\ncode = { lsl = true }\n")

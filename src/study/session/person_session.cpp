@@ -514,21 +514,22 @@ void person_session::trial(const session_step& s)
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
-            codes_.send(code_event::answer, s, t);
             set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[*a.number - 1]) : *a.number,
                          a.time_s);
         }
     }
     row.is_void = !flaw.empty();
     if (row.is_void) {
-        codes_.send(code_event::made_void, s, t);
         session::show((s.practice ? "" : w["later"]) + "\n");
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     tables_->at(s).add(row, started_ns, p_.render.rate);
-    codes_.write(r, row, tables_->at(s));
     flow_.took(row.is_void);
+    // The answer is on the disk before its code is sent: the process may be killed meanwhile.
+    codes_.write(r, row, tables_->at(s));
+    codes_.send(row.is_void ? code_event::made_void : code_event::answer, s, t);
+    codes_.write(r, row, tables_->at(s));
     find_device();
 }
 
