@@ -59,9 +59,10 @@ public:
                 flow_.go_on();
                 continue;
             }
-            const trial_row row = play(s, *who, find_trial(p_, s, store_));
+            const planned_trial t = find_trial(p_, s, store_);
+            const trial_row row = play(s, *who, t);
             tables->at(s).add(row, utc_ns(now_), p_.render.rate);
-            note_codes(s, row);
+            note_codes(s, t, row);
             codes_.write(p_.run_at(s.run), row, tables->at(s));
             pass(row);
             flow_.took(row.is_void);
@@ -123,11 +124,10 @@ private:
         return row;
     }
 
-    void note_codes(const session_step& s, const trial_row& row)
+    void note_codes(const session_step& s, const planned_trial& t, const trial_row& row)
     {
         if (s.practice)
             return;
-        const planned_trial& t = find_trial(p_, s, store_);
         codes_.note_stimuli(t, now_, p_.stimuli.frames(t), utc_ns(now_));
         const std::uint64_t then = now_ + p_.stimuli.frames(t) + frames(row.response_time_s.value_or(0.0));
         codes_.note(row.is_void ? code_event::made_void : code_event::answer, t, then, utc_ns(then));
