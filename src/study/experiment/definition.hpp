@@ -55,7 +55,7 @@ struct method_definition {
 
 /// Methods that a run plays in place of one of its own, as places in those of the definition.
 struct method_variants {
-    std::vector<std::size_t> values = {}; ///< by value
+    std::vector<std::size_t> values = {}; ///< by value; empty: the method as it is
     std::optional<std::size_t> standard = {};
     std::optional<std::size_t> silent = {}; ///< of trials without a stimulus
 };
@@ -84,7 +84,7 @@ struct run_definition {
     std::vector<std::string> choices = {}; ///< words of both answers; may be empty
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
-    std::map<std::size_t, method_variants> variants = {}; ///< by method; empty: it plays them as they are
+    std::map<std::size_t, method_variants> variants = {}; ///< by method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
     adaptive_options adaptive = {};
     std::string blocks = {}; ///< methods or motions: the trials of each stand together; empty: all are mixed

@@ -78,9 +78,7 @@ std::vector<planned_trial> list_measured_cells(const run_definition& r)
             continue;
         }
         for (const std::size_t method : r.methods) {
-            static const method_variants none;
-            const auto there = r.variants.find(method);
-            const method_variants& v = there == r.variants.end() ? none : there->second;
+            const method_variants& v = r.variants.at(method);
             if (r.outline.task == task_kind::adaptive)
                 for (const std::size_t start : r.adaptive.start)
                     add_comparison(cells, r, {motion, v.values[start], {}, 0.0, ++track}, v);
@@ -276,13 +274,11 @@ std::vector<std::size_t> list_played(const run_definition& r)
 {
     std::vector<std::size_t> all;
     for (const std::size_t method : r.methods) {
-        const auto there = r.variants.find(method);
-        if (there == r.variants.end() || there->second.values.empty())
+        const method_variants& v = r.variants.at(method);
+        if (v.values.empty())
             all.push_back(method);
-        if (there == r.variants.end())
-            continue;
-        all.insert(all.end(), there->second.values.begin(), there->second.values.end());
-        for (const auto& one : {there->second.standard, there->second.silent})
+        all.insert(all.end(), v.values.begin(), v.values.end());
+        for (const auto& one : {v.standard, v.silent})
             if (one)
                 all.push_back(*one);
     }

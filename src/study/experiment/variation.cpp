@@ -97,10 +97,9 @@ std::size_t find_nearest(const std::vector<double>& values, double v)
     return static_cast<std::size_t>(at - values.begin());
 }
 
-void read_steps(const toml_table& t, adaptive_options& a, double step)
+// Sets the steps of a staircase, as multiples of the least.
+void set_steps(const toml_table& t, adaptive_options& a, const std::vector<double>& steps, double step)
 {
-    const std::vector<double> steps =
-        t.has("steps") ? read_numbers(t, "steps", {0.0, detail::max_mm, true}) : std::vector<double>{};
     for (const double s : steps)
         a.steps.push_back(static_cast<std::size_t>(std::llround(s / step)));
     if (steps.empty())
@@ -127,17 +126,17 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
         t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
                "range = [LEAST, GREATEST]");
     const double width = range[1] - range[0];
-    double step = o.on_db_axis ? 1.0 : width / range_steps;
-    if (t.has("steps"))
-        if (const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true}); !steps.empty())
-            step = *std::ranges::min_element(steps);
+    const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
+    const double step = !steps.empty() ? *std::ranges::min_element(steps)
+                        : o.on_db_axis ? 1.0
+                                       : width / range_steps;
     const auto count = static_cast<std::size_t>(std::floor(width / step + 1e-6)) + 1;
     if (count > most_values)
         t.fail(t.has("steps") ? "steps" : "range", fmt::format("there are {} steps in the range", count),
                fmt::format("at most {}", most_values));
     for (std::size_t i = 0; i < count; ++i)
         o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
-    read_steps(t, a, step);
+    set_steps(t, a, steps, step);
     a.tracks = t.whole("tracks", 1, most_tracks).value_or(1);
     const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
     if (start.size() > 1 && start.size() != a.tracks)
