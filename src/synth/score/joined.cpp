@@ -34,7 +34,7 @@ score join_scores(const std::vector<placed_score>& parts)
     all->marker = first.marker;
     for (const placed_score& p : parts) {
         const score::impl& one = detail::access::of(p.score);
-        for (std::size_t i = 0; i < one.plans.size() && !one.is_code; ++i) {
+        for (std::size_t i = 0; i < one.plans.size(); ++i) {
             all->starts.push_back(p.start + one.starts[i]);
             all->ends.push_back(p.start + one.ends[i]);
             all->plans.push_back({one.plans[i].plan, static_cast<double>(all->starts.back()) / one.rate});
@@ -58,14 +58,11 @@ score join_scores(const std::vector<placed_score>& parts)
 score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, unsigned number)
 {
     auto s = begin_like(detail::access::of(like));
-    s->marker = channel;
     s->marker_level = 0.5;
-    s->is_code = true;
     s->plans.emplace_back();
     s->sounds.emplace_back();
     s->starts.push_back(0);
     s->frames = code_bits * bit_frames;
-    s->ends.push_back(s->frames);
     const unsigned bits = number << 1 | 1;
     for (unsigned i = 0; i < code_bits; ++i)
         if ((bits >> i & 1) != 0)
@@ -73,9 +70,12 @@ score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, u
                                      .length = bit_frames,
                                      .tactor = static_cast<std::uint16_t>(channel),
                                      .kind = item_kind::marker});
-    s->open_items = s->open_events = 2; // a bit may begin where another ends
-    // Alone, too, it is a part: its plan is none of the score's.
-    return join_scores({{detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(s))), 0}});
+    auto code = begin_like(*s);
+    code->marker = channel;
+    code->frames = s->frames;
+    code->open_items = code->open_events = 2; // a bit may begin where another ends
+    code->parts.push_back({std::move(s), 0}); // a part: its plan is none of the score's
+    return detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(code)));
 }
 
 } // namespace tactor::synth

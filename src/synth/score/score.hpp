@@ -92,7 +92,6 @@ struct score::impl {
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any
     double marker_level = 1.0;      ///< of full scale
-    bool is_code = false;           ///< part of a make_code(): its plan is no stroke
     synth::item_list list;
     std::vector<synth::score_part> parts; ///< of a joined score, which has no items of its own; by start
     std::uint64_t frames = 0;
