@@ -407,6 +407,7 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
         codes.give(c.p.stimuli.make_score(t), step, t, [&](std::uint64_t frame) { latest = frame; });
     codes.send(study::code_event::answer, step, t);
     codes.send(study::code_event::made_void, step, t);
+    codes.finish();
     REQUIRE(g.flaw.empty());
     CHECK(latest <= c.p.stimuli.frames(t));
     CHECK(g.frames == c.p.stimuli.frames(t));

@@ -127,12 +127,14 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
                             {"answer", "the participant answered"},
                             {"void", "the trial was made void"}};
     column("code", "Number that was sent");
+    // Lists all conditions: groups share the file.
+    const experiment_definition& d = p.definition;
     for (const code_event e : events)
-        for (const stimulus& s : p.stimuli.all())
-            j["code"]["Levels"][fmt::format("{}", code_number(*c, p.definition, e, s.motion, s.method))] =
-                fmt::format("{}, {}", to_string(e),
-                            condition_text(p.definition, s.motion,
-                                           p.definition.methods[s.method].made_of.value_or(s.method)));
+        for (std::size_t motion = 0; motion < d.motions.size(); ++motion)
+            for (std::size_t method = 0; method < d.methods.size(); ++method)
+                if (!d.methods[method].is_variant())
+                    j["code"]["Levels"][fmt::format("{}", code_number(*c, d, e, motion, method))] =
+                        fmt::format("{}, {}", to_string(e), condition_text(d, motion, method));
     column("frame", c->channel ? "Frame of the stream at which the start bit begins; the code ends where the "
                                  "stimulus begins, frame_1 or frame_2 of the run's table"
                                : "Frame of the stream at which the lines switch");
@@ -177,6 +179,8 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
     if (code_ == nullptr)
         return;
     lead_ = code_frames(*code_, p.render.rate);
+    if (const stimulus& any = p.stimuli.all().front(); code_->channel && there != nullptr)
+        like_.emplace(p.where.tactors, any.plan, any.render);
     if (code_->lsl && there != nullptr)
         lsl_.emplace("tactor-" + p.participant);
     if (there != nullptr && !code_->channel && lines == nullptr && !lsl_)
@@ -190,9 +194,7 @@ unsigned sync_codes::number(code_event e, const planned_trial& t, std::size_t me
 
 score sync_codes::make(unsigned number) const
 {
-    const stimulus& any = p_.stimuli.all().front();
-    const score like(p_.where.tactors, any.plan, any.render);
-    return synth::make_code(like, code_->channel.value(), bit_frames(*code_, p_.render.rate), number);
+    return synth::make_code(*like_, *code_->channel, bit_frames(*code_, p_.render.rate), number);
 }
 
 given_stimulus sync_codes::give(const score& stimuli, const session_step& s, const planned_trial& t,
@@ -235,23 +237,37 @@ void sync_codes::send(code_event e, const session_step& s, const planned_trial& 
 {
     if (code_ == nullptr || s.practice || there_->lost())
         return;
+    finish();
     const unsigned n = number(e, t, t.method_1);
-    sent code{e, n, there_->position().played, there_->position().played, rt::unix_ns(), 0};
-    const auto over = std::chrono::steady_clock::now() + std::chrono::duration<double>(code_->pulse_s);
+    const std::uint64_t now = there_->position().played;
+    sending_.emplace(sent{e, n, now, now, rt::unix_ns(), 0});
+    sending_->lines_until =
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                               std::chrono::duration<double>(code_->pulse_s));
     if (lines_ != nullptr && !lines_->show(n))
         session::say(stderr, "tactor: the lines did not take a code\n");
+    if (code_->channel) {
+        sending_->code.frame += there_->setup().buffer_frames;
+        sending_->refused = there_->submit(make(n), start_at::frame(sending_->code.frame));
+    }
+}
+
+void sync_codes::finish()
+{
+    if (!sending_)
+        return;
+    sent code = sending_->code;
     bool is_sent = true;
     if (code_->channel) {
-        code.frame += there_->setup().buffer_frames;
-        const auto gone = there_->submit(make(n), start_at::frame(code.frame));
-        const stroke_report r = gone ? *gone : there_->follow();
+        const stroke_report r = sending_->refused ? *sending_->refused : there_->follow();
         is_sent = r.state == state_kind::finished;
         code.frame += static_cast<std::uint64_t>(std::llround(r.late_s * p_.render.rate));
     }
     if (lines_ != nullptr) {
-        std::this_thread::sleep_until(over);
+        std::this_thread::sleep_until(sending_->lines_until);
         lines_->show(0);
     }
+    sending_.reset();
     if (is_sent)
         note(code);
 }
@@ -287,6 +303,7 @@ void sync_codes::note(const sent& s)
 
 void sync_codes::write(const run_definition& r, const trial_row& trial, const run_table& table)
 {
+    finish();
     for (const sent& s : std::exchange(noted_, {}))
         store_.append_event(
             r, {{"onset",

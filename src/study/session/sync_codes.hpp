@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -94,15 +95,19 @@ public:
     /// stimuli alone. Throws as that.
     given_stimulus give(const score& stimuli, const session_step& s, const planned_trial& t,
                         const stage::watcher& watch);
-    /// Sends the code of an event that is now: on the lines at once, on the channel after the buffer. Blocks
-    /// until it is sent.
+    /// Begins to send the code of an event that is now: on the lines at once, on the channel after the
+    /// buffer. finish() ends it.
     void send(code_event e, const session_step& s, const planned_trial& t);
+
+    /// Waits for the end of a code that send() began, if any, and notes it.
+    void finish();
 
     /// Notes the codes of stimuli that began at a frame, of which so many frames were played.
     void note_stimuli(const planned_trial& t, std::uint64_t frame_1, std::uint64_t frames, std::int64_t ns);
     /// Notes the code of an event at a frame. `ns`: its CLOCK_REALTIME.
     void note(code_event e, const planned_trial& t, std::uint64_t frame, std::int64_t ns);
-    /// Writes what was noted as events of the trial. \throws error (runtime).
+    /// Calls finish(); then writes what was noted as events of the trial.
+    /// \throws error (runtime).
     void write(const run_definition& r, const trial_row& trial, const run_table& table);
 
 private:
@@ -113,6 +118,12 @@ private:
         std::uint64_t at_frame; ///< of the event itself
         std::int64_t at_ns;     ///< CLOCK_REALTIME
         std::uint64_t frames;   ///< length of the event
+    };
+    /// A code on its way.
+    struct sending {
+        sent code;
+        std::chrono::steady_clock::time_point lines_until = {};
+        std::optional<stroke_report> refused = {}; ///< by the stream
     };
     unsigned number(code_event e, const planned_trial& t, std::size_t method) const;
     score make(unsigned number) const;
@@ -125,6 +136,8 @@ private:
     const code_settings* code_;
     std::uint64_t lead_ = 0;
     std::optional<lsl_markers> lsl_ = {};
+    std::optional<score> like_ = {}; ///< score that codes on the channel are like
+    std::optional<sending> sending_ = {};
     std::vector<sent> noted_ = {};
 };
 
