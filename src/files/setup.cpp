@@ -392,8 +392,11 @@ void read_code(const toml_table& t, code_settings& c)
         if (offsets == nullptr || offsets->empty() || offsets->size() > 8)
             t.fail("offsets", fmt::format("there are {}", counted(offsets ? offsets->size() : 0, "offset")),
                    "give one to eight lines, that of the least significant bit first");
-        for (const toml::node& n : *offsets)
+        for (const toml::node& n : *offsets) {
+            if (!n.is_integer())
+                fail_at(t.where(n), fmt::format("an offset is {}", shown(n)), "give a whole number");
             c.offsets.push_back(static_cast<unsigned>(t.to_number(n, "an offset", {0.0, 65535.0})));
+        }
     } else if (!c.channel && !c.lsl) {
         t.fail("code says neither channel nor chip", "code = { channel = 15 }, or { chip, offsets }");
     }
