@@ -154,7 +154,8 @@ class Read(SessionTest):
         cases = (lambda: self.edit(f"study/{table}", "\t2\t1\t2\t", "\t1\t1\t2\t"),  # a trial that counts twice within a session
                  lambda: shutil.copytree(study / "sourcedata/sub-01/ses-2", study / "sourcedata/sub-01/ses-3"),
                  lambda: (study / "sourcedata/sub-01/ses-2/session.json").rename(study / "sourcedata/sub-01/session.json"),
-                 lambda: (study / table).rename((study / table).with_name("sub-01_ses-1_task-what_beh.tsv")))
+                 lambda: (study / table).rename((study / table).with_name("sub-01_ses-1_task-what_beh.tsv")),
+                 lambda: (study / "sub-01/ses-2").rename(study / "sub-01/ses-02"))
         for change in cases:
             change()
             for command in ("analyze", "report"):

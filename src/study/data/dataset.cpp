@@ -406,8 +406,13 @@ std::vector<session_number> list_sessions(const fs::path& folder, std::string_vi
     for (const fs::path& parent : {source_path(code, {}), session_path(code, {})})
         if (is_there(folder, parent))
             for (const fs::path& path : list_folder(folder / parent))
-                if (const std::string name = path.filename().string(); name.starts_with("ses-"))
-                    all.insert(detail::number_in<unsigned>(name.substr(4)));
+                if (const std::string name = path.filename().string(); name.starts_with("ses-")) {
+                    const auto n = detail::number_in<unsigned>(name.substr(4));
+                    if (!n || fmt::format("ses-{}", *n) != name)
+                        throw error(error_kind::bad_input, source_place{path.string()}, "it is no session",
+                                    "call it ses-1, ses-2 and so on, or move it away");
+                    all.insert(n);
+                }
     std::erase_if(all, [&](session_number s) {
         return !is_there(folder, source_path(code, s) / "session.json") &&
                !is_there(folder, session_path(code, s) / "beh");
