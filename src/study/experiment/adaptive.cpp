@@ -44,10 +44,7 @@ adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
 
 std::size_t adaptive_tracks::next(unsigned track)
 {
-    const procedure& p = find(track);
-    if (const auto* s = std::get_if<value_staircase>(&p))
-        return s->place();
-    return std::get<quest>(p).place();
+    return std::visit([](const auto& p) { return p.place(); }, find(track));
 }
 
 void adaptive_tracks::answer(unsigned track, bool positive)

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -477,41 +476,38 @@ void set_response(trial_row& row, const prepared_experiment& p, const run_defini
 
 namespace {
 
-// Gives a trial of an adaptive run the value that follows from the run's first `n` lines.
-planned_trial adapt(const run_definition& r, planned_trial t, std::span<const trial_row> rows)
+// Takes the answer of a line of an adaptive run.
+void take_line(adaptive_tracks& tracks, const run_outline& run, const trial_row& row)
 {
-    if (t.track == 0)
-        return t;
-    adaptive_tracks tracks(r);
-    for (const trial_row& row : rows)
-        if (!row.is_void && row.track == t.track)
-            tracks.answer(t.track, is_positive(r.outline, row.method_1, row.response == "2" ? 2 : 1));
-    set_value(t, r, tracks.next(t.track));
-    return t;
+    if (!row.is_void && row.track)
+        tracks.answer(*row.track, is_positive(run, row.method_1, row.response == "2" ? 2 : 1));
 }
 
 } // namespace
 
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
 {
-    const std::string& run = p.definition.runs[s.run].outline.name;
+    const run_definition& r = p.definition.runs[s.run];
+    adaptive_tracks tracks(r);
     run_queue queue(s.trials.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const trial_row& row = rows[i];
         bool same = !queue.done();
         if (same) {
             const pending_trial next = queue.next();
-            const planned_trial t =
-                adapt(p.definition.runs[s.run], s.trials[next.trial - 1], std::span(rows).first(i));
+            planned_trial t = s.trials[next.trial - 1];
+            if (t.track > 0)
+                set_value(t, r, tracks.next(t.track));
             const trial_row planned = planned_row(p, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
                    row.plan_1 == planned.plan_1 && row.plan_2 == planned.plan_2;
         }
         if (!same)
-            throw error(error_kind::bad_input, fmt::format("run {}: line {}", run, i + 2),
+            throw error(error_kind::bad_input, fmt::format("run {}: line {}", r.outline.name, i + 2),
                         fmt::format("trial {}, attempt {} is not what comes there", row.trial, row.attempt),
                         "the table was changed, or is of another session");
         queue.take(row.is_void);
+        take_line(tracks, r.outline, row);
     }
     return queue;
 }
@@ -552,8 +548,16 @@ planned_trial find_trial(const prepared_experiment& p, const session_step& s, co
     const run_sequence& run = p.runs[s.run];
     if (s.practice)
         return run.practice[s.which.trial - 1];
-    const planned_trial& t = run.trials[s.which.trial - 1];
-    return t.track == 0 ? t : adapt(p.run_at(s.run), t, store.rows(p.run_at(s.run)));
+    planned_trial t = run.trials[s.which.trial - 1];
+    if (t.track == 0)
+        return t;
+    const run_definition& r = p.run_at(s.run);
+    adaptive_tracks tracks(r);
+    for (const trial_row& row : store.rows(r))
+        if (row.track == t.track)
+            take_line(tracks, r.outline, row);
+    set_value(t, r, tracks.next(t.track));
+    return t;
 }
 
 run_table::run_table(session_store& store, const run_definition& r, bool practice)
