@@ -244,6 +244,15 @@ class Tasks(ExperimentTest):
         self.assertIn(f"| sub-02 | {runs['size']['exponent']['participants']['02']:.4g} |", report)
         self.assertIn("over speed\\_mm\\_s, soft:east:", report)
 
+    def test_a_catch_trial_is_of_no_method(self):
+        self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))
+        notes, rows = [], []
+        for line in self.ok("analyze", "study", "--format", "tsv").stdout.splitlines():
+            (notes if line.startswith("# ") else rows).append(line)
+        rows = list(csv.DictReader(rows, delimiter="\t"))
+        self.assertEqual({(r["method"], r["signal"]) for r in rows}, {("park", "1"), ("soft", "1"), ("none", "0")})
+        self.assertIn('# glmer(positive ~ method * 1 + (1 + method | participant), family = binomial("probit"), data = subset(d, run == "there"))', notes)
+
     def test_power_is_that_of_the_main_figure(self):
         self.write("tasks.toml", tasks("values", "words", "same"))
         power = lambda spec: json.loads(self.ok("experiment", "tasks.toml", "--power", "6", "--studies", "20", "--format", "json",

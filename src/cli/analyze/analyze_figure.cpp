@@ -161,8 +161,7 @@ std::vector<plot::spot> sample_function(const study::psychometric& p, const stud
 std::optional<plot::curve> make_mean_function(const study::run_analysis& r,
                                               const study::measured_condition& c, const plot::curve_axis& x)
 {
-    constexpr double normal_quartile = 0.674489750196082; // z of 0.75
-    const double quartile = r.function == study::sigmoid::normal ? normal_quartile : std::log(3.0);
+    const double quartile = r.function == study::sigmoid::normal ? study::normal_quartile : std::log(3.0);
     std::vector<double> slopes;
     std::vector<double> guesses;
     for (const study::person_measures& m : c.people)

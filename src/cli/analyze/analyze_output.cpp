@@ -243,7 +243,8 @@ void print_measures(const study::run_analysis& r)
             for (const auto& [figure, value] : study::list_measures(r.run, c.people[i]))
                 row += fmt::format("  {} {}", figure, value_text(value));
             if (const auto& b = c.people[i].bootstrap; b.p_gof)
-                row += fmt::format("  pse {}  fit p {}", interval_text(b.pse ? b.pse : b.threshold),
+                row += fmt::format("  {} {}  fit p {}", c.figures.front().first,
+                                   interval_text(r.run.task == task_kind::detect ? b.threshold : b.pse),
                                    p_text(b.p_gof));
             say(stdout, "    sub-{:<{}}{}\n", r.codes[i], w, row);
         }
@@ -364,6 +365,10 @@ std::string write_model(const study::run_outline& r, const std::vector<study::gr
     default:
         break;
     }
+    // The method of a trial without a stimulus is "none": its level is the false alarms.
+    if (has_method && r.catches && r.vary.empty())
+        return fmt::format("glmer(positive ~ method * {} + {}, family = binomial(\"probit\"), {})", motion,
+                           people, data);
     // Its slope over the values, or over whether there was a signal, is what the run is about.
     return fmt::format("glmer(positive ~ {} * {}{} + {}, family = binomial(\"probit\"), {})",
                        r.vary.empty() ? "signal" : "value", has_method ? "method * " : "", motion, people,
@@ -401,7 +406,9 @@ constexpr trial_column trial_columns[] = {
     {"motion", [](const auto& t, const auto& r) { return r.motions[t.motion]; }},
     {"method",
      [](const auto& t, const auto& r) {
-         return r.methods[r.task == task_kind::choose ? asked_method(t, r) : t.method_1];
+         return r.catches && !t.signal
+                    ? std::string(study::catch_name)
+                    : r.methods[r.task == task_kind::choose ? asked_method(t, r) : t.method_1];
      }},
     {"other",
      [](const auto& t, const auto& r) -> std::string {

@@ -129,32 +129,32 @@ mixed_anova compare_groups(const run_outline& run, const std::vector<cell_values
     return analyse_groups(lay_out_cells(all, 0, count_rows(run), run.motions.size()), numbers);
 }
 
-void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
+void count_answers(run_analysis& r, const std::vector<person_trials>& people)
 {
     const std::size_t motions = r.run.motions.size();
     r.confusion.assign(r.run.methods.size(),
                        std::vector<std::vector<std::size_t>>(motions, std::vector<std::size_t>(motions, 0)));
-    for (const run_data* d : data)
-        for (const trial& t : d->trials)
+    for (const person_trials& p : people)
+        for (const trial& t : *p.trials)
             ++r.confusion[t.method_1][t.motion][t.response];
 }
 
-std::vector<worth> estimate_worths(const run_outline& run, const std::vector<const run_data*>& data)
+std::vector<worth> estimate_worths(const run_outline& run, const std::vector<person_trials>& people)
 {
     std::vector<std::vector<double>> wins(run.methods.size(), std::vector<double>(run.methods.size()));
-    for (const run_data* d : data)
-        for (const trial& t : d->trials)
+    for (const person_trials& p : people)
+        for (const trial& t : *p.trials)
             ++wins[chosen_method(t)][t.response == 1 ? t.method_2 : t.method_1];
     return bradley_terry(wins);
 }
 
-response_times summarise_times(const run_outline& run, const std::vector<const run_data*>& data)
+response_times summarise_times(const run_outline& run, const std::vector<person_trials>& people)
 {
     const auto find_median = [&](const auto& counts) {
         std::vector<double> medians;
-        for (const run_data* d : data) {
+        for (const person_trials& p : people) {
             std::vector<double> times;
-            for (const trial& t : d->trials)
+            for (const trial& t : *p.trials)
                 if (t.response_time_s && counts(t))
                     times.push_back(*t.response_time_s);
             if (const auto own = median(std::move(times)))
@@ -168,27 +168,19 @@ response_times summarise_times(const run_outline& run, const std::vector<const r
         for (std::size_t m = 0; m < run.motions.size(); ++m)
             all.by.emplace_back((has_method ? run.methods[row] + ":" : "") + run.motions[m],
                                 find_median([&](const trial& t) {
-                                    return t.motion == m && (!has_method || t.method_1 == row);
+                                    return t.motion == m &&
+                                           (!has_method || (t.method_1 == row && (t.signal || !run.catches)));
                                 }));
     return all;
-}
-
-// Measures a run of participants, each with a trial that counts.
-void add_measures(run_analysis& r, const std::vector<person_trials>& people, sigmoid kind)
-{
-    r.measures = measure_run(r.run, people, kind);
-    r.function = kind;
-    for (const person_trials& p : people)
-        r.codes.push_back(p.code);
 }
 
 run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
 {
     run_analysis r;
     r.run = d.experiment.runs[which];
+    r.function = kind;
     const bool measures = find_task(r.run.task).measures;
     std::vector<cell_values> all;
-    std::vector<const run_data*> data;
     std::vector<person_trials> people;
     std::vector<std::string> groups;
     std::vector<double> first;
@@ -208,8 +200,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
             continue;
         }
         r.trials += own.trials.size();
-        data.push_back(&own);
         people.push_back({d.participants[i], &own.trials});
+        r.codes.push_back(d.participants[i]);
         if (measures)
             continue;
         all.push_back(*std::move(v));
@@ -218,9 +210,9 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         first.push_back(100.0 * static_cast<double>(first_chosen) / static_cast<double>(own.trials.size()));
     }
     r.n = people.size();
-    r.times = summarise_times(r.run, data);
+    r.times = summarise_times(r.run, people);
     if (measures) {
-        add_measures(r, people, kind);
+        r.measures = measure_run(r.run, people, kind);
         return r;
     }
     analyse_values(r, all);
@@ -229,9 +221,9 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     if (r.run.task == task_kind::choose)
         r.first_interval = test_mean(first, 50.0);
     if (has_worths(r.run))
-        r.worths = estimate_worths(r.run, data);
+        r.worths = estimate_worths(r.run, people);
     if (r.run.task == task_kind::identify)
-        count_answers(r, data);
+        count_answers(r, people);
     return r;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -50,14 +51,18 @@ std::vector<value_estimate> normalise_estimates(const std::vector<trial>& trials
     return estimates;
 }
 
+// Measures the trials for which `counts` is true.
+template <class Counts>
 measured_condition measure_condition(const run_outline& run, const std::string& name,
-                                     const std::vector<std::pair<std::string, std::vector<trial>>>& people,
-                                     sigmoid kind)
+                                     const std::vector<person_trials>& people, sigmoid kind,
+                                     const Counts& counts)
 {
     measured_condition c{name};
     std::map<std::string_view, std::vector<double>> values;
-    for (const auto& [code, trials] : people) {
-        c.people.push_back(measure_trials(run, trials, kind, fmt::format("{}/{}/{}", run.name, name, code)));
+    for (const person_trials& p : people) {
+        std::vector<trial> own;
+        std::ranges::copy_if(*p.trials, std::back_inserter(own), counts);
+        c.people.push_back(measure_trials(run, own, kind, fmt::format("{}/{}/{}", run.name, name, p.code)));
         for (const auto& [figure, value] : list_measures(run, c.people.back()))
             if (value)
                 values[figure].push_back(*value);
@@ -144,12 +149,7 @@ std::vector<measured_condition> measure_run(const run_outline& run, const std::v
                                             sigmoid kind)
 {
     const auto measure = [&](const std::string& name, const auto& counts) {
-        std::vector<std::pair<std::string, std::vector<trial>>> own;
-        for (const person_trials& p : people) {
-            own.emplace_back(p.code, std::vector<trial>{});
-            std::ranges::copy_if(*p.trials, std::back_inserter(own.back().second), counts);
-        }
-        return measure_condition(run, name, own, kind);
+        return measure_condition(run, name, people, kind, counts);
     };
     std::vector<measured_condition> all{measure("", [](const trial&) { return true; })};
     const bool has_method = run.task != task_kind::same_different;

@@ -233,12 +233,11 @@ double simulated_observer::cost(std::size_t motion, std::size_t method) const
 
 bool simulated_observer::feels_more(double value, random_numbers& r) const
 {
-    constexpr double jnd_per_sd = 0.6744897501960817; // quartile of the normal
     const run_outline& o = run_.outline;
     const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
     const double pse = simulation_.pse.value_or(o.standard.value_or(0.5 * (least + greatest)));
     const double jnd = simulation_.jnd.value_or(0.1 * (greatest - least));
-    return r.unit() < normal_chance(value, {pse, jnd / jnd_per_sd, simulation_.lapse}, 0.0);
+    return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, simulation_.lapse}, 0.0);
 }
 
 unsigned simulated_observer::measure(const planned_trial& t, random_numbers& r) const

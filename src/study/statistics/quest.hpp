@@ -17,6 +17,9 @@ struct psychometric {
     double lapse = 0.0;
 };
 
+/// The x at which Phi is 0.75.
+inline constexpr double normal_quartile = 0.6744897501960817;
+
 /// Returns guess + (1 - guess - lapse) Phi((x - threshold) / slope).
 double normal_chance(double x, const psychometric& p, double guess);
 
