@@ -199,6 +199,15 @@ class Tables(Forms):
         table.write_text("participant_id\tage\n")
         self.simulate("03", definition="short.toml", status=2, says=("phenotype/about.tsv", "hand"))
 
+    def test_each_session_asks_anew_and_the_report_counts_people(self):
+        self.edit("short.toml", "gap_s", "sessions = 2\ngap_s")
+        for session in ("1", "2"):
+            self.simulate("01", "--session", session, definition="short.toml")
+        first, second = read_table(self.dir / "study/phenotype/about.tsv")
+        self.assertEqual([first.pop("session"), second.pop("session")], ["1", "2"])
+        self.assertNotEqual(first, second)
+        self.assertIn("4 items. Answered by 1 of 1 participant, 2 times in all.", self.ok("report", "study").stdout)
+
     def test_the_description_has_questions_and_levels(self):
         self.simulate("01", definition="short.toml")
         told = json.loads((self.dir / "study/phenotype/about.json").read_text())

@@ -376,6 +376,8 @@ TEST_CASE("a text is typed up to Enter, a character at a time")
     CHECK(typed("quiet, then p\r") == "quiet, then p");
     CHECK(typed("a\u00e9\x7f\xe2\x82\xac\b\b\bb\n") == "b");
     CHECK(typed("a\x1b[Ab\x1b[3~c\x1bOPd\x07\n") == "abcd");
+    CHECK(typed("\x1b"
+                "2024\n") == "2024");
     CHECK(typed("a\xff"
                 "b\n") == "ab");
     CHECK(typed(std::string(most_text_characters, 'a') + "a\n").size() == most_text_characters);

@@ -184,9 +184,7 @@ named_cells make_cells(const questionnaire& q, const std::string& code, session_
 
 text_table read_answers(const fs::path& folder, const questionnaire& q, session_number session)
 {
-    const fs::path file = folder / answers_path(q);
-    return is_on_disk(file) ? text_table(file)
-                            : text_table(file, header_line(make_cells(q, {}, session, {}, {})));
+    return read_or_begin(folder / answers_path(q), header_line(make_cells(q, {}, session, {}, {})).c_str());
 }
 
 std::string questionnaire_text(const questionnaire& q, session_number session, bool simulated)

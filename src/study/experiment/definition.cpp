@@ -355,20 +355,6 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     return {name_in(t, "name"), std::move(w), std::move(drawn), t.where()};
 }
 
-// Reads the number of steps, or "vas".
-void read_scale(const toml_table& t, run_outline& o)
-{
-    const toml::node* n = t.node("scale");
-    if (n == nullptr)
-        return;
-    o.visual = n->value_exact<std::string>() == "vas";
-    const auto most = o.visual ? std::optional<std::int64_t>(visual_most) : n->value_exact<std::int64_t>();
-    if (!most || *most < 2 || *most > most_steps)
-        t.fail("scale", fmt::format("scale is {}", detail::shown(*n)),
-               fmt::format("2 to {}, or \"vas\"", most_steps));
-    o.scale = static_cast<unsigned>(*most);
-}
-
 // Refuses a run with too few motions or methods for its task.
 void check_cells(const toml_table& t, const run_outline& o)
 {
@@ -423,7 +409,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
         names.push_back(row.name);
     const std::string task = t.need(t.choice("task", names), "task");
     o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
-    read_scale(t, o);
+    o.scale = read_scale(t, o.visual).value_or(o.scale);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     o.motions = names_at(r.motions, d.motions);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +16,8 @@ namespace {
 
 using detail::toml_table;
 
+constexpr unsigned most_steps = 101;  // of a scale
+constexpr unsigned visual_most = 100; // on a line
 constexpr unsigned most_choices = 50;
 constexpr unsigned greatest_number = 9999;
 
@@ -49,13 +50,9 @@ void read_range(const toml_table& t, questionnaire_item& item)
 void read_steps(const toml_table& t, questionnaire_item& item)
 {
     item.labels = t.texts("labels", most_steps);
-    const toml::node* n = t.node("scale");
-    item.visual = n != nullptr && n->value_exact<std::string>() == "vas";
+    item.greatest = read_scale(t, item.visual).value_or(static_cast<unsigned>(item.labels.size()));
     if (item.visual)
         item.lowest = 0;
-    item.greatest = item.visual
-                        ? visual_most
-                        : t.whole("scale", 2, most_steps).value_or(static_cast<unsigned>(item.labels.size()));
     const std::size_t labels = item.labels.size();
     const bool fits = item.visual ? labels == 2 : labels == 0 || labels == 2 || labels == item.greatest;
     if (item.greatest < 2 || !fits)
@@ -95,6 +92,19 @@ questionnaire_item read_item(const toml_table& t)
 }
 
 } // namespace
+
+std::optional<unsigned> read_scale(const toml_table& t, bool& visual)
+{
+    const toml::node* n = t.node("scale");
+    if (n == nullptr)
+        return {};
+    visual = n->value_exact<std::string>() == "vas";
+    const auto most = visual ? std::optional<std::int64_t>(visual_most) : n->value_exact<std::int64_t>();
+    if (!most || *most < 2 || *most > most_steps)
+        t.fail("scale", fmt::format("scale is {}", detail::shown(*n)),
+               fmt::format("2 to {}, or \"vas\"", most_steps));
+    return static_cast<unsigned>(*most);
+}
 
 bool is_questionnaire(const toml_table& run)
 {

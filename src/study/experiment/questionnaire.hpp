@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,10 +14,6 @@ class toml_table;
 }
 
 namespace tactor::study {
-
-/// Steps of a scale, at most, and the greatest answer on a line.
-inline constexpr unsigned most_steps = 101;
-inline constexpr unsigned visual_most = 100;
 
 /// Place of a questionnaire in a session.
 enum class questionnaire_time {
@@ -46,6 +43,10 @@ struct questionnaire {
     std::string text = {};
     std::vector<questionnaire_item> items = {};
 };
+
+/// Returns the greatest answer of `scale`, a number of steps or "vas", and sets `visual` for that; nothing
+/// without the key. \throws error (bad_input) with line and column.
+std::optional<unsigned> read_scale(const detail::toml_table& t, bool& visual);
 
 /// Returns true if [[run]] is a questionnaire. \throws error (bad_input) for a task that is no text.
 bool is_questionnaire(const detail::toml_table& run);

@@ -2,6 +2,8 @@
 #include "study/report/report.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -20,7 +22,7 @@ nlohmann::ordered_json list_questionnaires(const study_facts& f)
                     names.push_back(q.name);
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const std::string& name : names) {
-        std::size_t people = 0;
+        std::set<std::string> people;
         std::size_t answers = 0;
         const std::string what = join_texts(f, [&](const session_facts& s) -> std::string {
             if (!s.design)
@@ -30,7 +32,8 @@ nlohmann::ordered_json list_questionnaires(const study_facts& f)
             if (q == own.end())
                 return "not asked";
             const std::size_t lines = s.answered[static_cast<std::size_t>(q - own.begin())];
-            people += lines > 0 ? 1 : 0;
+            if (lines > 0)
+                people.insert(s.participant);
             answers += lines;
             return fmt::format("{}{}{}, {}", q->title, q->title.empty() ? "" : ", ", describe_time(q->when),
                                counted(q->items.size(), "item"));
@@ -38,8 +41,8 @@ nlohmann::ordered_json list_questionnaires(const study_facts& f)
         all.push_back(
             {{"name", name},
              {"what", what},
-             {"answered", fmt::format("{} of {}, {} in all", people,
-                                      counted(f.sessions.size(), "participant"), counted(answers, "time"))}});
+             {"answered", fmt::format("{} of {}, {} in all", people.size(),
+                                      counted(f.people.size(), "participant"), counted(answers, "time"))}});
     }
     return all;
 }

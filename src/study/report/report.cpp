@@ -85,8 +85,9 @@ trial_counts check_trials(const fs::path& folder, const fs::path& table, const s
     return count;
 }
 
-// Counts a participant's lines in the table of a questionnaire.
-std::size_t count_answers(const fs::path& folder, const questionnaire& q, const std::string& code)
+// Counts a session's lines in the table of a questionnaire.
+std::size_t count_answers(const fs::path& folder, const questionnaire& q, const std::string& code,
+                          session_number session)
 {
     const fs::path table = answers_path(q);
     if (!is_there(folder, table))
@@ -94,7 +95,9 @@ std::size_t count_answers(const fs::path& folder, const questionnaire& q, const 
     const text_table t(folder / table);
     std::size_t count = 0;
     for (std::size_t i = 0; i < t.rows(); ++i)
-        count += t.need(i, "participant_id") == "sub-" + code ? 1 : 0;
+        if (t.need(i, "participant_id") == "sub-" + code &&
+            (!session || t.whole(i, "session", 1, 99) == session))
+            ++count;
     return count;
 }
 
@@ -117,7 +120,7 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
         s.design = read_design(text, s.file + ": experiment.text");
     if (s.design)
         for (const questionnaire& q : s.design->questionnaires)
-            s.answered.push_back(count_answers(folder, q, code));
+            s.answered.push_back(count_answers(folder, q, code, session));
     s.stimuli = read_stimuli(s, source / "plans");
     for (const run_outline& r : outline.runs)
         s.counts.push_back(check_trials(folder, table_path(code, session, r), s));

@@ -55,7 +55,7 @@ struct session_facts {
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<std::size_t> answered = {}; ///< lines of the participant, by questionnaire of the design
+    std::vector<std::size_t> answered = {}; ///< its lines, by questionnaire of the design
     std::vector<trial_counts> counts = {};  ///< by run
 
     json_value facts() const { return {document, file, changed_file}; }

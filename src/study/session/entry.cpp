@@ -35,9 +35,14 @@ std::optional<std::string> tidy_text(std::string_view entered)
 
 bool typed_text::take(char byte)
 {
-    if (byte == '\x1b' || escape_) {
+    if (escape_ == '\x1b' && byte != '[' && byte != 'O')
+        escape_ = '\0'; // Esc alone
+    if (byte == '\x1b' || escape_ != '\0') {
         // Such as ESC [ A, ESC O P and ESC [ 3 ~.
-        escape_ = std::string_view("\x1b[O;0123456789").find(byte) != std::string_view::npos;
+        const bool goes_on =
+            byte == '\x1b' || escape_ == '\x1b' ||
+            (escape_ != 'O' && std::string_view(";0123456789").find(byte) != std::string_view::npos);
+        escape_ = goes_on ? byte : '\0';
         return false;
     }
     if (byte == '\n' || byte == '\r')

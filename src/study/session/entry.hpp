@@ -36,7 +36,7 @@ public:
 private:
     std::string text_ = {};
     std::string begun_ = {}; ///< bytes of a character that is not complete
-    bool escape_ = false;    ///< within the sequence of an arrow or the like
+    char escape_ = '\0';     ///< last byte of the sequence of an arrow or the like; 0: not in one
 };
 
 } // namespace tactor::study

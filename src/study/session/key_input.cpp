@@ -255,6 +255,7 @@ std::optional<session_key> session_keys::poll(bool repeated)
         const bool is_held =
             terminal_ && guard_.is_repeated(line->front(), read_ns_, text_.starts_with(*line));
         session_key k = make_key(*std::move(line), terminal_);
+        k.is_held = is_held;
         if (!is_held || repeated || k.command)
             return k;
         if (!std::exchange(warned_, true))
@@ -316,12 +317,14 @@ session_key session_keys::wait_for_text(typed_text& text)
         if (page_ != nullptr)
             return k;
         k.command.reset();
+        if (k.is_held && k.text == "\n" && text.text().empty())
+            continue; // Enter of the question before
         const std::size_t before = text.text().size();
         if (k.is_key && !text.take(k.text.front())) {
             echo(text.text(), before);
             continue;
         }
-        k.entered = tidy_text(k.is_key ? text.text() : *k.entered);
+        k.entered = k.is_key ? text.text() : tidy_text(*k.entered);
         return k;
     }
 }

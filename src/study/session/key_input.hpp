@@ -105,6 +105,7 @@ struct session_key {
     std::optional<unsigned> answer = {};     ///< the number that this is, or that of the page's answer
     std::optional<std::string> entered = {}; ///< a line with its blanks; a text from the page
     bool is_key = false;                     ///< of a terminal or a keypad: a number may have more digits
+    bool is_held = false;                    ///< a terminal repeats it
     bool from_keypad = false;
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };

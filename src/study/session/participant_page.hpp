@@ -45,7 +45,7 @@ struct page_screen {
     bool visual = false;                 ///< the choices are places on a line, from 0 on, and have no numbers
     entry_kind entry = entry_kind::none; ///< in place of choices
     unsigned lowest = 1;                 ///< of a number that is entered
-    unsigned greatest = 999;
+    unsigned greatest = 1;
     std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
     unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
     unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none

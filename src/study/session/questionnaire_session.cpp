@@ -51,7 +51,7 @@ std::string ask_item(const questionnaire_item& item, const page_words& w, sessio
     const std::string possible = answers_text(item, w);
     session::show(fmt::format("{} {}", item.question, possible));
     const bool is_text = item.kind == item_kind::text;
-    const bool is_typed = is_text || item.greatest > most_keys;
+    const bool is_typed = is_text || item.lowest == 0 || item.greatest > most_keys;
     typed_text text;
     typed_number number(fmt::formatted_size("{}", item.greatest));
     for (;;) {

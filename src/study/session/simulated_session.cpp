@@ -50,8 +50,9 @@ public:
                 const std::string after = name_run_before(p_, q, s.run);
                 store_.append_answers(
                     q, after,
-                    draw_answers(q, fmt::format("{}/{}/{}/{}/{}", simulation_.seed, p_.definition.name,
-                                                p_.participant, q.name, after)));
+                    draw_answers(q, fmt::format("{}/{}/{}",
+                                                session_seed(simulation_.seed, p_.definition, p_.participant),
+                                                q.name, after)));
                 flow_.answered(s);
                 continue;
             }
