@@ -491,7 +491,7 @@ class Orders(ExperimentTest):
         self.assertIn("finished", self.simulate("05", "--resume", "--order", "2").stdout)
         self.simulate("05", "--resume", status=2, says=('begun with order ["how good"',))
         self.simulate("05", "--resume", "--order", "3", status=2, says=("begun with order_row 2, and now it is 3",))
-        self.simulate("02", "--resume", "--order", "3", status=2, says=("begun with order_row nothing",))
+        self.simulate("02", "--resume", "--order", "3", status=2, says=("begun with order_row none",))
         report = self.ok("report", "study").stdout
         for text in (f"| {', '.join(order)} (row 2) |", f"| {', '.join(order)} |", "is a row of a Williams square (Williams 1949), chosen by"):
             self.assertIn(text, report)

@@ -70,6 +70,8 @@ class Codes(PersonTest):
             self.assertEqual(resumed[n] + last, whole[n])
         self.write("array.toml", ARRAY.replace("15", "14"))
         self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=["codes"])
+        self.write("array.toml", '[array]\npreset = "palm-3x3"\n[output]\nchannels = 16\n')
+        self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=['"codes" is not as it was'])
 
     def test_without_codes_there_are_no_events(self):
         self.simulate("01")
@@ -79,7 +81,8 @@ class Codes(PersonTest):
         for old, new, says in (("channel = 15", "channel = 4", "array.toml:4:8: code: channel 4 drives a tactor"),
                                ("[sync]", "[output]\nchannels = 12\n[sync]", "array.toml:6:8: the code's channel is 15, but there are 12 channels"),
                                ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'the answer\'s number of motion "down" by method "brush" is 256'),
-                               ("channel = 15", "lsl = 1", "array.toml:4:16: lsl is 1")):
+                               ("channel = 15", "lsl = 1", "array.toml:4:16: lsl is 1"),
+                               ("channel = 15", 'chip = "c", offsets = [5, 6.7]', "array.toml:4:36: an offset is 6.7")):
             self.write("array.toml", ARRAY.replace(old, new))
             self.simulate("01", "--array", "array.toml", status=2, says=[says])
         self.write("array.toml", ARRAY)

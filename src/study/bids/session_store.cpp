@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using ordered = nlohmann::ordered_json;
 
 // Facts about when and with which device a session was held; all others must stay as they were.
-constexpr std::array<std::string_view, 7> may_differ{
-    "date", "versions", "device", "streams", "sound_server", "masker_sound_server", "walk"};
+constexpr std::array<std::string_view, 8> may_differ{
+    "date", "versions", "device", "streams", "sound_server", "masker_sound_server", "walk", "consent"};
 
 // A card may have another name by now, but noise from a card must stay noise from a card.
 bool is_as_begun(const std::string& key, const ordered& began, const ordered& now)
@@ -43,12 +43,15 @@ constexpr std::size_t reserved_bytes = std::size_t{64} << 10;
 constexpr std::array<const char*, 6> reserved{".reserve",   ".reserve-2", ".reserve-3",
                                               ".reserve-4", ".reserve-5", ".reserve-6"};
 
-// Returns a value as text, if it is short enough to be shown.
-std::string brief(const ordered& j, const std::string& key)
+// Says how a fact changed; shows its values if both are short enough.
+std::string change_text(const std::string& key, const ordered& began, const ordered& now)
 {
-    const std::string text = j.contains(key) ? j[key].dump() : "nothing";
+    const std::string before = began.contains(key) ? began[key].dump() : "none";
+    const std::string after = now.contains(key) ? now[key].dump() : "none";
     constexpr std::size_t longest = 60;
-    return text.size() > longest ? std::string("another") : text;
+    if (std::max(before.size(), after.size()) > longest)
+        return fmt::format("\"{}\" is not as it was when the session began", key);
+    return fmt::format("the session was begun with {} {}, and now it is {}", key, before, after);
 }
 
 std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
@@ -99,11 +102,11 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
         throw error(error_kind::bad_input, file.string(), "it is no JSON", "it was changed");
-    for (const auto& [key, value] : facts_.items())
-        if (!is_as_begun(key, began.value(key, ordered("")), value))
-            throw error(error_kind::bad_input, file.string(),
-                        fmt::format("the session was begun with {} {}, and now it is {}", key,
-                                    brief(began, key), brief(facts_, key)),
+    ordered both = facts_; // keys of either
+    both.update(began);
+    for (const auto& [key, value] : both.items())
+        if (!is_as_begun(key, began.value(key, ordered("")), facts_.value(key, ordered(""))))
+            throw error(error_kind::bad_input, file.string(), change_text(key, began, facts_),
                         "a session goes on as it was begun");
     facts_ = began;
     resumed_ = true;
@@ -240,26 +243,28 @@ void session_store::append_answers(const questionnaire& q, const std::string& af
     keep([&] { folder_.add_answers(q, after, answers); });
 }
 
-// Appends a line, or makes the table with it. Reads a table that this process did not write last, or that
+// Appends a line, or makes the table with it. Reads a table that has no line of this process, or that
 // somebody else has changed.
 void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
-    const bool known = last_ && last_->file == file && last_->state == find_state(file);
+    const auto was = written_.find(file);
+    const bool known = was != written_.end() && was->second.state == find_state(file);
     if (!known)
-        last_ = {file, text_table(file, header_line(cells)), {}};
+        written_.insert_or_assign(file, written_table{text_table(file, header_line(cells)), {}});
+    written_table& own = written_.at(file);
     std::optional<std::string> end = "";
     if (is_on_disk(file)) {
         if (!known)
-            end = read_columns(last_->columns);
+            end = read_columns(own.columns);
         // A table that cannot be read takes an answer nevertheless: in the order of a new table.
-        append_text(file, end.value_or("\n") + last_->columns.line(cells));
+        append_text(file, end.value_or("\n") + own.columns.line(cells));
     } else {
-        write_whole(file, last_->columns.with_line(cells));
+        write_whole(file, own.columns.with_line(cells));
     }
     if (end)
-        last_->state = find_state(file);
+        own.state = find_state(file);
     else
-        last_.reset();
+        written_.erase(file);
 }
 
 void session_store::make_last_void(const run_definition& r)

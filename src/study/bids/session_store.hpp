@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -94,10 +95,9 @@ private:
     void keep(const Write& write);
     void write_line(const std::filesystem::path& file, const named_cells& cells);
 
-    /// The table of the last line, with the size and time that this left it with: the next line needs its
-    /// columns alone, unless somebody else has changed it.
+    /// A table that has a line of this process, with the size and time that this left it with: the next line
+    /// needs its columns alone, unless somebody else has changed it.
     struct written_table {
-        std::filesystem::path file;
         text_table columns;
         std::pair<std::uintmax_t, std::filesystem::file_time_type> state;
     };
@@ -108,7 +108,7 @@ private:
     std::filesystem::path source_; ///< sourcedata/sub-CODE, of several sessions sourcedata/sub-CODE/ses-N
     bool resumed_ = false;
     bool begun_ = false; ///< by this process
-    std::optional<written_table> last_ = {};
+    std::map<std::filesystem::path, written_table> written_ = {};
 };
 
 } // namespace tactor::study
