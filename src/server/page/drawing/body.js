@@ -74,7 +74,7 @@ export const body_corners = (middle, [x, y, w, h] = part().box, m = body_matrix(
 on_change(() => {
   const a = state.hello?.array, site = a?.site ?? "left palm";
   if (!a) return;
-  Object.assign(body, usual_place(Object.keys(PARTS).findLast(name => PARTS[name].find.test(site)), /right/i.test(site)));
+  Object.assign(body, usual_place(Object.keys(PARTS).filter(name => PARTS[name].find.test(site)).pop(), /right/i.test(site)));
   const {place: [x, y] = [body.x, body.y], body: length = body.length, turn = 90 * Math.max(0, directions().indexOf(a.up))} = a;
   Object.assign(body, {x, y, turn, length});
   [in_file, place_key] = [a.site ? JSON.stringify(body) : "", `body-${a.name}-${a.tactors.length}`];

@@ -381,7 +381,7 @@ export function insert_knot(s, place) {
   }));
   if (best.off === Infinity) return {stroke: s, index: 0};
   const {after, at, x, y} = best;
-  const knots = s.knots.toSpliced(after + 1, 0, {x, y, corner: false, at, curve: s.knots[after].curve});
+  const knots = [...s.knots.slice(0, after + 1), {x, y, corner: false, at, curve: s.knots[after].curve}, ...s.knots.slice(after + 1)];
   return {stroke: rebuild({...s, knots}), index: after + 1};
 }
 

@@ -85,7 +85,7 @@ function show_bin() {
   if (binned.length === state.bin.length && binned.every((t, i) => t === state.bin[i])) return;
   binned = state.bin;
   set_text("bin-text", `${binned.length}, kept for ${BIN_DAYS} days`);
-  by_id("binned").replaceChildren(...binned.toSorted((a, b) => b.deleted - a.deleted).map(t => make("li", {}, thumb(t.strokes),
+  by_id("binned").replaceChildren(...[...binned].sort((a, b) => b.deleted - a.deleted).map(t => make("li", {}, thumb(t.strokes),
     make("span", {}, make("b", {}, t.name), make("small", {}, `deleted ${when(days(t))}, ${BIN_DAYS - 1 - days(t)} days left`)),
     make("button", {class: "button outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
 }

@@ -20,7 +20,8 @@ export const starting_at = (s, t) => ({...s, start_s: +Math.min(MOST_S - duratio
 // Returns the strokes of a take, and copies of stroke i behind each other from a moment on.
 export function with_copies({name: take_name, strokes}, i, count, from_s = total_s(strokes) + PAUSE_S) {
   // A stroke that is alone is shown by the name of its take.
-  const step_s = duration_s(strokes[i]) + PAUSE_S, name = strokes[1] ? strokes[i].name : take_name, out = strokes.with(i, {...strokes[i], name});
+  const step_s = duration_s(strokes[i]) + PAUSE_S, name = strokes[1] ? strokes[i].name : take_name, out = [...strokes];
+  out[i] = {...strokes[i], name};
   for (; count >= 1 && out.length < MOST_STROKES && from_s + step_s < MOST_S; --count, from_s += step_s)
     out.push(starting_at({...out[i], name: `${name.replace(/ \d+$/, "")} ${out.length + 1}`}, from_s));
   return out;

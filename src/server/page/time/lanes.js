@@ -130,7 +130,7 @@ export function draw_lanes() {
 // Goes one burst on or back.
 export function step_burst(by) {
   const onsets = [...(state.plan?.onsets ?? [])].sort((a, b) => a - b);
-  const next = by > 0 ? onsets.find(t => t > state.at_s + 1e-4) : onsets.findLast(t => t < state.at_s - 1e-4);
+  const next = by > 0 ? onsets.find(t => t > state.at_s + 1e-4) : onsets.filter(t => t < state.at_s - 1e-4).pop();
   if (next !== undefined) look_at(next + 1e-4);
 }
 export const clock_text = () => [state.drawing ? total().toFixed(2) : state.at_s.toFixed(2), seconds_text(total())];

@@ -58,7 +58,7 @@ function tap_ruler(t, now = now_ms()) {
 // Trims a clip at its end, or repeats it where the end is pulled on.
 function pull_end({take, stroke, index, key}, px, t) {
   const end = t < end_s(stroke) ? trimmed(stroke, 0, Math.max(LEAST_S, t - stroke.start_s)) : stroke;
-  const strokes = with_copies({...take, strokes: take.strokes.with(index, end)}, index, px / REPEAT_PX, end_s(stroke) + PAUSE_S);
+  const strokes = with_copies({...take, strokes: take.strokes.map((s, i) => i === index ? end : s)}, index, px / REPEAT_PX, end_s(stroke) + PAUSE_S);
   edit_take(() => ({strokes}), key);
   if (strokes[take.strokes.length]) say(`“${strokes[index].name}” × ${strokes.length - take.strokes.length + 1}`);
 }
@@ -120,7 +120,7 @@ function end_scrub() {
 }
 function feel_moment() {
   const now = now_ms(), plan = state.plan, t = state.at_s + 1e-4;
-  const row = plan?.onsets.findLastIndex((onset, i) => onset <= t && t < onset + plan.durations[i]) ?? -1;
+  const row = plan?.onsets.map((onset, i) => onset <= t && t < onset + plan.durations[i]).lastIndexOf(true) ?? -1;
   if (row < 0 || now - moved_ms > FELT_REST_MS || has_stopped(moved_ms)) return end_scrub();
   const is_new = !live;
   live ??= {number: null, sent_ms: 0, track: {down: true}};
