@@ -143,6 +143,7 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
     page_screen shown{.name = "question", .question = r.question};
     if (r.outline.task == task_kind::estimate) {
         shown.entry = entry_kind::number;
+        shown.greatest = most_estimate;
         shown.where = find_progress(p, s);
         return shown;
     }
@@ -444,12 +445,11 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
         {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
     return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
         const run_definition& r = p_.run_at(s.run);
-        const std::vector<std::string> names = asks_which(r) ? r.choices : std::vector<std::string>{};
         for (; shown < changes.size() && frame >= changes[shown].first; ++shown) {
             const unsigned playing = changes[shown].second;
             on_page(stimulus_screen(p_, s, playing));
-            if (playing > 0 && !names.empty())
-                session::show(fmt::format("{}... ", names[playing - 1]));
+            if (playing > 0 && asks_which(r) && !r.choices.empty())
+                session::show(fmt::format("{}... ", r.choices[playing - 1]));
         }
     };
 }
@@ -514,22 +514,21 @@ void person_session::trial(const session_step& s)
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
+            codes_.send(code_event::answer, s, t);
             set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[*a.number - 1]) : *a.number,
                          a.time_s);
         }
     }
     row.is_void = !flaw.empty();
     if (row.is_void) {
+        codes_.send(code_event::made_void, s, t);
         session::show((s.practice ? "" : w["later"]) + "\n");
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     tables_->at(s).add(row, started_ns, p_.render.rate);
     flow_.took(row.is_void);
-    // The answer is on the disk before its code is sent: the process may be killed meanwhile.
-    codes_.write(r, row, tables_->at(s));
-    codes_.send(row.is_void ? code_event::made_void : code_event::answer, s, t);
-    codes_.write(r, row, tables_->at(s));
+    codes_.write(r, row, tables_->at(s)); // after the answer, which a kill during its code must not lose
     find_device();
 }
 
