@@ -54,6 +54,8 @@ class Codes(PersonTest):
             self.assertEqual(list(described), COLUMNS)
             self.assertEqual(described["code"]["Levels"]["23"], 'answer, motion "down" by method "park"')
         self.assertEqual(self.session()["codes"], {"stimulus": 10, "answer": 20, "void": 30, "channel": 15, "bit_ms": 2.0})
+        self.assertIn("Codes of stimuli, answers and void trials for a recorder: channel 15 (bits of 2 ms, exact to the sample).",
+                      self.ok("report", "study").stdout)
         whole = contents(self.dir / "study")
         self.assertEqual(self.events("whichone")[0]["onset"], "0.000000")
         # A crash within the last event of the second run: its cut line is kept beside the table.

@@ -115,7 +115,7 @@ class Numbers(ReportTest):
 
     def test_procedure_is_from_the_definition_and_the_sessions(self):
         procedure = section(self.text, "## Procedure")
-        for told in ("Gap between the two stimuli of a choice: 1 s.", "Question: Which of the two moved more evenly in speed?",
+        for told in ("Gap between the two stimuli of a trial: 1 s.", "Question: Which of the two moved more evenly in speed?",
                      "Labels of the scale: very uneven, very even", "Break after the run: 60 s", "rated from 1 to 5",
                      "Trials: 40; practice trials before, which do not count: 4", "sooner after the stimulus than: 0.15 s"):
             self.assertIn(told, procedure)
@@ -228,7 +228,7 @@ class Differences(ReportTest):
             e["sha256"] = hashlib.sha256(e["text"].encode()).hexdigest()
         self.change("01", other)
         text = self.report("study")
-        self.assertIn("Gap between the two stimuli of a choice: 0.5 s (sub-01); 0.25 s (sub-02, sub-03).", text)
+        self.assertIn("Gap between the two stimuli of a trial: 0.5 s (sub-01); 0.25 s (sub-02, sub-03).", text)
         self.assertIn("the texts of their experiments differ", text)
 
     def test_participants_are_those_of_their_table(self):

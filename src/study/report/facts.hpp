@@ -53,6 +53,10 @@ std::string fact_text(const session_facts& s, const std::string& key);
 std::string stream_text(const session_facts& s, const std::string& key);
 
 std::string describe_carrier(const session_facts& s);
+
+/// Tests whether any recorded stimulus has bursts.
+bool has_bursts(const session_facts& s);
+
 std::string law_text(const session_facts& s);
 
 /// Lists the methods of the definition that were played, in the order in which they came.

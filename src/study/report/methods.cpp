@@ -116,6 +116,23 @@ std::string acceleration_text(const session_facts& s)
     return join(parts);
 }
 
+// Describes where the codes of a session went.
+std::string codes_text(const session_facts& s)
+{
+    const json_value codes = s.facts()["codes"];
+    if (!codes.there())
+        return "none";
+    std::vector<std::string> places;
+    if (codes["channel"].there())
+        places.push_back(fmt::format("channel {} (bits of {} ms, exact to the sample)",
+                                     codes["channel"].words(), codes["bit_ms"].words()));
+    if (codes["lines"].there())
+        places.push_back("GPIO lines " + codes["lines"].words());
+    if (codes["lsl"].there())
+        places.emplace_back("markers of LSL");
+    return join(places);
+}
+
 // Describes the experiment's level, and then those of the methods that have their own.
 std::string describe_level(const session_facts& s)
 {
@@ -283,6 +300,10 @@ json describe_results(json runs, const dataset& d)
                 cut_intervals(run[key], possible.first, possible.second);
         if (run.contains("bradley_terry"))
             add_rows(run["bradley_terry"]);
+        for (const char* key : {"anova", "group_anova"})
+            if (const json effects = run.value(key, json::object()); std::ranges::all_of(
+                    effects, [](const json& e) { return e.is_null() || e.at("F").is_null(); }))
+                run.erase(key);
         run["motions"] = o.motions;
         run["measured"] = run.at("n") == 0 ? json::array() : list_measured(run);
         run["compared"] = json::array();
@@ -326,6 +347,9 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     for (const char* key : {"rate", "channels", "device", "sound_server"})
         all[key] = fact(key);
     all["arrays"] = list_arrays(f);
+    const bool coded =
+        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.facts()["codes"].there(); });
+    all["codes"] = coded ? json(join_texts(f, codes_text)) : json(false);
     const std::string acceleration = join_texts(f, acceleration_text);
     all["acceleration"] = acceleration == not_recorded ? json(false) : json(acceleration);
     all["level"] = join_texts(f, describe_level);
@@ -334,6 +358,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["calibrations"] = list_calibrations(f);
     all["calibrated"] = !all["calibrations"].empty();
     all["carrier"] = join_texts(f, describe_carrier);
+    all["bursts"] = std::ranges::any_of(f.sessions, has_bursts);
     all["law"] = join_texts(f, law_text);
     all["methods"] = list_methods(f);
     json& equations = all["equations"] = json::object(); // by names from files
@@ -345,7 +370,11 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["recorded"] = !all["stimuli"].empty();
     all["valued"] = std::ranges::any_of(all["stimuli"], [](const json& s) { return s.at("value") != ""; });
     all["notes"] = list_notes(f);
-    all["gap"] = definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; });
+    const auto has_run = [&d](const auto& what) { return std::ranges::any_of(d.experiment.runs, what); };
+    all["gap"] =
+        has_run(has_pairs)
+            ? json(definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; }))
+            : json(false);
     all["rest"] = definition([](const experiment_definition& e) {
         return e.rest.is_random() ? fmt::format("{} to {} s, drawn for each trial",
                                                 plain_number(e.rest.least_s), plain_number(e.rest.most_s))
@@ -370,7 +399,6 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["questionnaires"] = list_questionnaires(f);
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
-    const auto has_run = [&d](const auto& what) { return std::ranges::any_of(d.experiment.runs, what); };
     all["worths"] = has_run(has_worths);
     all["has_cells"] = has_run([](const run_outline& r) { return !find_task(r.task).measures; });
     all["has_functions"] = has_run([](const run_outline& r) {

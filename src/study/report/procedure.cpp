@@ -126,12 +126,13 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
             return s.design ? text(s.design->runs.at(run)) : std::string();
         });
     };
+    const json attribute = fact([](const run_definition& r) { return r.attribute; });
     return {
         {"name", o.name},
         {"task", to_string(o.task)},
         {"asked", describe_task(o)},
         {"motions", join(o.motions)},
-        {"attribute", fact([](const run_definition& r) { return r.attribute; })},
+        {"attribute", attribute == not_recorded && find_task(o.task).measures ? json(false) : attribute},
         {"question", fact([](const run_definition& r) { return r.question; })},
         {"animation", join_texts(f,
                                  [run](const session_facts& s) {

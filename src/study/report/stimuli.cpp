@@ -138,9 +138,15 @@ std::string describe_carrier(const session_facts& s)
     for (const planned_stimulus& p : s.stimuli)
         for (const double ramp_s : list_burst_numbers(p.facts(), "ramp_s"))
             ramps.push_back(ramp_s);
-    return s.stimuli.empty() ? ""
-                             : fmt::format("{}; ramps of {} s at both ends of a burst",
-                                           join_plans(s, describe_sound, "; "), range_text(ramps));
+    return join_plans(s, describe_sound, "; ") +
+           (ramps.empty() ? "" : fmt::format("; ramps of {} s at both ends of a burst", range_text(ramps)));
+}
+
+bool has_bursts(const session_facts& s)
+{
+    return std::ranges::any_of(s.stimuli, [](const planned_stimulus& p) {
+        return !list_burst_numbers(p.facts(), "duration_s").empty();
+    });
 }
 
 std::string law_text(const session_facts& s)

@@ -105,6 +105,8 @@ nlohmann::ordered_json code_facts(const code_settings& c)
     }
     if (!c.offsets.empty())
         j["lines"] = c.offsets;
+    if (c.lsl)
+        j["lsl"] = true;
     return j;
 }
 
