@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include "rounds.hpp"
+#include "study/analysis/measures.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/signal_detection.hpp"
@@ -188,6 +190,53 @@ TEST_CASE("intervals of the pse hold the truth in 95 % of simulated studies")
                    studies, hold, hold_jnd);
         CHECK(hold >= studies * (test::whole() ? 93 : 85) / 100);
         CHECK(hold <= studies * (test::whole() ? 97 : 100) / 100);
+    }
+}
+
+TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulated studies")
+{
+    constexpr std::size_t people = 12;
+    constexpr std::size_t trials = 60;
+    constexpr double exponent = 0.6;
+    for (const auto& [task, dprime] :
+         {std::pair(task_kind::detect, 1.5), {task_kind::same_different, 2.0}, {task_kind::estimate, 0.0}}) {
+        run_outline run{.name = "run", .file_name = "run", .task = task, .motions = {"m"}, .methods = {"a"}};
+        run.catches = task == task_kind::detect;
+        if (task == task_kind::estimate)
+            run.values = {5.0, 10.0, 20.0, 40.0};
+        const auto simulate = [&](trial& t, random_numbers& r) {
+            const double apart = t.signal ? dprime : 0.0;
+            if (task == task_kind::estimate)
+                t.response = static_cast<unsigned>(
+                    std::lround(10.0 * std::pow(t.value, exponent) * std::exp(0.2 * r.normal())));
+            else if (task == task_kind::detect)
+                t.positive = apart + r.normal() > 0.5 * dprime;
+            else
+                t.positive = std::abs(apart + r.normal() - r.normal()) > 1.4;
+        };
+        random_numbers r(to_string(task));
+        const int studies = test::rounds(200, 1000);
+        int hold = 0;
+        for (int study = 0; study < studies; ++study) {
+            std::vector<std::vector<trial>> answers(people, std::vector<trial>(trials));
+            std::vector<person_trials> all;
+            for (std::vector<trial>& own : answers) {
+                for (std::size_t i = 0; i < trials; ++i) {
+                    own[i].signal = i % 2 == 0;
+                    if (!run.values.empty())
+                        own[i].value = run.values[i % run.values.size()];
+                    simulate(own[i], r);
+                }
+                all.push_back({std::to_string(all.size()), &own});
+            }
+            const t_test mean = measure_run(run, all, sigmoid::normal)[0].figures[0].second;
+            const double truth = task == task_kind::estimate ? exponent : dprime;
+            hold += mean.ci && mean.ci->first <= truth && truth <= mean.ci->second ? 1 : 0;
+        }
+        fmt::print("{}, {} people of {} trials: of {} intervals {} hold the truth\n", to_string(task), people,
+                   trials, studies, hold);
+        CHECK(hold >= studies * (test::whole() ? 93 : 90) / 100);
+        CHECK(hold <= studies * (test::whole() ? 97 : 99) / 100);
     }
 }
 
