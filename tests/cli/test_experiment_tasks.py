@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+import statistics
 
 from experiments import DESK, ExperimentTest, contents
 from harness import ROOT, main
@@ -235,7 +236,7 @@ class Tasks(ExperimentTest):
                      "Stimulus called standard: by the same method, with level\\_dbfs of -24", "- Watson, A. B.", "- Levitt, H.", "- Stevens, S. S."):
             self.assertIn(text, report)
         self.assertEqual({line.split(" | ")[-1] for line in report.splitlines() if line.startswith("| east | park |")}, {"all |"})
-        for text in ("**standard.**", "**none.**", "sub-01, sub-01", "- Holm, S."):
+        for text in ("**standard.**", "**none.**", "sub-01, sub-01", "- Holm, S.", "Attribute: not recorded", "Codes of stimuli"):
             self.assertNotIn(text, report)
         one = runs["values"]["psychometric"]["participants"]["01"]
         self.assertIn(f"| sub-01 | {one['pse']:.4g} | {one['ci']['pse'][0]:.4g} to {one['ci']['pse'][1]:.4g} | {one['jnd']:.4g} |", report)
@@ -243,6 +244,23 @@ class Tasks(ExperimentTest):
         self.assertIn(f"| d' | {there['mean']:.4g} | {there['se']:.4g} |", report)
         self.assertIn(f"| sub-02 | {runs['size']['exponent']['participants']['02']:.4g} |", report)
         self.assertIn("over speed\\_mm\\_s, soft:east:", report)
+
+    def test_groups_are_compared_by_the_main_figure(self):
+        grouped = tasks("values", "size") + '[[group]]\nname = "a"\n[[group]]\nname = "b"\n'
+        self.write("tasks.toml", grouped)
+        for code, group in (("01", "a"), ("02", "b"), ("03", "a"), ("04", "b"), ("05", "b")):
+            self.ok("experiment", "tasks.toml", "--participant", code, "--group", group, "-o", "study", "--simulate", SIMULATE.format(1))
+        runs = self.analysis()["runs"]
+        for run, figures in (("values", {c: p["pse"] for c, p in runs["values"]["psychometric"]["participants"].items()}),
+                             ("size", runs["size"]["exponent"]["participants"])):
+            one, other = [figures[c] for c in ("01", "03")], [figures[c] for c in ("02", "04", "05")]
+            error = statistics.variance(one) + 2 * statistics.variance(other)
+            expected = (statistics.mean(one) - statistics.mean(other)) ** 2 / (error / 3 * (1 / 2 + 1 / 3))
+            told = runs[run]["group_anova"]
+            self.assertEqual((list(told), told["group"]["df1"], told["group"]["df2"]), (["group"], 1, 3))
+            self.assertAlmostEqual(told["group"]["F"] / expected, 1, delta=1e-9)
+        self.assertIn("groups compared:\n", self.ok("analyze", "study").stdout)
+        self.assertIn("Analysis of variance with the group as a factor", self.ok("report", "study").stdout)
 
     def test_a_catch_trial_is_of_no_method(self):
         self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))

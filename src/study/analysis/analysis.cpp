@@ -116,9 +116,8 @@ void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
     r.paired = test_mean(differences, 0.0, rounding_in(r.run));
 }
 
-// Compares the groups of the participants in all cells of a run.
-mixed_anova compare_groups(const run_outline& run, const std::vector<cell_values>& all,
-                           const std::vector<std::string>& groups)
+// Compares the groups of participants by all their cells.
+mixed_anova compare_groups(const std::vector<cell_values>& all, const std::vector<std::string>& groups)
 {
     const std::set<std::string> names(groups.begin(), groups.end());
     if (names.size() < 2)
@@ -126,7 +125,7 @@ mixed_anova compare_groups(const run_outline& run, const std::vector<cell_values
     std::vector<std::size_t> numbers;
     for (const std::string& g : groups)
         numbers.push_back(static_cast<std::size_t>(std::distance(names.begin(), names.find(g))));
-    return analyse_groups(lay_out_cells(all, 0, count_rows(run), run.motions.size()), numbers);
+    return analyse_groups(lay_out_cells(all, 0, all[0].size(), all[0][0].size()), numbers);
 }
 
 void count_answers(run_analysis& r, const std::vector<person_trials>& people)
@@ -202,10 +201,10 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         r.trials += own.trials.size();
         people.push_back({d.participants[i], &own.trials});
         r.codes.push_back(d.participants[i]);
+        groups.push_back(d.groups.empty() ? "" : d.groups[i]);
         if (measures)
             continue;
         all.push_back(*std::move(v));
-        groups.push_back(d.groups.empty() ? "" : d.groups[i]);
         const auto first_chosen = std::ranges::count(own.trials, 1U, &trial::response);
         first.push_back(100.0 * static_cast<double>(first_chosen) / static_cast<double>(own.trials.size()));
     }
@@ -213,11 +212,19 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     r.times = summarise_times(r.run, people);
     if (measures) {
         r.measures = measure_run(r.run, people, kind);
-        return r;
+        const std::vector<std::string> of_all = std::exchange(groups, {});
+        for (std::size_t i = 0; i < people.size(); ++i) {
+            const std::vector<named_measure> own = list_measures(r.run, r.measures[0].people[i]);
+            if (own.empty() || !own[0].second)
+                continue;
+            all.push_back({{*own[0].second}});
+            groups.push_back(of_all[i]);
+        }
+    } else {
+        analyse_values(r, all);
     }
-    analyse_values(r, all);
     if (has_groups(r.run, d.experiment.groups) && !has_worths(r.run))
-        r.groups_compared = compare_groups(r.run, all, groups);
+        r.groups_compared = compare_groups(all, groups);
     if (r.run.task == task_kind::choose)
         r.first_interval = test_mean(first, 50.0);
     if (has_worths(r.run))
@@ -395,6 +402,8 @@ std::vector<std::pair<const char*, const effect*>> list_group_effects(const run_
     if (!r.groups_compared)
         return {};
     const mixed_anova& m = *r.groups_compared;
+    if (find_task(r.run.task).measures)
+        return {{"group", &m.group}};
     const bool has_rows = count_rows(r.run) > 1;
     const bool has_motions = r.run.motions.size() > 1;
     const auto there = [](bool varies, const effect& e) { return varies ? &e : nullptr; };

@@ -59,8 +59,9 @@ struct run_analysis {
     t_test paired = {};
     /// choose between two methods: `second` is of motions. rate: `first` of methods, `second` of motions.
     anova effects = {};
-    /// Groups that have all of the run, compared; choose among three methods or more has none. Without
-    /// figures where fewer than two groups have participants.
+    /// Groups that have all of the run, compared, in a task that measures by the main figure of all trials;
+    /// choose among three methods or more has none. Without figures where fewer than two groups have
+    /// participants.
     std::optional<mixed_anova> groups_compared = {};
     /// Pairs of motions: choose between two methods: one list. rate: one for each method, from that method's
     /// own one-way analysis.
