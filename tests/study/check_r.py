@@ -7,6 +7,7 @@ Then fits the models that --format tsv names, where lme4 is there, and counts th
 a line that counts.
 """
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -172,6 +173,99 @@ def check_models(tool, name, folder):
     return [] if "fitted" in said.stdout else [f"--format tsv: {said.stdout} {said.stderr[-1500:]}"]
 
 
+# A run of each kind of model that measures. The simulated observers' truth in its coefficient, and how near the model comes:
+# exponent (by the dB), exponent, d', none less the mean of three, z of same and different, and 0.6745 / jnd twice.
+TRUTHS = [(0.6 * math.log(10) / 20, 0.05), (0.6, 0.05), (2, 0.15), (-4 / 3, 0.1), (0.911, 0.25), (0.1686, 0.1), (0.1686, 0.1)]
+MEASURES = """
+[experiment]
+name = "measures"
+array = "palm-3x3"
+level = { dbfs = -20 }
+[[motion]]
+name = "east"
+path = "M0 0H20"
+duration = 0.2
+[[method]]
+name = "park"
+[[method]]
+name = "soft"
+burst = 0.05
+[[run]]
+name = "size"
+task = "estimate"
+question = "How much was it?"
+vary = "level_dbfs"
+values = [-40, -30, -20]
+trials = 60
+methods = ["park"]
+[[run]]
+name = "length"
+task = "estimate"
+question = "How much was it?"
+vary = "length_mm"
+values = [5, 10, 20]
+trials = 60
+[[run]]
+name = "there"
+task = "detect"
+catch = 0.5
+trials = 80
+methods = ["park"]
+[[run]]
+name = "two"
+task = "detect"
+catch = 0.5
+trials = 80
+[[run]]
+name = "same"
+task = "same-different"
+trials = 40
+[[run]]
+name = "values"
+task = "constant"
+question = "Which was stronger?"
+vary = "level_dbfs"
+values = [-32, -28, -24, -20, -16]
+standard = -24
+trials = 100
+methods = ["park"]
+[[run]]
+name = "bayes"
+task = "adaptive"
+question = "Which was longer?"
+vary = "length_mm"
+procedure = "quest"
+range = [4, 20]
+standard = 12
+trials = 60
+methods = ["park"]
+"""
+COEFFICIENTS = """
+lines <- readLines("trials.tsv")
+said <- sub("^# ", "", grep("^# [a-z]+(4|\\\\()|^# d <-|^# library", lines, value = TRUE))
+for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
+for (line in said[-(1:3)]) {
+  b <- fixef(suppressMessages(suppressWarnings(eval(parse(text = line)))))
+  cat("coefficient", b[grep("value|signal|^method1$", names(b))[1]], "\n")
+}
+"""
+
+
+def check_measures(tool, folder):
+    """Compares what R's mixed models find with what the simulated observers have."""
+    (folder / "measures.toml").write_text(MEASURES)
+    for code in ("01", "02", "03", "04", "05", "06"):
+        run(tool, "experiment", folder / "measures.toml", "--participant", code, "-o", folder / "measured",
+            "--simulate", "seed=1,jnd=4,dprime=2,exponent=0.6,sigma=0.2")
+    (folder / "trials.tsv").write_text(run(tool, "analyze", folder / "measured", "--format", "tsv"))
+    said = subprocess.run(["Rscript", "-e", COEFFICIENTS], cwd=folder, capture_output=True, text=True, check=False)
+    found = [float(line.split()[1]) for line in said.stdout.splitlines() if line.startswith("coefficient")]
+    if len(found) != len(TRUTHS):
+        return [said.stdout[-500:] + said.stderr[-1500:]]
+    print("models of tasks that measure:", *(f"{c:.3f} ({truth:.3f})" for c, (truth, _) in zip(found, TRUTHS)))
+    return [f"coefficient {c}, not {truth}" for c, (truth, near) in zip(found, TRUTHS) if not abs(c / truth - 1) < near]
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -187,6 +281,7 @@ def main():
                 cases[f"{name}, models"] = lambda n=name: check_models(tool, n, folder)
                 if name == "simulated":
                     cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
+                    cases["measures, models"] = lambda: check_measures(tool, folder)
             else:
                 print(f"SKIPPED: {name}, models: lme4 is not here")
                 skipped += 1

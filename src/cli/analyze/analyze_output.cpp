@@ -346,33 +346,36 @@ std::string write_model(const study::run_outline& r, const std::vector<study::gr
     const char* people = has_method             ? "(1 + method | participant)"
                          : r.motions.size() > 1 ? "(1 + motion | participant)"
                                                 : "(1 | participant)";
+    std::vector<std::string> factors;
+    // The slope over the values, or over whether there was a signal, is what the run is about. The method of
+    // a trial without a stimulus is "none", which says it, too.
+    if (r.task == task_kind::estimate && !r.on_db_axis)
+        factors.emplace_back("log(value)");
+    else if (!r.vary.empty())
+        factors.emplace_back("value");
+    else if (r.task == task_kind::same_different || (r.catches && !has_method))
+        factors.emplace_back("signal");
+    if (has_method)
+        factors.emplace_back("method");
+    if (motion != "1" || factors.empty())
+        factors.push_back(motion);
     // R reads the texts of JSON.
+    const std::string rest = fmt::format("{} + {}{}, ", fmt::join(factors, " * "),
+                                         r.task == task_kind::choose ? "order + " : "", people);
     const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
     switch (r.task) {
     case task_kind::choose:
-        if (has_worths(r))
-            return write_worth_model(r, motion);
-        return fmt::format("glmer(chosen ~ {} + order + {}, family = binomial, {})", motion, people, data);
+        return has_worths(r) ? write_worth_model(r, motion)
+                             : fmt::format("glmer(chosen ~ {}family = binomial, {})", rest, data);
     case task_kind::rate:
-        return fmt::format("lmer(rating ~ {}{} + {}, {})", has_method ? "method * " : "", motion, people,
-                           data);
+        return fmt::format("lmer(rating ~ {}{})", rest, data);
     case task_kind::estimate:
-        return fmt::format("lmer(log(estimate) ~ {} * {}{} + {}, {})", r.on_db_axis ? "value" : "log(value)",
-                           has_method ? "method * " : "", motion, people, data);
+        return fmt::format("lmer(log(estimate) ~ {}{})", rest, data);
     case task_kind::identify:
-        return fmt::format("glmer(correct ~ {}{} + {}, family = binomial, {})", has_method ? "method * " : "",
-                           motion, people, data);
+        return fmt::format("glmer(correct ~ {}family = binomial, {})", rest, data);
     default:
-        break;
+        return fmt::format("glmer(positive ~ {}family = binomial(\"probit\"), {})", rest, data);
     }
-    // The method of a trial without a stimulus is "none": its level is the false alarms.
-    if (has_method && r.catches && r.vary.empty())
-        return fmt::format("glmer(positive ~ method * {} + {}, family = binomial(\"probit\"), {})", motion,
-                           people, data);
-    // Its slope over the values, or over whether there was a signal, is what the run is about.
-    return fmt::format("glmer(positive ~ {} * {}{} + {}, family = binomial(\"probit\"), {})",
-                       r.vary.empty() ? "signal" : "value", has_method ? "method * " : "", motion, people,
-                       data);
 }
 
 // A column of the trials.
