@@ -223,6 +223,11 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     study::study_folder folder(o.folder, p.definition, p.participant, o.simulate.has_value());
     for (const std::string& w : folder.warnings())
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
+    if (study::find_codes(p.where) == nullptr && folder.has_codes())
+        say(stderr,
+            "tactor: warning: {}: other sessions sent codes, this one sends none ([sync] code of the "
+            "array file)\n",
+            o.folder);
     study::runs_in_order runs;
     for (const study::run_sequence& r : p.runs)
         runs.push_back(&p.definition.runs[r.run]);

@@ -338,6 +338,13 @@ void study_folder::describe() const
         put(folder_ / answers_path(q, ".json"), questionnaire_text(q, session(), simulated_));
 }
 
+bool study_folder::has_codes() const
+{
+    return std::ranges::any_of(definition_.runs, [this](const run_definition& r) {
+        return is_on_disk(folder_ / fmt::format("task-{}_events.json", r.outline.file_name));
+    });
+}
+
 fs::path study_folder::scans() const
 {
     return folder_ / session_path(code_, session()) / (session_name(code_, session()) + "_scans.tsv");

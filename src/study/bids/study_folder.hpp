@@ -40,6 +40,9 @@ public:
     /// Sentences about allowed differences from the sessions that are there, and an earlier one that is not.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
+    /// Tests whether a session in the folder sent codes to a recorder.
+    bool has_codes() const;
+
     /// Returns the list of the session's runs: sub-CODE_scans.tsv.
     std::filesystem::path scans() const;
 
