@@ -165,7 +165,7 @@ class AtTheTerminal(PersonTest):
             t.answer(place, key)
             self.assertEqual(t.end(), 130)
             self.assertFalse((self.dir / "study/sourcedata").exists())
-        self.assertIn("tactor: ended by the experimenter (q), before anything was answered: nothing is written", t.said())
+        self.assertIn("tactor: ended by the experimenter (q) before the first trial or questionnaire was done: nothing is written", t.said())
         for n, answers in enumerate(("", "", "1", "12")):
             t = self.start(*(("--resume",) if n else ()))
             t.begin(agrees=not n, key=" " if n else "\x03")

@@ -254,7 +254,9 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     }
     if (why.signal != 0) {
         if (!store.begun())
-            say(stderr, "tactor: ended by {}, before anything was answered: nothing is written\n", why.by);
+            say(stderr,
+                "tactor: ended by {} before the first trial or questionnaire was done: nothing is written\n",
+                why.by);
         else
             say(stderr, "tactor: ended by {}: what was answered is in {}, and --resume goes on\n", why.by,
                 o.folder);

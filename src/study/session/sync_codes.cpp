@@ -128,7 +128,8 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
     j["event"]["Levels"] = {{"stimulus", "a stimulus began"},
                             {"answer", "the participant answered"},
                             {"void", "the trial was made void"}};
-    column("code", "Number that was sent");
+    column("code", "Number that was sent; of an answer or a void trial that of its first stimulus, or of its "
+                   "condition without one");
     // Lists all conditions: groups share the file.
     const experiment_definition& d = p.definition;
     for (const code_event e : events)
