@@ -22,6 +22,8 @@ constexpr double labels_height = 24.0; // names of the groups, and the legend
 constexpr double between = 14.0;
 constexpr double bars_share = 0.72; // of a group's width
 
+constexpr double names_length = 40.0; // at most, of a name that stands upright
+
 // Colours of methods, in order. A few differ in lightness too; more get the colours of strokes.
 constexpr std::array<colour, 4> fills{light_grey, blue, orange, dark_grey};
 
@@ -121,14 +123,27 @@ void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
     });
 }
 
+// Returns the height of the names of the groups, which stand upright if one is wider than its bars.
+double find_names_height(const bar_panel& p, double width)
+{
+    double longest = 0.0;
+    for (const std::string& name : p.groups)
+        longest = std::max(longest, text_width(clean(name), small_text));
+    return longest <= width / static_cast<double>(p.groups.size()) - 2.0 ? cap_height(small_text)
+                                                                         : std::min(longest, names_length);
+}
+
 void draw_group_names(canvas& c, const bar_panel& p, box inside)
 {
     const double width = inside.width / static_cast<double>(p.groups.size());
+    const double cap = cap_height(small_text);
+    const bool upwards = find_names_height(p, inside.width) > cap;
     for (std::size_t g = 0; g < p.groups.size(); ++g)
-        c.text({inside.x + width * (static_cast<double>(g) + 0.5),
-                inside.bottom() + 3.0 + cap_height(small_text)},
-               shorten(clean(p.groups[g]), small_text, width - 2.0),
-               {.size = small_text, .anchor = align::middle}, {.kind = "group"});
+        c.text({inside.x + width * (static_cast<double>(g) + 0.5) + (upwards ? cap / 2.0 : 0.0),
+                inside.bottom() + 3.0 + (upwards ? 0.0 : cap)},
+               shorten(clean(p.groups[g]), small_text, upwards ? names_length : width - 2.0),
+               {.size = small_text, .anchor = upwards ? align::end : align::middle, .upwards = upwards},
+               {.kind = "group"});
 }
 
 void write_across(canvas& c, const std::string& text, box inside)
@@ -164,7 +179,8 @@ void draw_panel_title(canvas& c, const std::string& title, box where)
 
 void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, box where)
 {
-    const box inside{where.x + 28.0, where.y + 14.0, where.width - 30.0, where.height - 14.0 - labels_height};
+    box inside{where.x + 28.0, where.y + 14.0, where.width - 30.0, where.height - 14.0 - labels_height};
+    inside.height -= find_names_height(p, inside.width) - cap_height(small_text);
     const scale y{p.y_from, p.y_to, inside.bottom(), inside.y};
     const group one(c, {.kind = "bars",
                         .data = {{"title", clean(p.title)},
@@ -288,7 +304,6 @@ void draw_matrix_row(canvas& c, const matrix_panel& p, std::size_t row, box wher
 // Draws a matrix with the names of its rows at the left and, upwards, those of its columns below.
 void draw_matrix_panel(canvas& c, const matrix_panel& p, const std::string& across, box where)
 {
-    constexpr double names_length = 40.0;
     constexpr double names_space = names_length + 14.0; // with a title
     const box inside{where.x + names_space, where.y + 14.0, where.width - names_space - 2.0,
                      where.height - 14.0 - names_space};
