@@ -651,6 +651,31 @@ class Power(ExperimentTest):
                          ["park chosen, t against 50 %", "park less brush, paired t", "park correct, t against 50.00 %"])
         self.assertEqual(sorted(self.dir.rglob("*")), before)
 
+    def test_parts_merge_to_the_bytes_of_one_run(self):
+        args = ("experiment", self.small(), "--power", "3,2", "--studies", "10", "--simulate", "sigma=5")
+        for k in (1, 2, 3):
+            self.assertEqual(self.ok(*args, "--part", f"{k}/3", "-o", f"{k}.json").stdout, "")
+        for form in ("text", "json"):
+            self.assertEqual(self.ok(*args, "--format", form, "--merge", "3.json", "1.json", "2.json").stdout,
+                             self.ok(*args, "--format", form).stdout)
+        self.ok(*args, "--part", "1/1", "-o", "whole.json")
+        self.assertEqual(self.ok(*args, "--merge", "whole.json").stdout, self.ok(*args).stdout)
+        self.refused(2, *args, "--merge", "1.json", "3.json", says=["part 2/3 is missing"])
+        self.refused(2, *args, "--merge", "1.json", "2.json", "1.json", says=["1.json: part: is 1, as in 1.json"])
+        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: is 1, not 3 as in 1.json"])
+        told = json.loads((self.dir / "2.json").read_text())
+        for key, value in (("definition", "0" * 64), ("version", "0.0.1"), ("simulation", "seed=2,sigma=5"), ("stimuli", None), ("seed", 3),
+                           ("studies", 11), ("participants", [3]), ("part", 4), ("part", 1.5), ("schema", "tactor-power/1"), ("runs", []),
+                           ("runs", [[{"participants": 3, "significant": 11, "for_last": 0, "untested": 0}] * 2] * 3)):
+            self.write("other.json", json.dumps(told | {key: value}))
+            self.refused(2, *args, "--merge", "1.json", "other.json", "3.json", says=[f"tactor: other.json: {key}"])
+        self.write("other.json", "[")
+        for more in (("--merge", "other.json"), ("--merge", "none.json"), ("--part", "1/3"), ("--part", "0/3", "-o", "x"), ("--part", "4/3", "-o", "x"),
+                     ("--part", "1", "-o", "x"), ("--part", "1/11", "-o", "x"), ("--part", "1/3", "-o", "none/x"), ("-o", "study"),
+                     ("--part", "1/3", "-o", "x", "--merge", "1.json")):
+            self.refused(2, *args, *more)
+        self.assertFalse((self.dir / "x").exists())
+
     def test_impossible_numbers_and_exclusive_options_are_refused(self):
         self.write("bad.toml", "[experiment]\n")
         for args in (*(f"--power={n}" for n in ("1", "0", "-3", "1001", "12,", "", "twelve", "12;14", "2.5", "99999999999999999999999", "8,12,8")),

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cli/experiment/experiment_options.hpp"
+#include "cli/experiment/power.hpp"
 #include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"

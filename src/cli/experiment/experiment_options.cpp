@@ -15,6 +15,7 @@
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
+#include "cli/experiment/power.hpp"
 #include "cli/say.hpp"
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
@@ -87,127 +88,6 @@ std::string level_text(const render_options& o)
     return o.sl_db ? fmt::format("{} dB SL", *o.sl_db) : fmt::format("{} dBFS", o.level_dbfs);
 }
 
-constexpr detail::bounds allowed_studies{1, 1000000};
-constexpr detail::bounds allowed_participants{2, 1000};
-
-std::vector<std::size_t> participants_in(std::string_view text)
-{
-    std::vector<std::size_t> all;
-    for (const std::string_view part : detail::split(text, ',')) {
-        all.push_back(static_cast<std::size_t>(
-            options::parse_whole("--power", std::string(part), allowed_participants, "")));
-        if (std::count(all.begin(), all.end(), all.back()) > 1)
-            refuse_option("--power", fmt::format("{} is said twice", all.back()), "each number once");
-    }
-    return all;
-}
-
-std::string comparison_text(const study::run_outline& r)
-{
-    if (find_task(r.task).measures) {
-        const auto against = study::measured_against(r);
-        return against ? fmt::format("{}, t against {}", study::list_measures(r, {}).front().first, *against)
-                       : "no standard: nothing to compare with";
-    }
-    switch (r.task) {
-    case study::task_kind::choose:
-        return fmt::format("{} chosen{}, t against 50 %", r.methods.back(),
-                           has_worths(r) ? " in its trials" : "");
-    case study::task_kind::rate:
-        return r.methods.size() < 2
-                   ? std::string("one method: nothing to compare")
-                   : fmt::format("{} less {}, paired t", r.methods.back(), r.methods.front());
-    default:
-        break;
-    }
-    return fmt::format("{} correct, t against {:.2f} %", r.methods.back(), study::chance(r));
-}
-
-void print_power_text(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
-                      std::size_t studies, const study::simulation& s)
-{
-    say(stdout,
-        "{}: {} SIMULATED studies ({}): this says what the design can do where the model is right,\n"
-        "and nothing about people\n",
-        e.definition.name, studies, study::to_text(s));
-    for (const study::run_power& p : all) {
-        const study::run_outline& r = e.definition.runs[p.run].outline;
-        say(stdout, "\n{}: {}\n", r.name, comparison_text(r));
-        if (!p.at.empty())
-            say(stdout, "  {:>12} {:>11} {:>15} {:>11} {:>8}\n", "participants", "p < 0.05 in", "95 %",
-                "for last in", "untested");
-        for (const study::power_at& at : p.at)
-            say(stdout, "  {:>12} {:>9.1f} % {:>15} {:>9.1f} % {:>8}\n", at.participants, 100.0 * at.power,
-                fmt::format("{:.1f} ... {:.1f}", 100.0 * at.ci.first, 100.0 * at.ci.second),
-                100.0 * static_cast<double>(at.for_last) / static_cast<double>(studies), at.untested);
-    }
-}
-
-json run_power_json(const study::run_power& p, const study::run_outline& r)
-{
-    json j{{"name", r.name}, {"task", std::string(to_string(r.task))}, {"comparison", comparison_text(r)}};
-    j["power"] = json::array();
-    for (const study::power_at& at : p.at)
-        j["power"].push_back({{"participants", at.participants},
-                              {"significant", at.significant},
-                              {"for_last", at.for_last},
-                              {"untested", at.untested},
-                              {"power", at.power},
-                              {"ci", {at.ci.first, at.ci.second}}});
-    return j;
-}
-
-void print_power_json(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
-                      std::size_t studies, const study::simulation& s)
-{
-    const study::experiment_definition& d = e.definition;
-    json j{{"schema", "tactor-power/1"}, {"simulated", true}};
-    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
-    j["simulation"] = study::to_text(s);
-    j["studies"] = studies;
-    j["alpha"] = study::significant_p;
-    j["runs"] = json::array();
-    for (const study::run_power& p : all)
-        j["runs"].push_back(run_power_json(p, d.runs[p.run].outline));
-    j["warnings"] = e.warnings;
-    fmt::print("{}", study::json_text(j));
-}
-
-// Returns nothing where a signal ends it.
-std::optional<std::vector<study::run_power>> simulate(const study::prepared_experiment& e,
-                                                      const study::power_request& asked, int& signal)
-{
-    session::interrupt stop;
-    progress_line line("--power");
-    std::size_t begun = 0;
-    return study::simulate_power(e.definition, e.stimuli, asked, [&] {
-        line.update(begun++, asked.studies);
-        signal = stop.poll();
-        return signal == 0;
-    });
-}
-
-void add_power_options(CLI::App& command, experiment_options& o)
-{
-    begin_group(command, "Power");
-    CLI::Option* power =
-        add_text(command, "--power", "N[,N...]",
-                 "print how often simulated studies of N participants find a significant difference",
-                 [&o](const std::string& t) { o.power = participants_in(t); });
-    power->needs(command.get_option("--simulate"));
-    for (const char* other : {"--participant", "--output", "--resume", "--session", "--order", "--display",
-                              "--page", "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
-        power->excludes(command.get_option(other));
-    add_text(command, "--studies", "K",
-             fmt::format("--power: number of simulated studies (default {})", default_studies),
-             [&o](const std::string& t) {
-                 o.studies =
-                     static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
-             })
-        ->needs(power);
-    begin_group(command);
-}
-
 } // namespace
 
 void add_experiment_options(CLI::App& command, experiment_options& o)
@@ -277,6 +157,8 @@ void check_experiment_options(const settings& s, const experiment_options& o)
     if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
         refuse_option(asked, "nothing is played", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
+    if (power && !o.folder.empty() && o.parts == 0)
+        refuse_option("-o", "--power prints its result", "--part K/N, or leave it out");
     if (o.print || o.dry_run || o.check_noise || power)
         return;
     if (o.simulate && !o.keypads.empty())
@@ -355,21 +237,6 @@ void print_dry_run_text(const study::prepared_experiment& p)
         for (std::size_t k = 0; k < s.trials.size(); ++k)
             row(s.trials[k], fmt::format("{}", k + 1));
     }
-}
-
-int print_power(const study::prepared_experiment& e, const experiment_options& o)
-{
-    int signal = 0;
-    const auto powers = simulate(e, {*o.simulate, o.power, o.studies, o.seed}, signal);
-    if (!powers) {
-        say(stderr, "tactor: ended by a signal, before there was a result\n");
-        return session::interrupt::status(signal);
-    }
-    if (o.format == "json")
-        print_power_json(e, *powers, o.studies, *o.simulate);
-    else
-        print_power_text(e, *powers, o.studies, *o.simulate);
-    return 0;
 }
 
 } // namespace tactor::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options of tactor experiment, and what needs no session: --dry-run and --power.
+/// Options of tactor experiment, and --dry-run, which needs no session.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ inline constexpr std::size_t default_studies = 200;
 struct experiment_options {
     std::string definition; ///< a name that is built in, or a file
     std::string participant = {};
-    std::string folder = {};
+    std::string folder = {};     ///< with --part the file
     std::string format = "text"; ///< of --dry-run and --power
     bool resume = false;
     bool print = false;
@@ -44,6 +44,9 @@ struct experiment_options {
     std::optional<std::size_t> row = {}; ///< of the orders, from 1
     std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: without
     std::size_t studies = default_studies;
+    std::size_t part = 1;                ///< of --power, from 1
+    std::size_t parts = 0;               ///< 0: all in one run
+    std::vector<std::string> merge = {}; ///< files of all parts; empty: without
 };
 
 /// `o` must live as long as the command.
@@ -55,9 +58,5 @@ void check_experiment_options(const settings& s, const experiment_options& o);
 void print_dry_run_text(const study::prepared_experiment& p);
 /// Schema tactor-experiment/1.
 void print_dry_run_json(const study::prepared_experiment& p);
-
-/// Prints the power of the design; returns the exit status, which is that of a signal where one ended it,
-/// with nothing printed. \throws error (bad_input).
-int print_power(const study::prepared_experiment& e, const experiment_options& o);
 
 } // namespace tactor::cli

@@ -342,7 +342,7 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
             for (const std::size_t n : r.participants)
                 all[run].at.push_back({n});
     }
-    for (std::size_t k = 0; k < r.studies; ++k) {
+    for (std::size_t k = r.studies * (r.part - 1) / r.parts; k < r.studies * r.part / r.parts; ++k) {
         if (!go_on())
             return {};
         simulation s = r.observer;
@@ -365,11 +365,6 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                 count_study(at, values, run.outline);
         }
     }
-    for (run_power& p : all)
-        for (power_at& at : p.at) {
-            at.power = static_cast<double>(at.significant) / static_cast<double>(r.studies);
-            at.ci = binomial_interval(at.significant, r.studies);
-        }
     return all;
 }
 

@@ -74,6 +74,8 @@ struct power_request {
     std::vector<std::size_t> participants = {}; ///< sample sizes to simulate, each at least 2
     std::size_t studies = 200;
     std::optional<std::uint64_t> seed = {}; ///< of the orders; none: the definition's, or the codes'
+    std::size_t part = 1;                   ///< from 1
+    std::size_t parts = 1;                  ///< into which the studies are divided, in their order
 };
 
 /// Level of significance: a smaller p is significant.
@@ -85,8 +87,6 @@ struct power_at {
     std::size_t significant = 0; ///< studies with p < 0.05, two-sided
     std::size_t for_last = 0;    ///< of these, those in which the last method was better
     std::size_t untested = 0;    ///< without a test: nobody differed from anybody
-    double power = 0.0;          ///< significant, of all studies
-    interval ci = {};            ///< of it, binomial
 };
 
 struct run_power {
@@ -95,10 +95,10 @@ struct run_power {
     std::vector<power_at> at = {};
 };
 
-/// Simulates studies and tests each. Study k (from 0) has the participants 01, 02, ... whose observers have
-/// the seed of `observer` plus k, and hold all sessions. A study of n has the first n participants of a
-/// larger one. Void trials come again. Calls `go_on` before each study, and returns nothing if it returns
-/// false. \throws error (bad_input) as simulated_observer and make_run() do.
+/// Simulates the studies of the part and tests each. Study k (from 0) has the participants 01, 02, ... whose
+/// observers have the seed of `observer` plus k, and hold all sessions. A study of n has the first n
+/// participants of a larger one. Void trials come again. Calls `go_on` before each study, and returns nothing
+/// if it returns false. \throws error (bad_input) as simulated_observer and make_run() do.
 std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
                                                      const stimulus_set& stimuli, const power_request& r,
                                                      const std::function<bool()>& go_on);

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: MIT
+#include "cli/experiment/power.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tactor/version.hpp>
+
+#include "cli/experiment/experiment_options.hpp"
+#include "cli/say.hpp"
+#include "cli/settings.hpp"
+#include "core/sha256.hpp"
+#include "core/split.hpp"
+#include "core/words.hpp"
+#include "files/json/json_value.hpp"
+#include "files/text_file.hpp"
+#include "options/option.hpp"
+#include "session/process.hpp"
+#include "study/analysis/analysis.hpp"
+#include "study/bids/disk.hpp"
+#include "study/experiment/simulated.hpp"
+#include "study/session/experiment_session.hpp"
+#include "study/statistics/tests.hpp"
+
+namespace tactor::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr detail::bounds allowed_studies{1, 1000000};
+constexpr detail::bounds allowed_participants{2, 1000};
+
+std::vector<std::size_t> participants_in(std::string_view text)
+{
+    std::vector<std::size_t> all;
+    for (const std::string_view part : detail::split(text, ',')) {
+        all.push_back(static_cast<std::size_t>(
+            options::parse_whole("--power", std::string(part), allowed_participants, "")));
+        if (std::count(all.begin(), all.end(), all.back()) > 1)
+            refuse_option("--power", fmt::format("{} is said twice", all.back()), "each number once");
+    }
+    return all;
+}
+
+std::string comparison_text(const study::run_outline& r)
+{
+    if (find_task(r.task).measures) {
+        const auto against = study::measured_against(r);
+        return against ? fmt::format("{}, t against {}", study::list_measures(r, {}).front().first, *against)
+                       : "no standard: nothing to compare with";
+    }
+    switch (r.task) {
+    case study::task_kind::choose:
+        return fmt::format("{} chosen{}, t against 50 %", r.methods.back(),
+                           has_worths(r) ? " in its trials" : "");
+    case study::task_kind::rate:
+        return r.methods.size() < 2
+                   ? std::string("one method: nothing to compare")
+                   : fmt::format("{} less {}, paired t", r.methods.back(), r.methods.front());
+    default:
+        break;
+    }
+    return fmt::format("{} correct, t against {:.2f} %", r.methods.back(), study::chance(r));
+}
+
+double share(std::size_t n, std::size_t studies)
+{
+    return static_cast<double>(n) / static_cast<double>(studies);
+}
+
+void print_power_text(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
+                      std::size_t studies, const study::simulation& s)
+{
+    say(stdout,
+        "{}: {} SIMULATED studies ({}): this says what the design can do where the model is right,\n"
+        "and nothing about people\n",
+        e.definition.name, studies, study::to_text(s));
+    for (const study::run_power& p : all) {
+        const study::run_outline& r = e.definition.runs[p.run].outline;
+        say(stdout, "\n{}: {}\n", r.name, comparison_text(r));
+        if (!p.at.empty())
+            say(stdout, "  {:>12} {:>11} {:>15} {:>11} {:>8}\n", "participants", "p < 0.05 in", "95 %",
+                "for last in", "untested");
+        for (const study::power_at& at : p.at) {
+            const study::interval ci = study::binomial_interval(at.significant, studies);
+            say(stdout, "  {:>12} {:>9.1f} % {:>15} {:>9.1f} % {:>8}\n", at.participants,
+                100.0 * share(at.significant, studies),
+                fmt::format("{:.1f} ... {:.1f}", 100.0 * ci.first, 100.0 * ci.second),
+                100.0 * share(at.for_last, studies), at.untested);
+        }
+    }
+}
+
+json counts_json(const study::power_at& at)
+{
+    return {{"participants", at.participants},
+            {"significant", at.significant},
+            {"for_last", at.for_last},
+            {"untested", at.untested}};
+}
+
+json run_power_json(const study::run_power& p, const study::run_outline& r, std::size_t studies)
+{
+    json j{{"name", r.name}, {"task", std::string(to_string(r.task))}, {"comparison", comparison_text(r)}};
+    j["power"] = json::array();
+    for (const study::power_at& at : p.at) {
+        const study::interval ci = study::binomial_interval(at.significant, studies);
+        j["power"].push_back(counts_json(at));
+        j["power"].back().update({{"power", share(at.significant, studies)}, {"ci", {ci.first, ci.second}}});
+    }
+    return j;
+}
+
+void print_power_json(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
+                      std::size_t studies, const study::simulation& s)
+{
+    const study::experiment_definition& d = e.definition;
+    json j{{"schema", "tactor-power/1"}, {"simulated", true}};
+    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
+    j["simulation"] = study::to_text(s);
+    j["studies"] = studies;
+    j["alpha"] = study::significant_p;
+    j["runs"] = json::array();
+    for (const study::run_power& p : all)
+        j["runs"].push_back(run_power_json(p, d.runs[p.run].outline, studies));
+    j["warnings"] = e.warnings;
+    fmt::print("{}", study::json_text(j));
+}
+
+std::size_t need_count(const files::json_value& v)
+{
+    const double n = v.need_number();
+    if (n < 0.0 || n > allowed_studies.high || n != std::floor(n))
+        v.refuse("is no count");
+    return static_cast<std::size_t>(n);
+}
+
+// Returns what the parts of one simulation have in common, and the merged one.
+json describe_parts(const study::prepared_experiment& e, const experiment_options& o)
+{
+    std::string stimuli;
+    for (const study::stimulus& s : e.stimuli.all())
+        stimuli += s.hash;
+    return {{"schema", "tactor-power-part/1"},
+            {"version", std::string(version())},
+            {"definition", detail::sha256_text(e.definition.text)},
+            {"group", files::or_null(e.definition.group)},
+            {"stimuli", detail::sha256_text(stimuli)},
+            {"simulation", study::to_text(*o.simulate)},
+            {"seed", files::or_null(o.seed)},
+            {"studies", o.studies},
+            {"participants", o.power}};
+}
+
+void write_part(const std::string& file, json j, const study::power_request& asked,
+                const std::vector<study::run_power>& all)
+{
+    j["part"] = asked.part;
+    j["parts"] = asked.parts;
+    j["runs"] = json::array();
+    for (const study::run_power& p : all) {
+        j["runs"].push_back(json::array());
+        for (const study::power_at& at : p.at)
+            j["runs"].back().push_back(counts_json(at));
+    }
+    study::write_whole(file, study::json_text(j));
+}
+
+// Adds the counts of a part to those of the others, which are of no more than so many studies.
+void add_counts(std::vector<study::run_power>& all, const files::json_value& runs, std::size_t studies)
+{
+    const std::vector<files::json_value> theirs = runs.need_list();
+    if (theirs.size() != all.size())
+        runs.refuse("has another number of runs");
+    for (std::size_t run = 0; run < all.size(); ++run) {
+        const std::vector<files::json_value> counts = theirs[run].need_list();
+        if (counts.size() != all[run].at.size())
+            theirs[run].refuse("has another number of sample sizes");
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            study::power_at& at = all[run].at[i];
+            for (const auto& [key, sum] : {std::pair("significant", &at.significant),
+                                           {"for_last", &at.for_last},
+                                           {"untested", &at.untested}}) {
+                *sum += need_count(counts[i][key]);
+                if (*sum > studies)
+                    counts[i][key].refuse("makes more than there are studies");
+            }
+        }
+    }
+}
+
+// Joins parts to what one run would have found. \throws error (bad_input) naming the file.
+void merge_parts(std::vector<study::run_power>& all, const json& common,
+                 const std::vector<std::string>& names)
+{
+    std::map<std::size_t, std::string> seen;
+    std::size_t parts = 0;
+    for (const std::string& name : names) {
+        const json own = json::parse(std::string_view(detail::read_text_file(name, detail::max_setup_bytes)),
+                                     nullptr, false);
+        const files::json_value part(own, name, "give files that --part wrote");
+        part.need_members();
+        for (const auto& [key, value] : common.items())
+            if (const std::string its = own.value(key, json()).dump(); its != value.dump())
+                part[key].refuse(fmt::format("is {}unlike this run's", its.size() < 60 ? its + ", " : ""));
+        const std::size_t number = need_count(part["part"]);
+        const std::size_t of = need_count(part["parts"]);
+        if (parts != 0 && of != parts)
+            part["parts"].refuse(fmt::format("is {}, not {} as in {}", of, parts, names.front()));
+        parts = of;
+        if (number < 1 || number > parts)
+            part["part"].refuse(fmt::format("is {} of {}", number, parts));
+        if (const auto [at, is_new] = seen.emplace(number, name); !is_new)
+            part["part"].refuse(fmt::format("is {}, as in {}", number, at->second));
+        add_counts(all, part["runs"], common.at("studies").get<std::size_t>());
+    }
+    for (std::size_t k = 1; k <= parts; ++k)
+        if (!seen.contains(k))
+            refuse_option("--merge", fmt::format("part {}/{} is missing", k, parts),
+                          "give the files of all parts");
+}
+
+// Returns nothing where a signal ends it.
+std::optional<std::vector<study::run_power>> simulate(const study::prepared_experiment& e,
+                                                      const study::power_request& asked, int& signal)
+{
+    session::interrupt stop;
+    progress_line line("--power");
+    std::size_t begun = 0;
+    return study::simulate_power(e.definition, e.stimuli, asked, [&] {
+        line.update(begun++, asked.studies / asked.parts);
+        signal = stop.poll();
+        return signal == 0;
+    });
+}
+
+std::pair<std::size_t, std::size_t> part_in(std::string_view text)
+{
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    const std::size_t part = detail::number_in<std::size_t>(text.substr(0, slash)).value_or(0);
+    const std::size_t parts =
+        slash < text.size() ? detail::number_in<std::size_t>(text.substr(slash + 1)).value_or(0) : 0;
+    if (part < 1 || part > parts)
+        refuse_option("--part", fmt::format("\"{}\" is no part", text), "K/N with K from 1 to N, as 3/100");
+    return {part, parts};
+}
+
+} // namespace
+
+void add_power_options(CLI::App& command, experiment_options& o)
+{
+    begin_group(command, "Power");
+    CLI::Option* power =
+        add_text(command, "--power", "N[,N...]",
+                 "print how often simulated studies of N participants find a significant difference",
+                 [&o](const std::string& t) { o.power = participants_in(t); });
+    power->needs(command.get_option("--simulate"));
+    for (const char* other : {"--participant", "--resume", "--session", "--order", "--display", "--page",
+                              "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
+        power->excludes(command.get_option(other));
+    add_text(command, "--studies", "K",
+             fmt::format("--power: number of simulated studies (default {})", default_studies),
+             [&o](const std::string& t) {
+                 o.studies =
+                     static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
+             })
+        ->needs(power);
+    CLI::Option* part =
+        add_text(command, "--part", "K/N", "--power: simulate part K of N and write it to -o FILE",
+                 [&o](const std::string& t) { std::tie(o.part, o.parts) = part_in(t); });
+    part->needs(power)->needs(command.get_option("--output"));
+    command.add_option("--merge", o.merge, "--power: join the files of all parts")
+        ->type_name("FILE")
+        ->expected(1, -1)
+        ->needs(power)
+        ->excludes(part);
+    begin_group(command);
+}
+
+int print_power(const study::prepared_experiment& e, const experiment_options& o)
+{
+    if (o.parts > o.studies)
+        refuse_option("--part",
+                      fmt::format("{} parts of {}", o.parts, counted(o.studies, "study", "studies")),
+                      "a study or more in each part");
+    study::power_request asked{*o.simulate, o.power, o.studies,
+                               o.seed,      o.part,  std::max<std::size_t>(o.parts, 1)};
+    const json common = describe_parts(e, o);
+    int signal = 0;
+    std::optional<std::vector<study::run_power>> powers;
+    if (o.merge.empty()) {
+        powers = simulate(e, asked, signal);
+    } else {
+        asked.studies = 0; // none: the files have their counts
+        powers = simulate(e, asked, signal);
+        merge_parts(*powers, common, o.merge);
+    }
+    if (!powers) {
+        say(stderr, "tactor: ended by a signal, before there was a result\n");
+        return session::interrupt::status(signal);
+    }
+    if (o.parts != 0)
+        write_part(o.folder, common, asked, *powers);
+    else if (o.format == "json")
+        print_power_json(e, *powers, o.studies, *o.simulate);
+    else
+        print_power_text(e, *powers, o.studies, *o.simulate);
+    return 0;
+}
+
+} // namespace tactor::cli
