@@ -141,7 +141,7 @@ pcm.hw {
 """
 GUIDE = sorted((ROOT / "man/guide").glob("*.md"))
 # Beginnings of commands that are run. A command that is neither here nor below fails.
-RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema ", "printf ", "for ")
+RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema ", "printf ", "for ", "seq ")
 # Commands, by how they begin, that are not run here, and why.
 NOT_RUN = {
     "sudo ": "needs root and changes the system",

@@ -10,10 +10,11 @@ import os
 import pathlib
 import re
 import signal
+import subprocess
 import unittest
 
 from experiments import COLUMNS, GROUPED, SMALL, ExperimentTest, contents, read_table
-from harness import ROOT, main, wav_bytes
+from harness import ROOT, TOOL, main, wav_bytes
 
 
 class Definition(ExperimentTest):
@@ -675,6 +676,15 @@ class Power(ExperimentTest):
                      ("--part", "1/3", "-o", "x", "--merge", "1.json")):
             self.refused(2, *args, *more)
         self.assertFalse((self.dir / "x").exists())
+
+    def test_a_job_array_does_all_parts(self):
+        args = (self.small(), "--power", "3", "--studies", "4", "--simulate", "sigma=5")
+        array = ROOT / "examples/experiments/power.sbatch"
+        self.assertIn("#SBATCH --array=1-100", array.read_text(encoding="utf-8"))
+        for k in ("1", "2", "3"):
+            subprocess.run(["sh", array, *map(str, args)], cwd=self.dir, check=True, stderr=subprocess.DEVNULL,
+                           env=self.env | {"PATH": f"{TOOL.parent}:{os.environ['PATH']}", "SLURM_ARRAY_TASK_ID": k, "SLURM_ARRAY_TASK_COUNT": "3"})
+        self.assertEqual(self.ok("experiment", *args, "--merge", *(f"part{k}.json" for k in (1, 2, 3))).stdout, self.ok("experiment", *args).stdout)
 
     def test_impossible_numbers_and_exclusive_options_are_refused(self):
         self.write("bad.toml", "[experiment]\n")
