@@ -39,13 +39,13 @@ class Joining(ToolTest):
         self.assertFalse((self.dir / output).exists())
 
     def test_a_page_with_its_style_and_modules(self):
-        page = '<!DOCTYPE html>\n  <link rel="stylesheet" href="a.css">\n<p id="one">text</p>\n<script type="module" src="main.js"></script>\n</html>\n'
+        page = '<!DOCTYPE html>\n  <link rel="stylesheet" href="a.css">\n<p id="one">text</p><hr id="two"/>\n<script type="module" src="main.js"></script>\n</html>\n'
         result = self.bundle(page_html=page, a_css="/* a comment */\np {\n  color: red; }\n\n",
                              main_js='import {twice} from "./b.js";\nconst NUMBER = 3;\nlog(twice(NUMBER));\n',
                              b_js="const NUMBER = 2;\nexport function twice(x) {\n  return NUMBER * x;\n}\n")
         self.assertEqual(result.returncode, 0, result.stderr)
         text = (self.dir / "out.html").read_text(encoding="utf-8")
-        self.assertRegex(text, r'(?s)^<!DOCTYPE html>\n<style>\np\{color:red\}\n</style>\n<p id=one>text</p>\n<script>\n"use strict";\n.*log\(.*</script>\n</html>\n$')
+        self.assertRegex(text, r'(?s)^<!DOCTYPE html>\n<style>\np\{color:red\}\n</style>\n<p id=one>text</p><hr id="two"/>\n<script>\n"use strict";\n.*log\(.*</script>\n</html>\n$')
         self.assertEqual((self.dir / "out.d").read_text(encoding="utf-8").split(":")[0], "out.html")
         self.assertEqual({pathlib.Path(f).name for f in (self.dir / "out.d").read_text(encoding="utf-8").split(":", 1)[1].split()},
                          {"page.html", "a.css", "main.js", "b.js"})

@@ -115,6 +115,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertEqual(self.told("marks", "rating"), [("1", "1", "false", "3"), ("2", "1", "false", "1")])
         # The end does not count as a lost connection, and no other server was asked.
         self.assertTrue(p.value("document.querySelector('#offline').hidden"))
+        self.assertEqual(p.faults(), [])
         self.assertEqual({u.split("/rpc")[0].rstrip("/").replace("ws:", "http:") for u in p.requests() if not u.startswith("data:")},
                          {f"http://{s.address}"})
 

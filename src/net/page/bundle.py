@@ -31,7 +31,7 @@ class Bundle:
             return f"<style>\n{self.joined(m[1])}</style>\n"
         if m := SCRIPT.fullmatch(line):
             return f'<script>\n"use strict";\n{self.joined(m[1])}</script>\n'
-        return re.sub(r'="([\w-]+)"', r"=\1", line.strip()) + "\n"
+        return re.sub(r'="([\w-]+)"(?!/)', r"=\1", line.strip()) + "\n"  # r=8/> would be 8/
 
     def joined(self, name):
         """Returns a style or a module with all that it imports."""
