@@ -335,6 +335,8 @@ scale = 3
         p.click("#answers button")
         ask = self.asked(p, "questionnaire", ask)
         self.picture(p, "form-choice")
+        p.value("document.querySelector('#answers button').dispatchEvent(new MouseEvent('click', {detail: 2}))")  # of a double click
+        self.assertEqual(p.value("state.ask"), ask)
         ask = self.key(p, "questionnaire", "2")
         ask = self.click(p, "introduce", 1, ask)
         self.click(p, "question", 1, ask)

@@ -95,6 +95,8 @@ function answer(choice) {
   enable_answers(false);
   mark_answer(choice);
 }
+// A double click answers once: at its second click the next screen may be there. Questions about stimuli come later.
+addEventListener("click", e => { if (e.detail > 1 && state.screen !== "question") e.stopPropagation(); }, true);
 addEventListener("keydown", e => {
   const presses = e.key === " " || e.key === "Enter";
   if (e.repeat && presses) e.preventDefault(); // a key that is held answers once
