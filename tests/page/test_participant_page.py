@@ -316,6 +316,7 @@ scale = 3
             return p.value("document.querySelector('#answers button').disabled")
         ask = place("input", ask)
         self.picture(p, "number")
+        self.assertEqual(p.value("document.querySelector('#range').textContent"), "18–99")
         self.assertTrue(is_disabled())
         p.key("Enter")  # nothing is typed
         for text, refused in (("a1", True), ("7", True), ("18", False)):

@@ -48,7 +48,7 @@ function make_line({choices, visual}, word, answer) {
   return [mark, make("span", {id: "low"}, describe(0)), make("span", {id: "high"}, describe(choices.length - 1)), number, confirm];
 }
 
-// Makes a place for a number or a text, and a button that answers.
+// Makes a place for a number, with its range, or for a text, and a button that answers.
 function make_entry({greatest, lowest, most}, word, answer) {
   const confirm = make("button", {type: "button", onclick: () => answer(most ? place.value : Number(place.value))}, word);
   const look = () => {
@@ -58,9 +58,9 @@ function make_entry({greatest, lowest, most}, word, answer) {
     confirm.disabled = place.disabled || !fits;
   };
   const place = most ? make("textarea", {rows: 5, maxlength: most, "aria-labelledby": "question"})
-    : make("input", {inputmode: "numeric", maxlength: String(greatest).length, autocomplete: "off", "aria-labelledby": "question", oninput: look,
+    : make("input", {inputmode: "numeric", maxlength: String(greatest).length, autocomplete: "off", "aria-labelledby": "question range", oninput: look,
       onkeydown: e => { if (e.key === "Enter" && !e.repeat) confirm.click(); }});
-  return [place, confirm];
+  return [place, ...most ? [] : [make("span", {id: "range"}, `${lowest}–${greatest}`)], confirm];
 }
 
 let kept = ""; // what the buttons show
