@@ -52,8 +52,8 @@ function make_line({choices, visual}, word, answer) {
 function make_entry({greatest, lowest, most}, word, answer) {
   const confirm = make("button", {type: "button", onclick: () => answer(most ? place.value : Number(place.value))}, word);
   const look = () => {
-    if (!most) place.value = place.value.replace(/\D/g, "");
-    const fits = most || place.value && place.value >= lowest && place.value <= greatest;
+    if (!most) place.value = place.value.replace(/[^\d.,]/g, ""); // 1.5 must not become 15
+    const fits = most || /^\d+$/.test(place.value) && place.value >= lowest && place.value <= greatest;
     by_id("answers").classList.toggle("unset", !fits);
     confirm.disabled = place.disabled || !fits;
   };
