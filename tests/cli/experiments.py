@@ -7,113 +7,34 @@ import struct
 
 import terminal
 from harness import ToolTest
+from studies import toml
 
 COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time early rating void xruns stream "
            "frame_1 frame_2 plan_1 plan_2").split()
 
-SMALL = """[experiment]
-name = "small"
-title = "A small one"
-authors = ["A. Author"]
-gap_s = 0.25
-[[motion]]
-name = "to the right"
-path = "M0 20H40"
-duration = 0.7
-[[motion]]
-name = "down"
-path = "M20 0V40"
-duration = 0.7
-[[method]]
-name = "brush"
-algorithm = "tactile-brush"
-[[method]]
-name = "park"
-algorithm = "park2016"
-[[run]]
-name = "which-one"
-task = "choose"
-attribute = "similarity"
-animation = true
-trials = 4
-practice = 1
-break_s = 10
-[[run]]
-name = "how good"
-task = "rate"
-attribute = "similarity"
-trials = 4
-scale = 7
-[[run]]
-name = "what"
-task = "identify"
-trials = 3
-methods = ["park"]
-"""
+SMALL = ('[experiment]\nname = "small"\ntitle = "A small one"\nauthors = ["A. Author"]\ngap_s = 0.25\n'
+         + toml("motion", "to the right", path="M0 20H40", duration=0.7) + toml("motion", "down", path="M20 0V40", duration=0.7)
+         + toml("method", "brush", algorithm="tactile-brush") + toml("method", "park", algorithm="park2016")
+         + toml("run", "which-one", task="choose", attribute="similarity", animation=True, trials=4, practice=1, break_s=10)
+         + toml("run", "how good", task="rate", attribute="similarity", trials=4, scale=7)
+         + toml("run", "what", task="identify", trials=3, methods=["park"]))
 # Three groups: one has all, one two of the runs, one a single cell of one run.
-GROUPED = SMALL + """[[group]]
-name = "palm"
-[[group]]
-name = "arm"
-runs = ["which-one", "how good"]
-[[group]]
-name = "few"
-runs = ["how good"]
-motions = ["down"]
-methods = ["park"]
-"""
+GROUPED = (SMALL + toml("group", "palm") + toml("group", "arm", runs=["which-one", "how good"])
+           + toml("group", "few", runs=["how good"], motions=["down"], methods=["park"]))
 DESK = """[array]
 name = "desk"
 grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
 """
-SHORT = """[experiment]
-name = "short"
-array = "desk.toml"
-level = { dbfs = -20 }
-gap_s = 0.1
-consent = "Be at ease."
-[[motion]]
-name = "east"
-path = "M0 0H20"
-duration = 0.2
-[[motion]]
-name = "west"
-path = "M20 0H0"
-duration = 0.2
-[[method]]
-name = "Alder"
-algorithm = "tactile-brush"
-[[method]]
-name = "Birch"
-algorithm = "park2016"
-[[run]]
-name = "pairs"
-task = "choose"
-attribute = "similarity"
-question = "Which one?"
-animation = true
-trials = 2
-practice = 1
-break_s = 0.3
-[[run]]
-name = "marks"
-task = "rate"
-attribute = "uniformity"
-question = "How even?"
-trials = 2
-scale = 3
-labels = ["not", "half", "all"]
-"""
+# Two motions by two methods, without a run, and without a consent question.
+BARE = ('[experiment]\nname = "short"\narray = "desk.toml"\nlevel = { dbfs = -20 }\ngap_s = 0.1\n'
+          + toml("motion", "east", path="M0 0H20", duration=0.2) + toml("motion", "west", path="M20 0H0", duration=0.2)
+          + toml("method", "Alder", algorithm="tactile-brush") + toml("method", "Birch", algorithm="park2016"))
+WITH_CONSENT = BARE.replace("gap_s = 0.1\n", 'gap_s = 0.1\nconsent = "Be at ease."\n')
+SHORT = (WITH_CONSENT + toml("run", "pairs", task="choose", attribute="similarity", question="Which one?", animation=True, trials=2, practice=1, break_s=0.3)
+         + toml("run", "marks", task="rate", attribute="uniformity", question="How even?", trials=2, scale=3, labels=["not", "half", "all"]))
 # Ratings on a line, without numbers.
-LINE = SHORT[:SHORT.index("[[run]]")] + """[[run]]
-name = "marks"
-task = "rate"
-attribute = "uniformity"
-question = "How even?"
-trials = 4
-scale = "vas"
-labels = ["not", "all"]
-"""
+LINE = WITH_CONSENT + toml("run", "marks", task="rate", attribute="uniformity", question="How even?", trials=4, scale="vas", labels=["not", "all"])
+IDENTIFY = toml("run", "what", task="identify", trials=2, methods=["Birch"])
 
 
 class ExperimentTest(ToolTest):

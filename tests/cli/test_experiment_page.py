@@ -7,9 +7,10 @@ import signal
 import socket
 import urllib.request
 
-from experiments import LINE, SHORT, PersonTest, read_table
+from experiments import IDENTIFY, LINE, SHORT, WITH_CONSENT, PersonTest, read_table
 from harness import main
 from pages import Session
+from studies import toml
 from websocket import BINARY, TEXT, Peer, framed
 
 
@@ -79,8 +80,7 @@ class Sessions(PageTest):
 
     def test_motions_to_name_have_pictures_and_words_are_in_the_participant_s_language(self):
         words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
-        text = SHORT[:SHORT.index("[[run]]")].replace("[[motion]]", words + "[[motion]]", 1)
-        self.write("de.toml", text + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
+        self.write("de.toml", WITH_CONSENT.replace("[[motion]]", words + "[[motion]]", 1) + IDENTIFY)
         s = self.start(definition="de.toml")
         p = s.participant()
         self.assertEqual((p.facts["words"]["language"], p.facts["words"]["pause"]), ("de", "Pause"))
@@ -100,7 +100,7 @@ class Sessions(PageTest):
 
     def test_a_line_has_an_answer_for_each_place_and_stimuli_have_the_words_of_their_answers(self):
         words = ["the first", "the second"]
-        self.write("line.toml", LINE + f'[[run]]\nname = "pairs"\ntask = "choose"\nattribute = "similarity"\ntrials = 2\nchoices = {json.dumps(words)}\n')
+        self.write("line.toml", LINE + toml("run", "pairs", task="choose", attribute="similarity", trials=2, choices=words))
         s = self.start(definition="line.toml")
         p = s.participant()
         p.begin()

@@ -9,8 +9,9 @@ import shutil
 import time
 import unittest
 
-from experiments import LINE, SHORT, SMALL, PersonTest, Terminal, contents, noise_pieces, read_table
+from experiments import BARE, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
 from harness import PATIENCE_S, main
+from studies import toml
 
 AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
 RATE = 48000
@@ -255,8 +256,7 @@ class ByLines(PersonTest):
         self.assertFalse((self.dir / "study/sourcedata").exists())
 
     def test_identify_names_the_motions(self):
-        text = SHORT[:SHORT.index("[[run]]")].replace('consent = "Be at ease."\n', "")
-        self.write("what.toml", text + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
+        self.write("what.toml", BARE + IDENTIFY)
         result = self.ok(*self.args(definition="what.toml"), stdin="y\ny\n3\n1\n2\n")
         self.assertIn("Which movement was it? 1 east, 2 west: ", result.stdout)
         self.assertIn("That is no answer: 1 east, 2 west", result.stdout)
@@ -407,9 +407,8 @@ class Refused(PersonTest):
         noisy = Masking.noisy(self)
         self.write("sl.toml", SHORT.replace("{ dbfs = -20 }", "{ sl_db = 7 }"))
         self.write("loud.toml", (self.dir / noisy).read_text().replace("= -20\n", "= -3\n"))
-        self.write("many.toml", SHORT[:SHORT.index("[[method]]")].replace('"east"', '"m0"').replace('"west"', '"m1"') + "".join(
-            f'[[motion]]\nname = "m{i}"\npath = "M0 0H{i}"\nduration = 0.2\n' for i in range(2, 10)) +
-            '[[method]]\nname = "one"\n[[run]]\nname = "what"\ntask = "identify"\ntrials = 10\n')
+        self.write("many.toml", WITH_CONSENT[:WITH_CONSENT.index("[[motion]]")] + "".join(toml("motion", f"m{i}", path=f"M0 0H{i + 1}", duration=0.2) for i in range(10)) +
+                   toml("method", "one") + toml("run", "what", task="identify", trials=10))
         for more, which in ((("--display", "hologram"), {}), ((), {"definition": "sl.toml"}), ((), {"device": None}), ((), {"definition": "many.toml"}),
                             ((), {"definition": "loud.toml"}), (("--dry-run",), {"definition": "loud.toml"}), (("--log", ""), {}),
                             (("--masker", "null"), {}), (("--masker", ""), {}), (("--keypad", "/dev/null"), {}),

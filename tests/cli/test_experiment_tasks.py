@@ -9,96 +9,30 @@ import statistics
 from experiments import DESK, ExperimentTest, contents
 from harness import ROOT, main
 from pictures import Svg
+from studies import measures, toml
 
-TASKS = """[experiment]
-name = "measures"
-array = "desk.toml"
-level = { dbfs = -20 }
-gap_s = 0.1
-[[motion]]
-name = "east"
-path = "M0 0H20"
-duration = 0.2
-[[method]]
-name = "park"
-[[method]]
-name = "soft"
-burst = 0.05
-[[run]]
-name = "values"
-task = "constant"
-question = "Which was stronger?"
-methods = ["park"]
-vary = "level_dbfs"
-values = [-36, -32, -28, -24, -20, -16, -12]
-standard = -24
-trials_per_value = 20
-[[run]]
-name = "words"
-task = "constant"
-question = "One or two?"
-choices = ["one", "two"]
-methods = ["park"]
-vary = "length_mm"
-values = [4, 8, 12, 16, 20]
-trials = 40
-[[run]]
-name = "bayes"
-task = "adaptive"
-question = "Which was stronger?"
-methods = ["park"]
-vary = "level_dbfs"
-procedure = "quest"
-range = [-40, -8]
-standard = -24
-trials = 40
-[[run]]
-name = "stairs"
-task = "adaptive"
-question = "Which was faster?"
-vary = "speed_mm_s"
-procedure = "1up2down"
-range = [40, 200]
-steps = [40, 20]
-standard = 100
-trials = 24
-tracks = 2
-practice = 2
-[[run]]
-name = "felt"
-task = "detect"
-methods = ["park"]
-vary = "level_dbfs"
-values = [-60, -50, -40, -30]
-catch = 0.2
-trials = 50
-[[run]]
-name = "there"
-task = "detect"
-methods = ["park"]
-catch = 0.5
-trials = 40
-[[run]]
-name = "same"
-task = "same-different"
-trials = 40
-[[run]]
-name = "size"
-task = "estimate"
-question = "How strong was it?"
-methods = ["park"]
-vary = "level_dbfs"
-values = [-40, -30, -20, -10]
-standard = -20
-trials = 12
-"""
+RUNS = {name: toml("run", name, **keys) for name, keys in {
+    "values": dict(task="constant", question="Which was stronger?", methods=["park"], vary="level_dbfs", values=[-36, -32, -28, -24, -20, -16, -12],
+                   standard=-24, trials_per_value=20),
+    "words": dict(task="constant", question="One or two?", choices=["one", "two"], methods=["park"], vary="length_mm", values=[4, 8, 12, 16, 20], trials=40),
+    "bayes": dict(task="adaptive", question="Which was stronger?", methods=["park"], vary="level_dbfs", procedure="quest", range=[-40, -8], standard=-24,
+                  trials=40),
+    "stairs": dict(task="adaptive", question="Which was faster?", vary="speed_mm_s", procedure="1up2down", range=[40, 200], steps=[40, 20], standard=100,
+                   trials=24, tracks=2, practice=2),
+    "felt": dict(task="detect", methods=["park"], vary="level_dbfs", values=[-60, -50, -40, -30], catch=0.2, trials=50),
+    "there": dict(task="detect", methods=["park"], catch=0.5, trials=40),
+    "same": dict(task="same-different", trials=40),
+    "size": dict(task="estimate", question="How strong was it?", methods=["park"], vary="level_dbfs", values=[-40, -30, -20, -10], standard=-20, trials=12),
+}.items()}
 SIMULATE = "seed={},jnd=4,sigma=0.2,exponent=0.6,dprime=2"
 
 
-def tasks(*runs):
-    """Returns the definition with the runs of these names alone."""
-    head, *parts = TASKS.split("[[run]]\n")
-    return head + "".join("[[run]]\n" + p for p in parts if p.split('"')[1] in runs)
+def tasks(*names):
+    """Returns the definition with the runs of these names."""
+    return measures("desk.toml", *(RUNS[name] for name in names), keys="gap_s = 0.1\n")
+
+
+TASKS = tasks(*RUNS)
 
 
 class Tasks(ExperimentTest):

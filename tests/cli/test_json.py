@@ -67,63 +67,17 @@ def list_paths(value, at=""):
 
 
 # An experiment at levels in dBFS, without an attribute and without noise.
-FELT = """[experiment]
-name = "felt"
-level = { dbfs = -18 }
-[[motion]]
-name = "across"
-path = "M0 20H40"
-[[motion]]
-name = "back"
-path = "M40 20H0"
-[[method]]
-name = "park"
-level_dbfs = -20
-[[run]]
-name = "which"
-task = "identify"
-trials = 2
-[[run]]
-name = "form"
-task = "questionnaire"
-item = [{ name = "age", question = "?", kind = "number", range = [0, 99] }]
-"""
+FELT = ('[experiment]\nname = "felt"\nlevel = { dbfs = -18 }\n' + studies.toml("motion", "across", path="M0 20H40") + studies.toml("motion", "back", path="M40 20H0")
+        + studies.toml("method", "park", level_dbfs=-20) + studies.run("which", "identify", 2)
+        + studies.toml("run", "form", task="questionnaire") + 'item = [{ name = "age", question = "?", kind = "number", range = [0, 99] }]\n')
 
 # Tasks that measure, with two conditions.
-MEASURED = FELT.partition("[[run]]")[0] + """[[run]]
-name = "longer"
-task = "constant"
-question = "?"
-vary = "length_mm"
-values = [4, 8]
-standard = 6
-trials_per_value = 4
-[[run]]
-name = "felt"
-task = "detect"
-vary = "level_dbfs"
-values = [-40, -30, -20]
-catch = 0.2
-trials = 20
-[[run]]
-name = "some"
-task = "detect"
-catch = 0.5
-trials = 8
-[[run]]
-name = "same"
-task = "same-different"
-methods = ["park", "soft"]
-trials = 16
-[[run]]
-name = "size"
-task = "estimate"
-question = "?"
-vary = "level_dbfs"
-values = [-30, -20]
-trials = 8
-"""
-MEASURED = MEASURED.replace("[[run]]", '[[method]]\nname = "soft"\nlevel_dbfs = -30\n[[run]]', 1)
+MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_dbfs=-30)
+            + studies.toml("run", "longer", task="constant", question="?", vary="length_mm", values=[4, 8], standard=6, trials_per_value=4)
+            + studies.run("felt", "detect", 20, vary="level_dbfs", values=[-40, -30, -20], catch=0.2)
+            + studies.run("some", "detect", 8, catch=0.5)
+            + studies.run("same", "same-different", 16, methods=["park", "soft"])
+            + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20]))
 
 LINE = FELT.replace('task = "identify"', 'task = "rate"\nattribute = "even"\nquestion = "?"\nscale = "vas"\nlabels = ["no", "yes"]')
 

@@ -5,42 +5,18 @@ import json
 from experiments import SHORT, PersonTest, Terminal, contents, read_table
 from harness import ROOT, main
 from pages import Session
+from studies import toml
 
-FORMS = SHORT.replace("practice = 1\n", "").replace("animation = true\n", "") + """[[run]]
-name = "about"
-task = "questionnaire"
-title = "About you"
-text = "Four questions."
-item = [
+FORMS = SHORT.replace("practice = 1\n", "").replace("animation = true\n", "") + toml(
+    "run", "about", task="questionnaire", title="About you", text="Four questions.") + """item = [
   { name = "age", question = "Age?", kind = "number", range = [0, 120] },
   { name = "hand", question = "Hand?", kind = "choice", choices = ["left", "right"] },
   { name = "remark", question = "Remark?", kind = "text" },
   { name = "ease", question = "Ease?", kind = "scale", scale = "vas", labels = ["ill", "well"] },
 ]
-[[run]]
-name = "tired"
-task = "questionnaire"
-when = "between"
-[[run.item]]
-name = "now"
-question = "Tired?"
-kind = "scale"
-labels = ["no", "a little", "very"]
-[[run]]
-name = "end"
-task = "questionnaire"
-when = "after"
-[[run.item]]
-name = "remark"
-question = "Anything else?"
-kind = "text"
-[[run.item]]
-name = "again"
-question = "Again?"
-kind = "scale"
-scale = 5
-labels = ["never", "always"]
-"""
+""" + (toml("run", "tired", task="questionnaire", when="between") + toml("run.item", "now", question="Tired?", kind="scale", labels=["no", "a little", "very"])
+       + toml("run", "end", task="questionnaire", when="after") + toml("run.item", "remark", question="Anything else?", kind="text")
+       + toml("run.item", "again", question="Again?", kind="scale", scale=5, labels=["never", "always"]))
 AGREED = "y\n" * 3
 EXAMPLE = ROOT / "examples/experiments/questionnaires.toml"
 

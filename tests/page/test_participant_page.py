@@ -8,9 +8,10 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import DESK, LINE, SHORT, ExperimentTest, read_table  # noqa: E402
+from experiments import BARE, DESK, IDENTIFY, LINE, SHORT, ExperimentTest, read_table  # noqa: E402
 from harness import main  # noqa: E402
 from pages import Session  # noqa: E402
+from studies import toml  # noqa: E402
 
 # Without the transitions between themes, which pictures would catch.
 THEMES = {theme: [{"name": "prefers-color-scheme", "value": theme}, {"name": "prefers-reduced-motion", "value": "reduce"}]
@@ -242,9 +243,8 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertTrue(p.value("document.querySelector('#offline').hidden"))
 
     def test_scales_with_words_at_their_ends_and_names(self):
-        self.write("many.toml", SHORT[:SHORT.index("[[run]]")].replace('consent = "Be at ease."\n', "")
-                   + '[[run]]\nname = "marks"\ntask = "rate"\nattribute = "similarity"\ntrials = 1\nscale = 9\nlabels = ["very uneven", "very even"]\n'
-                   + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 1\nmethods = ["Birch"]\n')
+        self.write("many.toml", BARE + toml("run", "marks", task="rate", attribute="similarity", trials=1, scale=9, labels=["very uneven", "very even"])
+                   + IDENTIFY.replace("trials = 2", "trials = 1"))
         s = self.start("many.toml")
         p = self.open(s)
         ask = 0
@@ -282,24 +282,13 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         return ask
 
     def test_numbers_and_texts_are_typed(self):
-        self.write("form.toml", SHORT[:SHORT.index("[[run]]")].replace('consent = "Be at ease."\n', "") + """[[run]]
-name = "form"
-task = "questionnaire"
-title = "About you"
-text = "Some questions, which nobody but us will read."
-item = [
+        self.write("form.toml", BARE + toml("run", "form", task="questionnaire", title="About you", text="Some questions, which nobody but us will read.") + """item = [
   { name = "age", question = "How old are you?", kind = "number", range = [18, 99] },
   { name = "free", question = "What else?", kind = "text" },
   { name = "more", question = "Nothing else?", kind = "text" },
   { name = "hand", question = "Which hand?", kind = "choice", choices = ["left", "right"] },
 ]
-[[run]]
-name = "marks"
-task = "rate"
-attribute = "uniformity"
-trials = 1
-scale = 3
-""")
+""" + toml("run", "marks", task="rate", attribute="uniformity", trials=1, scale=3))
         s = self.start("form.toml")
         p = self.open(s)
         ask = 0
@@ -347,9 +336,10 @@ scale = 3
         self.assertRegex(row["free"], r"^1 2\\nof äll x{1989}$")
 
     def test_a_line_answers_once_it_is_set(self):
-        run = '[[run]]\nname = "%s"\ntask = "%s"\nattribute = "uniformity"\nquestion = "How even?"\ntrials = 1\n%s\n'
-        self.write("line.toml", LINE.replace("trials = 4", "trials = 3").replace("duration = 0.2", "duration = 0.6") + "".join(run % which for which in (
-            ("steps", "rate", 'scale = 21\nlabels = ["not", "all"]'), ("eleven", "rate", "scale = 11"), ("pairs", "choose", 'choices = ["first", "second"]'))))
+        self.write("line.toml", LINE.replace("trials = 4", "trials = 3").replace("duration = 0.2", "duration = 0.6") + "".join(
+            toml("run", name, attribute="uniformity", question="How even?", trials=1, **keys) for name, keys in (
+                ("steps", dict(task="rate", scale=21, labels=["not", "all"])), ("eleven", dict(task="rate", scale=11)),
+                ("pairs", dict(task="choose", choices=["first", "second"])))))
         s = self.start("line.toml")
         p = self.open(s)
         number = "document.querySelector('#answers output').textContent"

@@ -176,70 +176,16 @@ def check_models(tool, name, folder):
 # A run of each kind of model that measures. The simulated observers' truth in its coefficient, and how near the model comes:
 # exponent (by the dB), exponent, d', none less the mean of three, z of same and different, and 0.6745 / jnd twice.
 TRUTHS = [(0.6 * math.log(10) / 20, 0.05), (0.6, 0.05), (2, 0.15), (-4 / 3, 0.1), (0.911, 0.25), (0.1686, 0.1), (0.1686, 0.1)]
-MEASURES = """
-[experiment]
-name = "measures"
-array = "palm-3x3"
-level = { dbfs = -20 }
-[[motion]]
-name = "east"
-path = "M0 0H20"
-duration = 0.2
-[[method]]
-name = "park"
-[[method]]
-name = "soft"
-burst = 0.05
-[[run]]
-name = "size"
-task = "estimate"
-question = "How much was it?"
-vary = "level_dbfs"
-values = [-40, -30, -20]
-trials = 60
-methods = ["park"]
-[[run]]
-name = "length"
-task = "estimate"
-question = "How much was it?"
-vary = "length_mm"
-values = [5, 10, 20]
-trials = 60
-[[run]]
-name = "there"
-task = "detect"
-catch = 0.5
-trials = 80
-methods = ["park"]
-[[run]]
-name = "two"
-task = "detect"
-catch = 0.5
-trials = 80
-[[run]]
-name = "same"
-task = "same-different"
-trials = 40
-[[run]]
-name = "values"
-task = "constant"
-question = "Which was stronger?"
-vary = "level_dbfs"
-values = [-32, -28, -24, -20, -16]
-standard = -24
-trials = 100
-methods = ["park"]
-[[run]]
-name = "bayes"
-task = "adaptive"
-question = "Which was longer?"
-vary = "length_mm"
-procedure = "quest"
-range = [4, 20]
-standard = 12
-trials = 60
-methods = ["park"]
-"""
+MEASURES = studies.measures(
+    "palm-3x3",
+    studies.run("size", "estimate", 60, question="How much was it?", vary="level_dbfs", values=[-40, -30, -20], methods=["park"]),
+    studies.run("length", "estimate", 60, question="How much was it?", vary="length_mm", values=[5, 10, 20]),
+    studies.run("there", "detect", 80, catch=0.5, methods=["park"]),
+    studies.run("two", "detect", 80, catch=0.5),
+    studies.run("same", "same-different", 40),
+    studies.run("values", "constant", 100, question="Which was stronger?", vary="level_dbfs", values=[-32, -28, -24, -20, -16], standard=-24,
+                methods=["park"]),
+    studies.run("bayes", "adaptive", 60, question="Which was longer?", vary="length_mm", procedure="quest", range=[4, 20], standard=12, methods=["park"]))
 COEFFICIENTS = """
 lines <- readLines("trials.tsv")
 said <- sub("^# ", "", grep("^# [a-z]+(4|\\\\()|^# d <-|^# library", lines, value = TRUE))

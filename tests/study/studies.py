@@ -40,18 +40,24 @@ class Numbers:
         return sum(self.unit() for _ in range(12)) - 6
 
 
-def run(name, task, trials, motions=None, methods=None, scale=None):
-    return {"name": name, "task": task, "trials": trials} | {
-        k: v for k, v in (("motions", motions), ("methods", methods), ("scale", scale)) if v}
+def toml(kind, name, /, **keys):
+    """Returns a motion, method, group or run of a definition."""
+    return f"[[{kind}]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in ({"name": name} | keys).items())
+
+
+def run(name, task, trials, **keys):
+    return toml("run", name, task=task, trials=trials, **keys)
 
 
 def definition(name, motions, methods, runs, groups=()):
-    text = f'[experiment]\nname = "{name}"\n'
-    for kind, names in (("motion", motions), ("method", methods), ("group", groups)):
-        text += "".join(f"[[{kind}]]\nname = {json.dumps(n)}\n" for n in names)
-    for r in runs:
-        text += "[[run]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in r.items())
-    return text
+    return f'[experiment]\nname = "{name}"\n' + "".join(
+        toml(kind, n) for kind, names in (("motion", motions), ("method", methods), ("group", groups)) for n in names) + "".join(runs)
+
+
+def measures(array, *runs, keys=""):
+    """Returns a definition of tasks that measure: one motion by two methods, at levels in dBFS."""
+    return (f'[experiment]\nname = "measures"\narray = "{array}"\nlevel = {{ dbfs = -20 }}\n{keys}' + toml("motion", "east", path="M0 0H20", duration=0.2)
+            + toml("method", "park") + toml("method", "soft", burst=0.05) + "".join(runs))
 
 
 def names_in(text):
