@@ -53,13 +53,17 @@ def differences(expected, told):
             yield f"{place}: {got}, R: {value}"
 
 
-def run(*command):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+def run(*command, cwd=None):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False, cwd=cwd)
     if done.returncode:
-        print(done.stdout[-500:], done.stderr[-2000:], sep="\n")
-        raise RuntimeError(f"{command[0]}: status {done.returncode}")
+        raise RuntimeError(f"{command[0]}: status {done.returncode}\n{done.stdout[-500:]}\n{done.stderr[-2000:]}")
     return done.stdout
 
+
+def fit(tool, study, program):
+    """Returns what an R program prints about the table of --format tsv."""
+    (study.parent / "trials.tsv").write_text(run(tool, "analyze", study, "--format", "tsv"))
+    return run("Rscript", "-e", program, cwd=study.parent)
 
 
 def check(tool, name, folder, write):
@@ -71,14 +75,16 @@ def check(tool, name, folder, write):
     golden = read((GOLDEN / f"{name}.tsv").read_text(encoding="utf-8"))
     r = read(text)
     assert len(r) > 100, f"R said {len(r)} numbers"
-    bad = list(differences(golden, {k: v for k, v in r.items()}))
+    bad = list(differences(golden, r))
     bad += [f"golden/{name}.tsv lacks {k}" for k in r.keys() - golden.keys()]
     return bad + list(differences(r, told))
 
 
-FIT = """
+COMMANDS = """
 lines <- readLines("trials.tsv")
 said <- sub("^# ", "", grep("^# [a-z]+(4|\\\\()|^# d <-|^# library", lines, value = TRUE))
+"""
+FIT = COMMANDS + """
 for (line in said) suppressMessages(suppressWarnings(eval(parse(text = line))))
 stopifnot(length(said) >= 5, nrow(d) == sum(!grepl("^#", lines)) - 1)
 cat("fitted", length(said) - 3)
@@ -146,31 +152,18 @@ def wide_means(told):
 
 def check_wide(tool, name, folder):
     (folder / "wide.csv").write_text(run(tool, "analyze", folder / name, "--format", "wide"))
-    said = subprocess.run(["Rscript", "-e", WIDE], cwd=folder, capture_output=True, text=True, check=False)
-    if said.returncode:
-        return [f"--format wide: {said.stderr[-1500:]}"]
+    found = read(run("Rscript", "-e", WIDE, cwd=folder))
     expected = wide_means(json.loads(run(tool, "analyze", folder / name, "--format", "json")))
-    found = read(said.stdout)
     bad = [f"--format wide: {list(found)}, not {list(expected)}"] if list(found) != list(expected) else []
     return bad + [f"{c}: {found[c]}, not {mean}" for c, mean in expected.items() if not abs(found.get(c, 1e9) - mean) < 1e-9]
 
 
 def check_slopes(tool, name, folder):
-    (folder / "trials.tsv").write_text(run(tool, "analyze", folder / name, "--format", "tsv"))
-    said = subprocess.run(["Rscript", "-e", SLOPES], cwd=folder, capture_output=True, text=True, check=False)
-    if said.returncode:
-        return [f"slopes: {said.stderr[-1500:]}"]
-    printed, flat, over_all = map(float, said.stdout.split()[-3:])
+    printed, flat, over_all = map(float, fit(tool, folder / name, SLOPES).split()[-3:])
     print(f"{name}: false effects of the method: {printed:.1%} by the line printed, {flat:.1%} without slopes")
     bad = [f"false effects: {printed:.1%}"] if printed > 0.1 else []
     bad += [f"without slopes only {flat:.1%}: the simulation shows nothing"] if flat < 0.25 else []
     return bad + ([f"the method's coefficient is {over_all}, not that over all motions"] if abs(over_all) > 0.05 else [])
-
-
-def check_models(tool, name, folder):
-    (folder / "trials.tsv").write_text(run(tool, "analyze", folder / name, "--format", "tsv"))
-    said = subprocess.run(["Rscript", "-e", FIT], cwd=folder, capture_output=True, text=True, check=False)
-    return [] if "fitted" in said.stdout else [f"--format tsv: {said.stdout} {said.stderr[-1500:]}"]
 
 
 # A run of each kind of model that measures. The simulated observers' truth in its coefficient, and how near the model comes:
@@ -186,9 +179,7 @@ MEASURES = studies.measures(
     studies.run("values", "constant", 100, question="Which was stronger?", vary="level_dbfs", values=[-32, -28, -24, -20, -16], standard=-24,
                 methods=["park"]),
     studies.run("bayes", "adaptive", 60, question="Which was longer?", vary="length_mm", procedure="quest", range=[4, 20], standard=12, methods=["park"]))
-COEFFICIENTS = """
-lines <- readLines("trials.tsv")
-said <- sub("^# ", "", grep("^# [a-z]+(4|\\\\()|^# d <-|^# library", lines, value = TRUE))
+COEFFICIENTS = COMMANDS + """
 for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
 for (line in said[-(1:3)]) {
   b <- fixef(suppressMessages(suppressWarnings(eval(parse(text = line)))))
@@ -203,11 +194,9 @@ def check_measures(tool, folder):
     for code in ("01", "02", "03", "04", "05", "06"):
         run(tool, "experiment", folder / "measures.toml", "--participant", code, "-o", folder / "measured",
             "--simulate", "seed=1,jnd=4,dprime=2,exponent=0.6,sigma=0.2")
-    (folder / "trials.tsv").write_text(run(tool, "analyze", folder / "measured", "--format", "tsv"))
-    said = subprocess.run(["Rscript", "-e", COEFFICIENTS], cwd=folder, capture_output=True, text=True, check=False)
-    found = [float(line.split()[1]) for line in said.stdout.splitlines() if line.startswith("coefficient")]
+    found = [float(line.split()[1]) for line in fit(tool, folder / "measured", COEFFICIENTS).splitlines() if line.startswith("coefficient")]
     if len(found) != len(TRUTHS):
-        return [said.stdout[-500:] + said.stderr[-1500:]]
+        return [f"{len(found)} models, not {len(TRUTHS)}"]
     print("models of tasks that measure:", *(f"{c:.3f} ({truth:.3f})" for c, (truth, _) in zip(found, TRUTHS)))
     return [f"coefficient {c}, not {truth}" for c, (truth, near) in zip(found, TRUTHS) if not abs(c / truth - 1) < near]
 
@@ -224,7 +213,7 @@ def main():
             cases = {name: lambda n=name: check(tool, n, folder, write),
                      f"{name}, wide": lambda n=name: check_wide(tool, n, folder)}
             if has_lme4:
-                cases[f"{name}, models"] = lambda n=name: check_models(tool, n, folder)
+                cases[f"{name}, models"] = lambda n=name: [] if "fitted" in fit(tool, folder / n, FIT) else ["nothing was fitted"]
                 if name == "simulated":
                     cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
                     cases["measures, models"] = lambda: check_measures(tool, folder)
@@ -232,7 +221,10 @@ def main():
                 print(f"SKIPPED: {name}, models: lme4 is not here")
                 skipped += 1
             for what, case in cases.items():
-                bad = case()
+                try:
+                    bad = case()
+                except RuntimeError as error:
+                    bad = [str(error)]
                 for line in bad[:20]:
                     print(line)
                 if bad:
