@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The guest's bench: the tool, a loopback card to capture from, and a simulated GPIO chip."""
+import csv
 import os
 import pathlib
 import subprocess
@@ -31,6 +32,14 @@ def wait_for(condition, what, seconds=20.0):
         if time.monotonic() > end:
             raise AssertionError(f"not within {seconds} s: {what}")
         time.sleep(0.002)
+
+
+def wav_data(path):
+    data = path.read_bytes()
+    at = 12
+    while data[at:at + 4] != b"data":
+        at += 8 + int.from_bytes(data[at + 4:at + 8], "little")
+    return data[at + 8:]
 
 
 # Captures: a test that fails half-way leaves the card to the next one.
@@ -164,6 +173,43 @@ pcm = "{OUT.format(0)}"
 period_frames = {PERIOD}
 periods = {PERIODS}
 {extra}""")
+
+
+class SessionTest(RigTest):
+    """Sessions of tactor experiment whose answers are lines."""
+
+    # A definition without a run.
+    HEAD = """[experiment]
+name = "vm"
+array = "array.toml"
+level = { dbfs = -20 }
+[[motion]]
+name = "east"
+path = "M0 0H40"
+duration = 0.2
+[[method]]
+name = "Alder"
+algorithm = "tactile-brush"
+"""
+
+    def hold(self, definition, lines, *more, timeout=200):
+        """Holds a whole session; returns what the tool wrote to standard error."""
+        self.write("study.toml", definition)
+        with self.write("lines", lines).open() as answers:
+            p = self.start("experiment", "study.toml", "--participant", "01", "-o", "study", *more, stdin=answers)
+            said, err = p.communicate(timeout=timeout)
+        self.assertEqual(p.returncode, 0, said + err)
+        return err
+
+    def table(self, run, kind="beh"):
+        with (self.dir / f"study/sub-01/beh/sub-01_task-{run}_{kind}.tsv").open(newline="") as file:
+            return list(csv.DictReader(file, delimiter="\t"))
+
+    def rendered(self, plan, array):
+        file = self.dir / f"{plan}.wav"
+        made = self.tool("render", f"study/sourcedata/sub-01/plans/{plan}.json", "--array", array, "--sample-format", "s32", "-o", file)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        return wav_data(file)
 
 
 class AmplifierTest(RigTest):

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The codes of a session on a channel of a card and on eight lines at once, against the captured sound."""
-import csv
 import re
 import struct
 
-from rig import RATE, GpioSim, RigTest
-from test_loopback import wav_data
+from rig import RATE, GpioSim, SessionTest
 from test_sync import Onsets, Watch
 
 CHANNELS, CODE = 10, 9
@@ -14,18 +12,7 @@ LEAD = 9 * BIT
 TRIALS = 10
 STIMULUS, ANSWER = 0x81, 0x42  # only stimuli have the first line's bit
 
-RATINGS = f"""[experiment]
-name = "ratings"
-array = "array.toml"
-level = {{ dbfs = -20 }}
-[[motion]]
-name = "east"
-path = "M0 0H40"
-duration = 0.2
-[[method]]
-name = "Alder"
-algorithm = "tactile-brush"
-[[run]]
+RATINGS = SessionTest.HEAD + f"""[[run]]
 name = "ratings"
 task = "rate"
 attribute = "similarity"
@@ -34,23 +21,14 @@ scale = 3
 """
 
 
-class Codes(RigTest):
-    def table(self, name):
-        with (self.dir / f"study/sub-01/beh/sub-01_task-ratings_{name}.tsv").open(newline="") as file:
-            return list(csv.DictReader(file, delimiter="\t"))
-
+class Codes(SessionTest):
     def test_codes_end_where_the_stimulus_begins_and_the_lines_switch_there(self):
         gpio = GpioSim()
         self.addCleanup(gpio.close)
         array = self.grid(extra=f'[sync]\ncode = {{ channel = {CODE}, chip = "{gpio.label}", offsets = {list(range(8))}, pulse_ms = 60 }}\n'
                                 f"[sync.codes]\nstimulus = {STIMULUS}\nanswer = {ANSWER}\nvoid = 2\n")
-        self.write("ratings.toml", RATINGS)
-        self.write("lines", "y\n" * 9 + "\n" + "2\n" * 3 * TRIALS)
         onsets, watch = Onsets(self.dir, CHANNELS), Watch(gpio, 0)
-        with (self.dir / "lines").open() as lines:
-            p = self.start("experiment", "ratings.toml", "--participant", "01", "-o", "study", stdin=lines)
-            said, err = p.communicate(timeout=300)
-        self.assertEqual(p.returncode, 0, said + err)
+        err = self.hold(RATINGS, "y\n" * 9 + "\n" + "2\n" * 3 * TRIALS, timeout=300)
         heard, pulses = onsets.stop(), watch.stop()
         self.assertEqual([gpio.value(i) for i in range(8)], [0] * 8)
 
@@ -62,14 +40,10 @@ class Codes(RigTest):
                 found.append((at, sum((code[at + (i + 1) * BIT + BIT // 2] > 0) << i for i in range(8))))
                 at += LEAD
             at += 1
-        events = [e for e in self.table("events") if e["event"] != "void"]
-        rows = {(r["trial"], r["attempt"]): r for r in self.table("beh")}
+        events = [e for e in self.table("ratings", "events") if e["event"] != "void"]
+        rows = {(r["trial"], r["attempt"]): r for r in self.table("ratings")}
         self.assertEqual([n for _, n in found if n in (STIMULUS, ANSWER)], [int(e["code"]) for e in events])
-        file = self.dir / "one.wav"
-        plan = events[0] and rows[events[0]["trial"], events[0]["attempt"]]["plan_1"]
-        made = self.tool("render", f"study/sourcedata/sub-01/plans/{plan}.json", "--array", array, "--sample-format", "s32", "-o", file)
-        self.assertEqual(made.returncode, 0, made.stderr)
-        whole = wav_data(file)
+        whole = self.rendered(rows[events[0]["trial"], events[0]["attempt"]]["plan_1"], array)
         places = [at for at, n in found if n == STIMULUS]
         exact = 0
         for at, e in zip(places, [e for e in events if int(e["code"]) == STIMULUS]):

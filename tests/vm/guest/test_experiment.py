@@ -1,34 +1,21 @@
 # SPDX-License-Identifier: MIT
 """A session on a real clock: the stimuli of a pair and the noise, as one card receives them; and a card that goes away."""
-import csv
 import json
 import subprocess
 
 import rig
-from rig import OUT, RATE, Capture, Card, RigTest, until
-from test_loopback import wav_data
+from rig import OUT, RATE, Capture, Card, SessionTest, until
 
 # Two streams and their mixer share two emulated processors.
 PERIOD, PERIODS = 480, 32
 CHANNELS, NOISE = 11, 9  # the array's nine and the noise's two
 GAP_S = 0.0321
 
-PAIRS = f"""[experiment]
-name = "pairs"
-array = "array.toml"
-level = {{ dbfs = -20 }}
-gap_s = {GAP_S}
+PAIRS = SessionTest.HEAD.replace("[[motion]]", f"""gap_s = {GAP_S}
 [masking]
 noise = "white"
 level_dbfs = -30
-[[motion]]
-name = "east"
-path = "M0 0H40"
-duration = 0.2
-[[method]]
-name = "Alder"
-algorithm = "tactile-brush"
-[[method]]
+[[motion]]""") + """[[method]]
 name = "Birch"
 algorithm = "park2016"
 [[run]]
@@ -40,7 +27,7 @@ trials = 2
 """
 
 
-class Experiment(RigTest):
+class Experiment(SessionTest):
     def side_by_side(self):
         """Configures the array's stream and the noise's on channels of one card, sample by sample in parallel."""
         stream = """pcm.{name} {{
@@ -56,16 +43,6 @@ class Experiment(RigTest):
             stream.format(name=name, card=OUT.format(0), channels=CHANNELS, rate=RATE, period=PERIOD, buffer=PERIOD * PERIODS,
                           bindings=" ".join(f"{i} {c}" for i, c in enumerate(channels))) for name, channels in which.items()))
 
-    def rendered(self, plan, array):
-        file = self.dir / f"{plan}.wav"
-        made = self.tool("render", f"study/sourcedata/sub-01/plans/{plan}.json", "--array", array, "--sample-format", "s32", "-o", file)
-        self.assertEqual(made.returncode, 0, made.stderr)
-        return wav_data(file)
-
-    def rows(self):
-        with (self.dir / "study/sub-01/beh/sub-01_task-pairs_beh.tsv").open(newline="") as file:
-            return list(csv.DictReader(file, delimiter="\t"))
-
     def test_a_card_that_goes_away_makes_its_trial_void_and_the_session_goes_on(self):
         self.addCleanup(Card.plug_in)
         self.grid()
@@ -79,7 +56,7 @@ class Experiment(RigTest):
         Card.plug_in()
         said, err = p.communicate(timeout=200)
         self.assertEqual(p.returncode, 0, said + err)
-        rows = self.rows()
+        rows = self.table("pairs")
         self.assertEqual([(r["trial"], r["attempt"], r["void"]) for r in rows[:1]], [("1", "1", "true")], rows)
         self.assertEqual(sorted(r["trial"] for r in rows if r["void"] == "false"), ["1", "2"])
         self.assertEqual({r["stream"] for r in rows if r["void"] == "false"}, {"2"})
@@ -89,18 +66,13 @@ class Experiment(RigTest):
         self.side_by_side()
         array = self.grid()
         array.write_text(array.read_text().replace(f"period_frames = {rig.PERIOD}", f"period_frames = {PERIOD}"))
-        self.write("pairs.toml", PAIRS)
         capture = Capture(self.dir, CHANNELS, "S32_LE")
-        self.write("lines", "y\n" * 9 + "1\n" * 9)
-        with (self.dir / "lines").open() as lines:
-            p = self.start("experiment", "pairs.toml", "--participant", "01", "-o", "study", "-D", "tactors", "--masker", "phones", stdin=lines)
-            said, err = p.communicate(timeout=200)
-        self.assertEqual(p.returncode, 0, said + err)
+        self.hold(PAIRS, "y\n" * 9 + "1\n" * 9, "-D", "tactors", "--masker", "phones")
         got = capture.stop()
         frame = capture.frame_bytes
         heard = b"".join(got[i:i + 4 * NOISE] for i in range(0, len(got), frame))
         noise = b"".join(got[i + 4 * NOISE:i + frame] for i in range(0, len(got), frame))
-        rows = [r for r in self.rows() if r["void"] == "false"]
+        rows = [r for r in self.table("pairs") if r["void"] == "false"]
         self.assertEqual(len(rows), 2)
         after = 0
         for row in rows:

@@ -8,15 +8,7 @@ were is printed. A difference without either is a fault at once.
 import array
 import json
 
-from rig import OUT, PERIOD, PERIODS, RATE, Capture, RigTest
-
-
-def wav_data(path):
-    data = path.read_bytes()
-    at = 12
-    while data[at:at + 4] != b"data":
-        at += 8 + int.from_bytes(data[at + 4:at + 8], "little")
-    return data[at + 8:]
+from rig import OUT, PERIOD, PERIODS, RATE, Capture, RigTest, wav_data
 
 
 def difference(heard, data, frame):
