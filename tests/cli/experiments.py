@@ -112,10 +112,13 @@ def contents(folder):
 
 
 class Terminal(terminal.Terminal):
-    def begin(self, agrees=True, key=" "):
-        """Answers up to the first run's first trial."""
+    def walk(self, agrees=True):
         if agrees:
             self.answer("Do you agree", "y")
         for i in (0, 1):
             self.answer(f"{i}: Did you feel it", "y")
+
+    def begin(self, agrees=True, key=" "):
+        """Answers up to the first run's first trial."""
+        self.walk(agrees)
         self.answer("Any key begins", key)

@@ -6,6 +6,7 @@ import re
 import select
 import subprocess
 
+from experiments import PersonTest
 from harness import PATIENCE_S
 from websocket import TEXT, Peer
 
@@ -72,9 +73,23 @@ class Participant(Peer):
         self.say(ask=s["ask"], answer=choice)
         return s
 
-    def begin(self, tactors=2):
+    def begin(self, agrees=True):
         """Answers up to the first run's first trial."""
-        self.answer("consent", 1)
-        for _ in range(tactors):
-            self.answer("walk", 1)
+        if agrees:
+            self.answer("consent", 1)
+        self.walk()
         self.answer("introduce", 1)
+
+    def walk(self):
+        for _ in (0, 1):
+            self.answer("walk", 1)
+
+
+class PageTest(PersonTest):
+    def start(self, *more, **which):
+        return Session(self, self.args("--display", "page", *more, **which))
+
+    def start_both(self, *more, **which):
+        """Starts a session and its participant's page, on the wire."""
+        s = self.start(*more, **which)
+        return s, s.participant()

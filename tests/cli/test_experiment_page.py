@@ -7,16 +7,11 @@ import signal
 import socket
 import urllib.request
 
-from experiments import IDENTIFY, LINE, SHORT, WITH_CONSENT, PersonTest, read_table
+from experiments import IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
 from harness import main
-from pages import Session
+from pages import PageTest, Session
 from studies import toml
 from websocket import BINARY, TEXT, Peer, framed
-
-
-class PageTest(PersonTest):
-    def start(self, *more, **which):
-        return Session(self, self.args("--display", "page", *more, **which))
 
 
 class Sessions(PageTest):
@@ -30,8 +25,7 @@ class Sessions(PageTest):
         self.assertEqual(len(p.answer("walk", 3)["choices"]), 3)  # once more
         p.answer("walk", 1)
         self.assertEqual(len(p.answer("walk", 4)["choices"]), 4)  # the one before
-        for _ in (0, 1):
-            p.answer("walk", 1)
+        p.walk()
         asked = p.answer("introduce", 1)
         self.assertEqual((asked["question"], asked["progress"]),
                          ("Which one?", {"run": 1, "runs": 2, "practice": False, "trial": 0, "trials": 2}))
@@ -81,13 +75,11 @@ class Sessions(PageTest):
     def test_motions_to_name_have_pictures_and_words_are_in_the_participant_s_language(self):
         words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
         self.write("de.toml", WITH_CONSENT.replace("[[motion]]", words + "[[motion]]", 1) + IDENTIFY)
-        s = self.start(definition="de.toml")
-        p = s.participant()
+        s, p = self.start_both(definition="de.toml")
         self.assertEqual((p.facts["words"]["language"], p.facts["words"]["pause"]), ("de", "Pause"))
         asked = p.answer("consent", 1)
         self.assertEqual((asked["question"], asked["choices"]), ("Machen Sie mit?", ["Ja", "No"]))
-        for _ in (0, 1):
-            p.answer("walk", 1)
+        p.walk()
         p.answer("introduce", 1)
         for i in (1, 2):
             asked = p.answer("question", i)
@@ -101,8 +93,7 @@ class Sessions(PageTest):
     def test_a_line_has_an_answer_for_each_place_and_stimuli_have_the_words_of_their_answers(self):
         words = ["the first", "the second"]
         self.write("line.toml", LINE + toml("run", "pairs", task="choose", attribute="similarity", trials=2, choices=words))
-        s = self.start(definition="line.toml")
-        p = s.participant()
+        s, p = self.start_both(definition="line.toml")
         p.begin()
         for place in (1, 101, 58, 2):
             asked = p.answer("question", place)
@@ -117,8 +108,7 @@ class Sessions(PageTest):
         self.assertEqual([row[3] for row in self.answers()], ["1", "2"])
 
     def test_the_experimenter_s_keys_work(self):
-        s = self.start()
-        p = s.participant()
+        s, p = self.start_both()
         p.begin()
         p.answer("question", 1)  # practice
         p.until("question")
@@ -148,8 +138,7 @@ class Sessions(PageTest):
                                           ("2", "2", "false", "1")])
 
     def test_a_tactor_that_is_not_felt_ends_the_session(self):
-        s = self.start()
-        p = s.participant()
+        s, p = self.start_both()
         p.answer("consent", 1)
         p.answer("walk", 2)
         p.answer("walk", 2)  # the first No offers it once more
@@ -160,8 +149,7 @@ class Sessions(PageTest):
 
 class OnceAndNoMore(PageTest):
     def test_reloads_second_pages_doubled_and_late_answers(self):
-        s = self.start()
-        p = s.participant()
+        s, p = self.start_both()
         p.begin()
         old = p.until("question")["ask"]
         # The practice's answer again, and one from before the question: neither is the first trial's. All at once, since the
@@ -192,11 +180,9 @@ class OnceAndNoMore(PageTest):
         self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
 
     def test_a_target_shown_on_no_page_makes_its_trial_void(self):
-        s = self.start()
-        p = s.participant()
+        s, p = self.start_both()
         p.answer("consent", 1)
-        for _ in (0, 1):
-            p.answer("walk", 1)
+        p.walk()
         p.until("introduce")
         p.socket.close()
         urllib.request.urlopen(f"http://{s.address}/").read()  # it has been noticed, then
@@ -214,8 +200,7 @@ class OnceAndNoMore(PageTest):
         self.assertEqual(sorted((r[0], r[3]) for r in rows if r[2] == "false"), [("1", "2"), ("2", "2")])
 
     def test_a_killed_session_resumes_at_the_next_trial(self):
-        s = self.start()
-        p = s.participant()
+        s, p = self.start_both()
         p.begin()
         p.answer("question", 1)
         p.answer("question", 2)
@@ -223,11 +208,8 @@ class OnceAndNoMore(PageTest):
         s.process.send_signal(signal.SIGKILL)
         s.end()
         self.assertEqual(self.answers(), [("1", "1", "false", "2")])
-        s = self.start("--resume")
-        p = s.participant()
-        for _ in (0, 1):
-            p.answer("walk", 1)
-        p.answer("introduce", 1)
+        s, p = self.start_both("--resume")
+        p.begin(agrees=False)
         self.assertEqual(p.answer("question", 1)["progress"]["trial"], 2)
         p.until("rest", asked=False)
         s.process.send_signal(signal.SIGINT)

@@ -4,7 +4,7 @@ import json
 
 from experiments import SHORT, PersonTest, Terminal, contents, read_table
 from harness import ROOT, main
-from pages import Session
+from pages import PageTest
 from studies import toml
 
 FORMS = SHORT.replace("practice = 1\n", "").replace("animation = true\n", "") + toml(
@@ -33,9 +33,7 @@ class Forms(PersonTest):
 class AtTheTerminal(Forms):
     def test_letters_are_text_and_the_experimenter_s_keys_elsewhere(self):
         t = Terminal(self, self.args())
-        t.answer("Do you agree", "y")
-        for i in (0, 1):
-            t.answer(f"{i}: Did you feel it", "y")
+        t.walk()
         t.answer("About you\\s+Four questions.\\s+Age\\? 0 to 120: ", "121\n")
         t.answer("no answer: 0 to 120: ", "p3\x7f33\n")  # a pause comes
         t.answer("Hand\\? 1 left, 2 right: ", "32")
@@ -68,9 +66,7 @@ class AtTheTerminal(Forms):
 
     def test_ctrl_c_in_a_text_ends(self):
         t = Terminal(self, self.args())
-        t.answer("agree", "y")
-        for i in (0, 1):
-            t.answer(f"{i}: Did you feel it", "y")
+        t.walk()
         t.answer("Age\\?", "1\n")
         t.answer("Hand\\?", "1")
         t.answer("Remark\\? ", "abc\x03")
@@ -78,20 +74,11 @@ class AtTheTerminal(Forms):
         self.assertFalse((self.dir / "study").exists())
 
 
-class OnThePage(Forms):
-    def start(self, *more):
-        return Session(self, self.args("--display", "page", *more))
-
-    def begin(self, p, agrees=True):
-        if agrees:
-            p.answer("consent", 1)
-        for _ in (0, 1):
-            p.answer("walk", 1)
-
+class OnThePage(Forms, PageTest):
     def test_a_form_is_asked_anew_until_it_is_complete_and_then_no_more(self):
-        s = self.start()
-        p = s.participant()
-        self.begin(p)
+        s, p = self.start_both()
+        p.answer("consent", 1)
+        p.walk()
         asked = p.answer("questionnaire", 1)
         self.assertEqual((asked["question"], asked["text"], asked["choices"]), ("About you", "Four questions.", ["Begin"]))
         p.answer("questionnaire", 33)
@@ -100,9 +87,9 @@ class OnThePage(Forms):
         s.process.kill()
         s.end()
         self.assertFalse((self.dir / "study/phenotype/about.tsv").exists())
-        s = self.start()
-        p = s.participant()
-        self.begin(p)
+        s, p = self.start_both()
+        p.answer("consent", 1)
+        p.walk()
         p.answer("questionnaire", 1)
         asked = p.answer("questionnaire", 121)
         self.assertEqual((asked["entry"], asked["progress"]["trial"], asked["progress"]["trials"]), ({"lowest": 0, "greatest": 120}, 1, 4))
@@ -120,19 +107,16 @@ class OnThePage(Forms):
         s.process.kill()  # the form is complete
         s.end()
         self.assertEqual(self.told("about"), [["sub-01", "0", "2", "two\\nlines and\\n€", "100"]])
-        s = self.start("--resume")
-        p = s.participant()
-        self.begin(p, agrees=False)
-        p.answer("introduce", 1)
+        s, p = self.start_both("--resume")
+        p.begin(agrees=False)
         for _ in (1, 2):
             p.answer("question", 1)
         p.until("questionnaire")
         s.key("q")
         self.assertEqual(s.end(), 130)
         self.assertFalse((self.dir / "study/phenotype/tired.tsv").exists())
-        s = self.start("--resume")
-        p = s.participant()
-        self.begin(p, agrees=False)
+        s, p = self.start_both("--resume")
+        p.walk()
         p.answer("questionnaire", 3)
         p.answer("introduce", 1)
         for _ in (1, 2):
@@ -140,8 +124,7 @@ class OnThePage(Forms):
         p.until("questionnaire")  # all trials are done
         s.process.kill()
         s.end()
-        s = self.start("--resume")
-        p = s.participant()
+        s, p = self.start_both("--resume")
         asked = p.until("questionnaire")  # and nothing is left to be felt
         p.say(ask=asked["ask"], text="")
         p.answer("questionnaire", 1)

@@ -8,9 +8,9 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import BARE, DESK, IDENTIFY, LINE, SHORT, ExperimentTest, read_table  # noqa: E402
+from experiments import BARE, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
 from harness import main  # noqa: E402
-from pages import Session  # noqa: E402
+from pages import PageTest, Session  # noqa: E402
 from studies import toml  # noqa: E402
 
 # Without the transitions between themes, which pictures would catch.
@@ -21,15 +21,7 @@ PHONE = SIZES[2]
 FRAME_S = 1 / 60
 
 
-class ParticipantPage(BrowserTest, ExperimentTest):
-    def setUp(self):
-        super().setUp()
-        self.write("desk.toml", DESK)
-        self.write("short.toml", SHORT)
-
-    def start(self, definition="short.toml", *more):
-        return Session(self, ("experiment", definition, "--participant", "01", "-o", "study", "-D", "null", "--display", "page", *more))
-
+class ParticipantPage(BrowserTest, PageTest):
     def open(self, s, **more):
         return self.page(f"http://{s.address}/", **more)
 
@@ -57,13 +49,12 @@ class ParticipantPage(BrowserTest, ExperimentTest):
 
     def begin(self, p):
         """Answers all before the first run; returns the number of the last question."""
-        ask = self.click(p, "consent", 1)
+        return self.click(p, "introduce", 1, self.walk(p, self.click(p, "consent", 1)))
+
+    def walk(self, p, ask=0):
         for _ in (0, 1):
             ask = self.click(p, "walk", 1, ask)
-        return self.click(p, "introduce", 1, ask)
-
-    def told(self, task, column="response"):
-        return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
+        return ask
 
     def picture(self, p, name):
         """Checks each size: nothing outside the screen and no button too small. Pictures are light and dark."""
@@ -112,8 +103,8 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         p.until("state.screen === 'over'")
         self.picture(p, "over")
         self.assertEqual(s.end(), 0, s.said)
-        self.assertEqual(self.told("pairs"), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
-        self.assertEqual(self.told("marks", "rating"), [("1", "1", "false", "3"), ("2", "1", "false", "1")])
+        self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
+        self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "3"), ("2", "1", "false", "1")])
         # The end does not count as a lost connection, and no other server was asked.
         self.assertTrue(p.value("document.querySelector('#offline').hidden"))
         self.assertEqual(p.faults(), [])
@@ -122,7 +113,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
 
     def test_the_target_moves_in_its_own_time(self):
         self.write("slow.toml", SHORT.replace("duration = 0.2", "duration = 2.0").replace("practice = 1\n", ""))
-        s = self.start("slow.toml")
+        s = self.start(definition="slow.toml")
         p = self.open(s)
         ask = self.begin(p)
         # The target's place in each frame, and the place at the plan's time.
@@ -162,7 +153,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
                                ("^break_s.*", "break_s = 0.2"), ("^practice.*", "practice = 1"), ("^level = .*", "level = { dbfs = -20 }"), ("^noise = .*", 'noise = "none"')):
             text = re.sub(pattern, other, text, flags=re.M)
         self.write("quick.toml", text)
-        s = self.start("quick.toml")
+        s = self.start(definition="quick.toml")
         p = self.open(s)
         ask = self.click(p, "consent", 1)
         for _ in range(9):
@@ -225,8 +216,8 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         for _ in (1, 2):
             ask = self.tap(second, "question", 2, ask)
         self.assertEqual(s.end(), 0, s.said)
-        self.assertEqual(self.told("pairs"), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
-        self.assertEqual(self.told("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
+        self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
+        self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
         self.assertEqual(p.value("state.screen"), "elsewhere")
 
     def test_a_program_that_is_killed_and_comes_back(self):
@@ -238,18 +229,16 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertTrue(p.value("document.querySelector('#answers button').disabled"))
         self.picture(p, "offline")
         s.end()
-        self.start("short.toml", "--page", s.address.rpartition(":")[2])
+        self.start("--page", s.address.rpartition(":")[2])
         self.asked(p, "consent")
         self.assertTrue(p.value("document.querySelector('#offline').hidden"))
 
     def test_scales_with_words_at_their_ends_and_names(self):
         self.write("many.toml", BARE + toml("run", "marks", task="rate", attribute="similarity", trials=1, scale=9, labels=["very uneven", "very even"])
                    + IDENTIFY.replace("trials = 2", "trials = 1"))
-        s = self.start("many.toml")
+        s = self.start(definition="many.toml")
         p = self.open(s)
-        ask = 0
-        for _ in (0, 1):
-            ask = self.click(p, "walk", 1, ask)
+        ask = self.walk(p)
         for run in ("scale", "names"):
             ask = self.click(p, "introduce", 1, ask)
             ask = self.asked(p, "question", ask)
@@ -289,12 +278,9 @@ class ParticipantPage(BrowserTest, ExperimentTest):
   { name = "hand", question = "Which hand?", kind = "choice", choices = ["left", "right"] },
 ]
 """ + toml("run", "marks", task="rate", attribute="uniformity", trials=1, scale=3))
-        s = self.start("form.toml")
+        s = self.start(definition="form.toml")
         p = self.open(s)
-        ask = 0
-        for _ in (0, 1):
-            ask = self.click(p, "walk", 1, ask)
-        ask = self.asked(p, "questionnaire", ask)
+        ask = self.asked(p, "questionnaire", self.walk(p))
         self.picture(p, "form")
         self.key(p, "questionnaire", " ")
 
@@ -340,7 +326,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
             toml("run", name, attribute="uniformity", question="How even?", trials=1, **keys) for name, keys in (
                 ("steps", dict(task="rate", scale=21, labels=["not", "all"])), ("eleven", dict(task="rate", scale=11)),
                 ("pairs", dict(task="choose", choices=["first", "second"])))))
-        s = self.start("line.toml")
+        s = self.start(definition="line.toml")
         p = self.open(s)
         number = "document.querySelector('#answers output').textContent"
         ask = self.mark(p, 0, self.begin(p), "line")
