@@ -131,7 +131,7 @@ class Numbers(ReportTest):
         self.assertIn(f"tactor: {self.one['versions']['tactor']} (", data)
 
     def test_results_are_those_of_analyze(self):
-        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        told = self.analysis()["runs"]
 
         def four(value):
             return "" if value is None else f"{round(value, 12) + 0.0:.4g}"
@@ -297,7 +297,7 @@ class Differences(ReportTest):
         people = self.dir / "study/participants.tsv"
         people.write_text("".join(line for line in people.read_text().splitlines(True) if not line.startswith("sub-02\t")))
         self.assertFalse([name for name, text in contents(self.dir / "study").items() if b"sub-02" in text or "sub-02" in name])
-        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
+        told = self.analysis()
         self.assertEqual((told["participants"], {r["n"] for r in told["runs"].values()}), (2, {2}))
         text = self.report("study")
         self.assertIn("sub-01", text)
@@ -392,14 +392,14 @@ class OtherStudies(ReportTest):
         self.assertIn("/ not recorded |", section(self.report("simulated"), "## Data"))
         self.assertIn("Left out: sub-E5 (no trial that counts in some of the cells).", self.report("missing"))
         answers = tables(section(self.report("three-by-three"), "### which"))
-        told = json.loads(self.ok("analyze", "three-by-three", "--format", "json").stdout)["runs"]["which"]["confusion"]
+        which = json.loads(self.ok("analyze", "three-by-three", "--format", "json").stdout)["runs"]["which"]
         counted = next(t for t in answers if "motion-1" in t[0])
         self.assertEqual({row["motion"]: {k: int(row[k]) for k in ("motion-1", "motion-2", "motion-3")} for row in counted},
-                         told["tactile-brush"])
-        pairs = json.loads(self.ok("analyze", "three-by-three", "--format", "json").stdout)["runs"]["which"]["pairs"]
+                         which["confusion"]["tactile-brush"])
+        pairs = [p for method in which["pairs"].values() for p in method]
         shown = [r for t in answers if "pair" in t[0] for r in t]
-        self.assertEqual([r["pair"] for r in shown], [f"{p['a']} - {p['b']}" for of_one in pairs.values() for p in of_one])
-        for row, pair in zip(shown, (p for of_one in pairs.values() for p in of_one)):
+        self.assertEqual([r["pair"] for r in shown], [f"{p['a']} - {p['b']}" for p in pairs])
+        for row, pair in zip(shown, pairs):
             self.assertAlmostEqual(float(row["p (Holm)"]), pair["p_holm"], 3)
 
 
@@ -415,13 +415,9 @@ class Refusals(ReportTest):
         self.assertFalse((self.dir / "never.md").exists())
 
     def test_impossible_folders_and_names_are_refused(self):
-        self.refused(2, "report")
-        self.refused(2, "report", "none")
-        self.refused(2, "report", self.dir)
-        self.refused(2, "report", "study", "-o", "study/participants.tsv")
-        self.refused(2, "report", "study", "-o", "nowhere/m.md")
-        self.refused(2, "report", "study", "-o", "/dev/full")
-        self.refused(2, "report", "study", "--exclude", "01")
+        for args in ((), ("none",), (self.dir,), ("study", "--exclude", "01"), *(("study", "-o", file) for file in (
+                "study/participants.tsv", "nowhere/m.md", "/dev/full"))):
+            self.refused(2, "report", *args)
         self.write("study/sub-01/beh/sub-01_task-whichone_beh.tsv", "half")
         self.says("sub-01_task-whichone_beh.tsv")
 
