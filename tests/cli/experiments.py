@@ -64,6 +64,13 @@ class ExperimentTest(ToolTest):
         path = self.dir / name
         path.write_text(path.read_text().replace(*change))
 
+    def forget_last_run(self, scans="study/sub-01/sub-01_scans.tsv"):
+        """Removes the last table of a session and its line in the list of tables."""
+        file = self.dir / scans
+        *first, last = file.read_text().splitlines(True)
+        (file.parent / last.split("\t")[0]).unlink()
+        file.write_text("".join(first))
+
     def without_cut(self):
         """Returns the files except the part cut off a table."""
         return {n: b for n, b in contents(self.dir / "study").items() if ".cut-" not in n and n != ".bidsignore"}

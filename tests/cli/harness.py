@@ -3,6 +3,7 @@
 
 Each test file is run as: python3 test_X.py TOOL SOURCE_ROOT
 """
+import csv
 import json
 import os
 import pathlib
@@ -174,6 +175,11 @@ class ToolTest(unittest.TestCase):
 
     def plan(self, *args, **more):
         return json.loads(self.ok("plan", *args, "--format", "json", **more).stdout)
+
+    def trials(self, study="study"):
+        """Returns the comments of --format tsv and its rows."""
+        lines = self.ok("analyze", study, "--format", "tsv").stdout.splitlines()
+        return [line for line in lines if line[0] == "#"], list(csv.DictReader((line for line in lines if line[0] != "#"), delimiter="\t"))
 
 
 def wav_bytes(samples, rate=8000, channels=1, bits=16, tag=1):

@@ -142,8 +142,7 @@ class Forms(AnalyzeTest):
         self.assertGreater(beyond, 0)  # else nothing was tried
 
     def test_each_trial_that_counts_has_a_line(self):
-        text = self.ok("analyze", self.study("simulated"), "--format", "tsv").stdout
-        notes = [line for line in text.splitlines() if line.startswith("#")]
+        notes, rows = self.trials(self.study("simulated"))
         self.assertEqual(notes[0], "# simulated: these are no people's answers")
         self.assertEqual(notes[2], '# options(contrasts = c("contr.sum", "contr.poly"))')
         self.assertIn('# glmer(chosen ~ motion + order + (1 + motion | participant), family = binomial, '
@@ -151,8 +150,6 @@ class Forms(AnalyzeTest):
         self.assertIn('# lmer(rating ~ method * motion + (1 + method | participant), '
                       'data = subset(d, run == "similarity-rating"))', notes)
         self.assertIn("skip = 8,", notes[3])
-        rows = list(csv.DictReader(io.StringIO("".join(line + "\n" for line in text.splitlines() if line[0] != "#")),
-                                   delimiter="\t"))
         self.assertEqual(len(rows), 12 * 160)
         told = self.analysis("simulated")["runs"]
         similar = [r for r in rows if r["run"] == "similarity" and r["motion"] == "motion-2"]
@@ -169,11 +166,10 @@ class Forms(AnalyzeTest):
         self.assertNotIn("other", rows[0])
 
     def test_three_methods_to_choose_from_have_rows_worths_and_a_model(self):
-        text = self.ok("analyze", self.study("among"), "--format", "tsv").stdout
+        notes, rows = self.trials(self.study("among"))
         self.assertIn('# glmer(chosen ~ worth + worth:motion + (1 + worth | participant), family = binomial, '
                       'data = within(subset(d, run == "all three"), worth <- sapply(c("park2016", "continuous"), '
-                      'function(m) (method == m) - (other == m))))', text)
-        rows = list(csv.DictReader([line for line in text.splitlines() if line[0] != "#"], delimiter="\t"))
+                      'function(m) (method == m) - (other == m))))', notes)
         self.assertEqual({(r["method"], r["other"]) for r in rows if r["run"] == "last two"}, {("continuous", "park2016")})
         told = self.analysis("among")["runs"]["all three"]
         for name, cells in told["chosen"].items():

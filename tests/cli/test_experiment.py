@@ -13,7 +13,7 @@ import signal
 import subprocess
 import unittest
 
-from experiments import COLUMNS, GROUPED, SMALL, ExperimentTest, contents, read_table
+from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
 from harness import ROOT, TOOL, main, wav_bytes
 
 
@@ -393,17 +393,13 @@ class Folder(ExperimentTest):
         self.simulate(spec=spec, folder="whole")
         whole = contents(self.dir / "whole")
         table = "sub-01/beh/sub-01_task-howgood_beh.tsv"
-        later = [n for n in whole if "task-what" in n and n.startswith("sub-01")]
         text = whole[table]
         # After any byte of any line except the header and the first, which come at once.
         least = text.index(b"\n", text.index(b"\n") + 1) + 1
         for cut in sorted({least, *range(len(text) - 101, len(text), 9), *range(least, len(text), 299)}):
             os.system(f"rm -rf {self.dir}/study && cp -r {self.dir}/whole {self.dir}/study")
             (self.dir / "study" / table).write_bytes(text[:cut])
-            for name in later:
-                (self.dir / "study" / name).unlink()
-            scans = self.dir / "study/sub-01/sub-01_scans.tsv"
-            scans.write_text("".join(scans.read_text().splitlines(True)[:-1]))
+            self.forget_last_run()
             self.simulate("01", "--resume", spec=spec)
             self.assertEqual(self.without_cut(), whole, f"cut at {cut} of {len(text)}")
 
@@ -543,8 +539,7 @@ class Groups(ExperimentTest):
         people.write_text(people.read_text() + "sub-02\t30\tn/a\tn/a\tarm\n")  # a list made before
         self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is of group "arm", not "palm"',))
         self.grouped(("02", "arm"))
-        file = self.dir / "study/sourcedata/sub-01/session.json"
-        file.write_text(file.read_text().replace('"group": "palm"', '"group": "leg"'))
+        self.edit("study/sourcedata/sub-01/session.json", '"group": "palm"', '"group": "leg"')
         self.refused(2, "analyze", "study")
 
     def test_each_group_has_the_results_of_a_study_of_its_own(self):
@@ -573,11 +568,9 @@ class Groups(ExperimentTest):
 
     def test_tables_for_r_and_the_report_state_the_group(self):
         self.grouped(("01", "palm"), ("02", "arm"), ("03", "few"))
-        lines = self.ok("analyze", "study", "--format", "tsv").stdout.splitlines()
+        lines, rows = self.trials()
         self.assertIn('# lmer(rating ~ method * (group * motion) + (1 + method | participant), data = subset(d, run == "how good"))', lines)
         self.assertIn('# glmer(correct ~ motion + (1 + motion | participant), family = binomial, data = subset(d, run == "what"))', lines)
-        head, *rows = (line.split("\t") for line in lines if line[0] != "#")
-        rows = [dict(zip(head, row)) for row in rows]
         self.assertEqual({(r["group"], r["run"], r["motion"], r["method"]) for r in rows if r["participant"] == "03"},
                          {("few", "how good", "down", "park")})
         report = self.ok("report", "study").stdout
@@ -592,10 +585,7 @@ class Groups(ExperimentTest):
             self.simulate(code, "--group", "two", definition="grouped.toml")
         run = self.analysis()["runs"]["which-one"]
         self.assertEqual((run["n"], list(run["chosen"]), run["groups"]["two"]["method"]), (0, ["brush", "park", "linear"], "linear"))
-        lines = self.ok("analyze", "study", "--format", "tsv").stdout.splitlines()
-        head, *rows = (line.split("\t") for line in lines if line[0] != "#")
-        rows = [dict(zip(head, row)) for row in rows if row[head.index("run")] == "which-one"]
-        self.assertEqual([(r["method"], r["other"], r["chosen"]) for r in rows],
+        self.assertEqual([(r["method"], r["other"], r["chosen"]) for r in self.trials()[1] if r["run"] == "which-one"],
                          [(r["method_1"], r["method_2"], "1" if r["response"] == "1" else "0") for code in ("01", "02") for r in self.rows(code, "whichone")
                           if r["void"] == "false"])
 

@@ -307,8 +307,7 @@ class ByLines(PersonTest):
         self.assertEqual([r["early"] for r in self.rows("01", "marks")], ["false"] * 2)
         runs = self.analysis()["runs"]
         self.assertEqual((runs["pairs"]["early"], runs["marks"]["early"]), (2, 0))
-        trials = [line.split("\t") for line in self.ok("analyze", "study", "--format", "tsv").stdout.splitlines() if not line.startswith("#")]
-        self.assertEqual([(t[1], t[-1]) for t in trials], [("run", "early"), *[("pairs", "true")] * 2, *[("marks", "false")] * 2])
+        self.assertEqual([(t["run"], [*t.items()][-1]) for t in self.trials()[1]], [("pairs", ("early", "true"))] * 2 + [("marks", ("early", "false"))] * 2)
         self.assertIn("2 answers early (sooner after the stimulus than min_response_s), counted", self.ok("analyze", "study").stdout)
         text = self.ok("report", "study").stdout
         self.assertIn("Answers marked early, which count: 2.", text)

@@ -45,8 +45,7 @@ class Tasks(ExperimentTest):
         return self.ok("experiment", "tasks.toml", "--participant", code, "-o", folder, "--simulate", spec or SIMULATE.format(1))
 
     def rows(self, run, code="01"):
-        text = (self.dir / f"study/sub-{code}/beh/sub-{code}_task-{run}_beh.tsv").read_text(encoding="utf-8")
-        return list(csv.DictReader(io.StringIO(text), delimiter="\t"))
+        return super().rows(code, run)
 
     def test_each_task_draws_its_trials(self):
         self.hold(TASKS)
@@ -109,7 +108,7 @@ class Tasks(ExperimentTest):
     def test_results_recover_what_was_simulated(self):
         for i in range(1, 7):
             self.hold(TASKS, f"{i:02}", spec=SIMULATE.format(i))
-        runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        runs = self.analysis()["runs"]
         for run, near in (("values", 1.5), ("bayes", 3)):
             p = runs[run]["psychometric"]
             self.assertEqual([p["axis"], sorted(p["participants"])], ["dB", [f"{i:02}" for i in range(1, 7)]])
@@ -198,10 +197,7 @@ class Tasks(ExperimentTest):
 
     def test_a_catch_trial_is_of_no_method(self):
         self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))
-        notes, rows = [], []
-        for line in self.ok("analyze", "study", "--format", "tsv").stdout.splitlines():
-            (notes if line.startswith("# ") else rows).append(line)
-        rows = list(csv.DictReader(rows, delimiter="\t"))
+        notes, rows = self.trials()
         self.assertEqual({(r["method"], r["signal"]) for r in rows}, {("park", "1"), ("soft", "1"), ("none", "0")})
         self.assertIn('# glmer(positive ~ method + (1 + method | participant), family = binomial("probit"), data = subset(d, run == "there"))', notes)
 
