@@ -501,7 +501,7 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
                 throw error(
                     error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
                     fmt::format("sub-{} is in {} too", code, (home->second / "participants.tsv").string()),
-                    "a code is of one participant: rename one of them");
+                    "name each folder once, and rename a code that two people have");
             known.push_back(code);
         }
     reader r;
