@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
 #include "cli/experiment/power.hpp"

@@ -3,8 +3,6 @@
 
 #include <dlfcn.h>
 
-#include <fmt/format.h>
-
 #include <tactor/error.hpp>
 
 #include "rt/clock.hpp"

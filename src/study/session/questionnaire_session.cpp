@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/questionnaire_session.hpp"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 #include "session/say.hpp"

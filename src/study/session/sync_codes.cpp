@@ -13,7 +13,6 @@
 
 #include <tactor/error.hpp>
 
-#include "core/words.hpp"
 #include "rt/clock.hpp"
 #include "session/say.hpp"
 #include "synth/score/joined.hpp"
