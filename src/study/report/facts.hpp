@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Parts of the report's facts, and the words that they share. Stimuli are in stimuli.cpp, runs and sessions
-/// in procedure.cpp, all else in methods.cpp.
+/// Parts of the report's facts, and the words that they share. Stimuli are in stimuli.cpp; runs, sessions
+/// and questionnaires in procedure.cpp; all else in methods.cpp.
 #pragma once
 
-#include <algorithm>
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,31 +24,11 @@ std::string join(const Texts& texts, std::string_view between = ", ")
     return fmt::format("{}", fmt::join(texts, between));
 }
 
-/// Facts in the order in which they came, each with the sessions that have it.
-template <class Fact>
-using shared_facts = std::vector<std::pair<Fact, std::vector<std::string>>>;
-
-/// Adds a fact of a session.
-template <class Fact>
-void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code)
-{
-    auto at = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.first == fact; });
-    if (at == all.end())
-        at = all.emplace(at, fact, std::vector<std::string>());
-    if (at->second.empty() || at->second.back() != code) // two stimuli of a session may be the same
-        at->second.push_back(code);
-}
-
 /// Returns "all" for a fact of everybody.
 std::string name_subjects(const study_facts& f, const std::vector<std::string>& codes);
 
-bool is_simulated(const session_facts& s);
-
 /// Returns a fact of a session in words: "none" where it is null.
 std::string fact_text(const session_facts& s, const std::string& key);
-
-/// Returns what the openings of the device have under a key, each once.
-std::string stream_text(const session_facts& s, const std::string& key);
 
 std::string describe_carrier(const session_facts& s);
 
@@ -76,5 +54,9 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
 /// Returns what was so in a session, with the trials of each run that count, void ones, and those of them
 /// with gaps in the sound.
 nlohmann::ordered_json describe_session(const session_facts& s);
+
+/// Returns the questionnaires of all definitions: when each is asked, its items, and how often it was
+/// answered.
+nlohmann::ordered_json list_questionnaires(const study_facts& f);
 
 } // namespace tactor::study

@@ -79,6 +79,21 @@ std::string describe_array(const session_facts& s)
                      : "";
 }
 
+// Facts in the order in which they came, each with the sessions that have it.
+template <class Fact>
+using shared_facts = std::vector<std::pair<Fact, std::vector<std::string>>>;
+
+// Adds a fact of a session.
+template <class Fact>
+void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code)
+{
+    auto at = std::ranges::find(all, fact, &shared_facts<Fact>::value_type::first);
+    if (at == all.end())
+        at = all.emplace(at, fact, std::vector<std::string>());
+    if (at->second.empty() || at->second.back() != code) // two stimuli of a session may be the same
+        at->second.push_back(code);
+}
+
 // Lists the tactors of each array, and who wore it.
 json list_arrays(const study_facts& f)
 {
@@ -437,27 +452,12 @@ std::string name_subjects(const study_facts& f, const std::vector<std::string>& 
     return codes.size() == f.sessions.size() ? "all" : list_subjects(codes);
 }
 
-bool is_simulated(const session_facts& s)
-{
-    return s.facts()["simulated"].truth().value_or(false);
-}
-
 std::string fact_text(const session_facts& s, const std::string& key)
 {
     if (!s.document.contains(key))
         return not_recorded;
     const std::string words = s.facts()[key].words();
     return words.empty() ? "none" : words;
-}
-
-std::string stream_text(const session_facts& s, const std::string& key)
-{
-    std::set<std::string> seen;
-    for (const json_value& one : s.facts()["streams"].list())
-        seen.insert(one[key].there() ? one[key].words() : "none");
-    if (seen.empty())
-        return is_simulated(s) ? "simulated" : not_recorded;
-    return join(seen, "; ");
 }
 
 std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text)

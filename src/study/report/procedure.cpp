@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -15,6 +16,22 @@ namespace tactor::study {
 namespace {
 
 using json = nlohmann::ordered_json;
+
+bool is_simulated(const session_facts& s)
+{
+    return s.facts()["simulated"].truth().value_or(false);
+}
+
+// Returns what the openings of the device have under a key, each once.
+std::string stream_text(const session_facts& s, const std::string& key)
+{
+    std::set<std::string> seen;
+    for (const json_value& one : s.facts()["streams"].list())
+        seen.insert(one[key].there() ? one[key].words() : "none");
+    if (seen.empty())
+        return is_simulated(s) ? "simulated" : not_recorded;
+    return join(seen, "; ");
+}
 
 // Describes a task that measures, with the values.
 std::string describe_measure(const run_outline& r)
@@ -180,6 +197,41 @@ nlohmann::ordered_json describe_session(const session_facts& s)
         row["counts"].push_back(fmt::format("{} / {} / {}", c.valid, c.voids,
                                             c.xruns ? fmt::format("{}", *c.xruns) : not_recorded));
     return row;
+}
+
+nlohmann::ordered_json list_questionnaires(const study_facts& f)
+{
+    std::vector<std::string> names;
+    for (const session_facts& s : f.sessions)
+        if (s.design)
+            for (const questionnaire& q : s.design->questionnaires)
+                if (std::ranges::count(names, q.name) == 0)
+                    names.push_back(q.name);
+    json all = json::array();
+    for (const std::string& name : names) {
+        std::set<std::string> people;
+        std::size_t answers = 0;
+        const std::string what = join_texts(f, [&](const session_facts& s) -> std::string {
+            if (!s.design)
+                return {};
+            const std::vector<questionnaire>& own = s.design->questionnaires;
+            const auto q = std::ranges::find(own, name, &questionnaire::name);
+            if (q == own.end())
+                return "not asked";
+            const std::size_t lines = s.answered[static_cast<std::size_t>(q - own.begin())];
+            if (lines > 0)
+                people.insert(s.participant);
+            answers += lines;
+            return fmt::format("{}{}{}, {}", q->title, q->title.empty() ? "" : ", ", describe_time(q->when),
+                               counted(q->items.size(), "item"));
+        });
+        all.push_back(
+            {{"name", name},
+             {"what", what},
+             {"answered", fmt::format("{} of {}, {} in all", people.size(),
+                                      counted(f.people.size(), "participant"), counted(answers, "time"))}});
+    }
+    return all;
 }
 
 } // namespace tactor::study

@@ -93,10 +93,6 @@ void write_report(const std::filesystem::path& file, const std::string& text, bo
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d,
                                      const nlohmann::ordered_json& analysis);
 
-/// Returns the questionnaires of all definitions: when each is asked, its items, and how often it was
-/// answered.
-nlohmann::ordered_json list_questionnaires(const study_facts& f);
-
 /// Returns methods.md, a template of Mustache with [[ and ]].
 std::string_view methods_template() noexcept;
 

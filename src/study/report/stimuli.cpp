@@ -177,11 +177,10 @@ nlohmann::ordered_json list_methods(const study_facts& f)
             });
         };
         const std::string options = join_texts(f, [&](const session_facts& s) -> std::string {
-            if (s.design)
-                for (const method_definition& m : s.design->methods)
-                    if (m.name == name)
-                        return method_options(m.options);
-            return "";
+            if (!s.design)
+                return "";
+            const auto own = std::ranges::find(s.design->methods, name, &method_definition::name);
+            return own != s.design->methods.end() ? method_options(own->options) : "";
         });
         all.push_back({{"name", name},
                        {"algorithm", kinds("algorithm")},
