@@ -567,7 +567,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     d.outline.name = d.name;
     std::vector<method_definition> variants;
     for (const toml_table& t : need_tables(root, "run")) {
-        if (is_questionnaire(t)) {
+        if (t.text("task") == "questionnaire") {
             if (!e.outline_only)
                 d.questionnaires.push_back(read_questionnaire(t, d.questionnaires));
             continue;
@@ -629,13 +629,6 @@ experiment_definition load_definition(const std::string& name_or_file)
                     fmt::format("{}, or a file", shipped_experiment));
     const detail::whole_text text = detail::read_text_file(name_or_file, most_definition_bytes);
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
-}
-
-std::string missing_words(const experiment_definition& d)
-{
-    const std::vector<std::string_view> missing = d.page.missing();
-    return missing.empty() ? ""
-                           : fmt::format("[page] lacks {}, which stay English", fmt::join(missing, ", "));
 }
 
 } // namespace tactor::study

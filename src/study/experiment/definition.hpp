@@ -150,10 +150,6 @@ std::string_view park2016_text() noexcept;
 /// Loads the definition that is built in, or a file. \throws error (bad_input).
 experiment_definition load_definition(const std::string& name_or_file);
 
-/// Returns a warning for sentences of the participant's that stay English although [page] has others; empty
-/// if there are none.
-std::string missing_words(const experiment_definition& d);
-
 /// Returns a hint of the library with a definition's keys in place of fields, without options that a
 /// definition cannot set. `own_level`: the level is the method's.
 std::string in_definition_words(std::string_view hint, bool own_level = false);

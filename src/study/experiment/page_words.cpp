@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
@@ -74,13 +78,14 @@ std::string page_words::operator[](std::string_view key) const
     return std::string(std::ranges::find(english, key, &page_word::key)->english);
 }
 
-std::vector<std::string_view> page_words::missing() const
+std::string page_words::warning() const
 {
-    std::vector<std::string_view> all;
+    std::vector<std::string_view> missing;
     for (const page_word& w : english)
         if (!own_.empty() && !own_.contains(w.key))
-            all.push_back(w.key);
-    return all;
+            missing.push_back(w.key);
+    return missing.empty() ? ""
+                           : fmt::format("[page] lacks {}, which stay English", fmt::join(missing, ", "));
 }
 
 page_words read_page(const detail::toml_table& root)

@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace tactor::detail {
 class toml_table;
@@ -35,8 +34,8 @@ public:
     /// \pre `key` is one of page_words_in_english().
     std::string operator[](std::string_view key) const;
     void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
-    /// Lists the keys that stay English although others were set.
-    std::vector<std::string_view> missing() const;
+    /// Returns a warning for texts that stay English although others were set; empty if there are none.
+    std::string warning() const;
 
 private:
     std::map<std::string, std::string, std::less<>> own_;

@@ -106,11 +106,6 @@ std::optional<unsigned> read_scale(const toml_table& t, bool& visual)
     return static_cast<unsigned>(*most);
 }
 
-bool is_questionnaire(const toml_table& run)
-{
-    return run.text("task") == "questionnaire";
-}
-
 questionnaire read_questionnaire(const toml_table& run, const std::vector<questionnaire>& others)
 {
     run.only({"name", "task", "when", "title", "text", "item"});

@@ -48,10 +48,8 @@ struct questionnaire {
 /// without the key. \throws error (bad_input) with line and column.
 std::optional<unsigned> read_scale(const detail::toml_table& t, bool& visual);
 
-/// Returns true if [[run]] is a questionnaire. \throws error (bad_input) for a task that is no text.
-bool is_questionnaire(const detail::toml_table& run);
-
-/// Reads such a [[run]], after the `others`. \throws error (bad_input) with line and column.
+/// Reads a [[run]] with task = "questionnaire", after the `others`. \throws error (bad_input) with line and
+/// column.
 questionnaire read_questionnaire(const detail::toml_table& run, const std::vector<questionnaire>& others);
 
 /// Returns the path of its answers in a study's folder, phenotype/NAME.tsv, or that of their description.

@@ -193,6 +193,13 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     return doubts;
 }
 
+// Takes the answer of a line of an adaptive run.
+void take_line(adaptive_tracks& tracks, const run_outline& run, const trial_row& row)
+{
+    if (!row.is_void && row.track)
+        tracks.answer(*row.track, is_positive(run, row.method_1, row.response == "2" ? 2 : 1));
+}
+
 using json = nlohmann::ordered_json;
 
 json array_facts(const array& a)
@@ -285,7 +292,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     if (const code_settings* const c = find_codes(e))
         if (std::string same = check_codes(*c, d, stimuli, render.rate); !same.empty())
             warnings.push_back(std::move(same));
-    if (std::string words = missing_words(d); !words.empty() && r.who != audience::observer)
+    if (std::string words = d.page.warning(); !words.empty() && r.who != audience::observer)
         warnings.push_back(std::move(words));
     if (assumed)
         warnings.push_back(
@@ -306,11 +313,6 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             std::move(doubts),
             r.hand,
             row};
-}
-
-std::string_view to_string(hand_kind h) noexcept
-{
-    return h == hand_kind::left ? "left" : "right";
 }
 
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor)
@@ -415,7 +417,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["order"] = order;
     j["level"] = level_facts(p.render);
     if (p.hand)
-        j["hand"] = std::string(to_string(*p.hand));
+        j["hand"] = *p.hand == hand_kind::left ? "left" : "right";
     if (d.rest.is_random())
         j["rests_s"] = rest_facts(p);
     j["array"] = array_facts(p.where.tactors);
@@ -473,17 +475,6 @@ void set_response(trial_row& row, const prepared_experiment& p, const run_defini
     row.response_time_s = time_s;
     row.early = time_s < r.min_response_s;
 }
-
-namespace {
-
-// Takes the answer of a line of an adaptive run.
-void take_line(adaptive_tracks& tracks, const run_outline& run, const trial_row& row)
-{
-    if (!row.is_void && row.track)
-        tracks.answer(*row.track, is_positive(run, row.method_1, row.response == "2" ? 2 : 1));
-}
-
-} // namespace
 
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
 {

@@ -33,7 +33,6 @@ enum class audience {
 
 /// Hand that wears the array.
 enum class hand_kind { left, right };
-std::string_view to_string(hand_kind h) noexcept;
 
 /// Request for a session.
 struct session_request {

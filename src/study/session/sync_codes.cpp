@@ -28,23 +28,18 @@ std::uint64_t bit_frames(const code_settings& c, unsigned rate)
     return static_cast<std::uint64_t>(std::max(1LL, std::llround(c.bit_s * rate)));
 }
 
-std::string condition_text(const experiment_definition& d, std::size_t motion, std::size_t method)
-{
-    return fmt::format("motion \"{}\" by method \"{}\"", d.motions[motion].name, d.methods[method].name);
-}
-
-} // namespace
-
 std::string_view to_string(code_event e) noexcept
 {
     return e == code_event::stimulus ? "stimulus" : e == code_event::answer ? "answer" : "void";
 }
 
-const code_settings* find_codes(const session::environment& e)
+// Returns the frames that a code on the channel takes before its event; 0 without a channel.
+std::uint64_t code_frames(const code_settings& c, unsigned rate)
 {
-    return e.config.sync && e.config.sync->code ? &*e.config.sync->code : nullptr;
+    return c.channel ? synth::code_bits * bit_frames(c, rate) : 0;
 }
 
+// Returns the number of an event: that of the first condition, plus the place of this one, motion by motion.
 unsigned code_number(const code_settings& c, const experiment_definition& d, code_event e, std::size_t motion,
                      std::size_t method)
 {
@@ -54,6 +49,18 @@ unsigned code_number(const code_settings& c, const experiment_definition& d, cod
     const auto methods =
         static_cast<std::size_t>(std::ranges::count(d.methods, false, &method_definition::is_variant));
     return first + static_cast<unsigned>(motion * methods + d.methods[method].made_of.value_or(method));
+}
+
+std::string condition_text(const experiment_definition& d, std::size_t motion, std::size_t method)
+{
+    return fmt::format("motion \"{}\" by method \"{}\"", d.motions[motion].name, d.methods[method].name);
+}
+
+} // namespace
+
+const code_settings* find_codes(const session::environment& e)
+{
+    return e.config.sync && e.config.sync->code ? &*e.config.sync->code : nullptr;
 }
 
 std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
@@ -88,11 +95,6 @@ std::string check_codes(const code_settings& c, const experiment_definition& d, 
                                 static_cast<double>(lead) / rate, d.gap_s),
                     "a longer gap_s in the definition, or a shorter bit_ms");
     return warning;
-}
-
-std::uint64_t code_frames(const code_settings& c, unsigned rate)
-{
-    return c.channel ? synth::code_bits * bit_frames(c, rate) : 0;
 }
 
 nlohmann::ordered_json code_facts(const code_settings& c)

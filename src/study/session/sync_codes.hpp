@@ -30,23 +30,15 @@
 namespace tactor::study {
 
 enum class code_event { stimulus, answer, made_void };
-std::string_view to_string(code_event e) noexcept;
 
 /// Returns the configuration's [sync] code; null: there is none.
 const code_settings* find_codes(const session::environment& e);
-
-/// Returns the number of an event: that of the first condition, plus the place of this one, motion by motion.
-unsigned code_number(const code_settings& c, const experiment_definition& d, code_event e, std::size_t motion,
-                     std::size_t method);
 
 /// Checks the numbers of all conditions before a session. Returns a warning if two events have one number.
 /// \throws error (bad_input) at the place of [sync] code: a number above 255, or with more bits than there
 ///         are lines, or a gap between stimuli that is shorter than a code.
 std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
                         unsigned rate);
-
-/// Returns the frames that a code on the channel takes before its event; 0 without a channel.
-std::uint64_t code_frames(const code_settings& c, unsigned rate);
 
 /// Returns what session.json has of the codes.
 nlohmann::ordered_json code_facts(const code_settings& c);
