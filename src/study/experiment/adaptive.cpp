@@ -2,15 +2,8 @@
 #include "study/experiment/adaptive.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace tactor::study {
-
-value_staircase::value_staircase(unsigned down, std::vector<std::size_t> steps, std::size_t start,
-                                 std::size_t top)
-    : down_(down), steps_(std::move(steps)), at_(start), top_(top)
-{
-}
 
 void value_staircase::answer(bool positive)
 {
@@ -29,17 +22,15 @@ adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
 {
     if (const auto there = tracks_.find(track); there != tracks_.end())
         return there->second;
+    const auto insert = [&](procedure p) -> procedure& {
+        return tracks_.emplace(track, std::move(p)).first->second;
+    };
     const adaptive_options& a = run_.adaptive;
     const std::vector<double>& values = run_.outline.values;
     if (a.down > 0)
-        return tracks_
-            .emplace(track,
-                     value_staircase(a.down, a.steps, a.start[(track - 1) % a.tracks], values.size() - 1))
-            .first->second;
+        return insert(value_staircase(a.down, a.steps, a.start[(track - 1) % a.tracks], values.size() - 1));
     const quest_grid grid{values, values, {}, a.slopes, a.lapses};
-    return tracks_
-        .emplace(track, quest(grid, [](double x, const psychometric& p) { return normal_chance(x, p, 0.0); }))
-        .first->second;
+    return insert(quest(grid, [](double x, const psychometric& p) { return normal_chance(x, p, 0.0); }));
 }
 
 std::size_t adaptive_tracks::next(unsigned track)

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,7 +20,10 @@ namespace tactor::study {
 class value_staircase {
 public:
     /// `down`, above 0: positive answers for a step down. `top`: the greatest place.
-    value_staircase(unsigned down, std::vector<std::size_t> steps, std::size_t start, std::size_t top);
+    value_staircase(unsigned down, std::vector<std::size_t> steps, std::size_t start, std::size_t top)
+        : down_(down), steps_(std::move(steps)), at_(start), top_(top)
+    {
+    }
 
     std::size_t place() const noexcept { return at_; }
     void answer(bool positive);
