@@ -271,18 +271,18 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     return status_ok;
 }
 
-int run(const experiment_options& o, settings& s)
+int run(experiment_options& o, settings& s)
 {
     check_experiment_options(s, o);
     if (o.print) {
-        fmt::print("{}", study::load_definition(o.definition).text);
+        fmt::print("{}", study::load_definition(o.session.definition).text);
         return status_ok;
     }
-    const auto who = o.dry_run    ? study::audience::nobody
-                     : o.simulate ? study::audience::observer
-                                  : study::audience::person;
-    const study::prepared_experiment p = study::prepare(
-        {o.definition, o.participant, o.seed, who, o.hand, o.group, o.row, o.session, !o.power.empty()}, s);
+    o.session.who = o.dry_run    ? study::audience::nobody
+                    : o.simulate ? study::audience::observer
+                                 : study::audience::person;
+    o.session.all_sessions = !o.power.empty();
+    const study::prepared_experiment p = study::prepare(o.session, s);
     say_warnings(p.warnings);
     if (!o.power.empty())
         return print_power(p, o);

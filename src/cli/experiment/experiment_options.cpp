@@ -92,13 +92,14 @@ std::string level_text(const render_options& o)
 void add_experiment_options(CLI::App& command, experiment_options& o)
 {
     command
-        .add_option("EXPERIMENT", o.definition, "park2016, or a definition: a file, see tactor-experiment(5)")
+        .add_option("EXPERIMENT", o.session.definition,
+                    "park2016, or a definition: a file, see tactor-experiment(5)")
         ->required()
         ->type_name("");
     add_text(command, "--participant", "CODE", "the participant: letters and digits",
              [&o](const std::string& t) {
                  study::check_code(t);
-                 o.participant = t;
+                 o.session.participant = t;
              });
     command.add_option("-o,--output", o.folder, "folder of the study (BIDS), the same for all participants")
         ->type_name("DIR");
@@ -107,20 +108,21 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     add_text(command, "--hand", "left|right",
              "hand that wears the array; a left one has the mirrored motions of the definition",
              [&o](const std::string& t) {
-                 o.hand = choose("--hand", t, {"left", "right"}) == 0 ? study::hand_kind::left
-                                                                      : study::hand_kind::right;
+                 o.session.hand = choose("--hand", t, {"left", "right"}) == 0 ? study::hand_kind::left
+                                                                              : study::hand_kind::right;
              });
-    command.add_option("--group", o.group, "the participant's group, of a definition with groups")
+    command.add_option("--group", o.session.group, "the participant's group, of a definition with groups")
         ->type_name("NAME");
     add_text(command, "--session", "N", "number of the session, of a definition with several",
              [&o](const std::string& t) {
-                 o.session = static_cast<unsigned>(options::parse_whole("--session", t, {1, 99}, ""));
+                 o.session.session = static_cast<unsigned>(options::parse_whole("--session", t, {1, 99}, ""));
              });
-    add_text(command, "--order", "N",
-             "row of the orders, such as that of a replaced participant (default: by the code)",
-             [&o](const std::string& t) { // prepare() knows how many there are
-                 o.row = static_cast<std::size_t>(options::parse_whole("--order", t, {1, 1000000}, ""));
-             });
+    add_text(
+        command, "--order", "N",
+        "row of the orders, such as that of a replaced participant (default: by the code)",
+        [&o](const std::string& t) { // prepare() knows how many there are
+            o.session.row = static_cast<std::size_t>(options::parse_whole("--order", t, {1, 1000000}, ""));
+        });
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
     CLI::Option* masker = add_masker_option(
@@ -132,12 +134,12 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                              ->excludes(resume);
     command.add_flag("--allow-sound-server", o.allow_sound_server,
                      "allow a sound server, which may hide xruns; the data record it");
-    add_text(command, "--seed", "N",
-             "seed of the order of trials (default: the definition's, else from the code)",
-             [&o](const std::string& t) {
-                 constexpr double most = (std::uint64_t{1} << 53) - 1;
-                 o.seed = static_cast<std::uint64_t>(options::parse_whole("--seed", t, {0, most}, ""));
-             });
+    add_text(
+        command, "--seed", "N", "seed of the order of trials (default: the definition's, else from the code)",
+        [&o](const std::string& t) {
+            constexpr double most = (std::uint64_t{1} << 53) - 1;
+            o.session.seed = static_cast<std::uint64_t>(options::parse_whole("--seed", t, {0, most}, ""));
+        });
     add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1", [&o](const std::string& t) {
         o.simulate = study::parse_simulation(t);
     })->excludes(check);
@@ -162,7 +164,7 @@ void check_experiment_options(const settings& s, const experiment_options& o)
         return;
     if (o.simulate && !o.keypads.empty())
         refuse_option("--keypad", "in a simulated session nobody is asked", "leave one of them out");
-    if (o.participant.empty())
+    if (o.session.participant.empty())
         refuse_option("--participant", "it is not said who takes part",
                       "a code of letters and digits, as P07");
     if (o.folder.empty())

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,10 +23,9 @@ namespace tactor::cli {
 inline constexpr std::size_t default_studies = 200;
 
 struct experiment_options {
-    std::string definition; ///< a name that is built in, or a file
-    std::string participant = {};
-    std::string folder = {};     ///< with --part the file
-    std::string format = "text"; ///< of --dry-run and --power
+    study::session_request session; ///< `who` and `all_sessions` follow from the others
+    std::string folder = {};        ///< with --part the file
+    std::string format = "text";    ///< of --dry-run and --power
     bool resume = false;
     bool print = false;
     bool dry_run = false;
@@ -36,12 +34,7 @@ struct experiment_options {
     page_options page = {};                ///< what the participant sees
     std::vector<std::string> keypads = {}; ///< input devices of the participant's
     std::string masker = {};               ///< PCM of the masking noise; empty: none
-    std::optional<std::uint64_t> seed = {};
     std::optional<study::simulation> simulate = {};
-    std::optional<study::hand_kind> hand = {};
-    std::string group = {};
-    study::session_number session = {};
-    std::optional<std::size_t> row = {}; ///< of the orders, from 1
     std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: without
     std::size_t studies = default_studies;
     std::size_t part = 1;                ///< of --power, from 1

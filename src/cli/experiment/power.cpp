@@ -159,7 +159,7 @@ json describe_parts(const study::prepared_experiment& e, const experiment_option
             {"group", files::or_null(e.definition.group)},
             {"stimuli", detail::sha256_text(stimuli)},
             {"simulation", study::to_text(*o.simulate)},
-            {"seed", files::or_null(o.seed)},
+            {"seed", files::or_null(o.session.seed)},
             {"studies", o.studies},
             {"participants", o.power}};
 }
@@ -295,8 +295,8 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
         refuse_option("--part",
                       fmt::format("{} parts of {}", o.parts, counted(o.studies, "study", "studies")),
                       "a study or more in each part");
-    study::power_request asked{*o.simulate, o.power, o.studies,
-                               o.seed,      o.part,  std::max<std::size_t>(o.parts, 1)};
+    study::power_request asked{*o.simulate,    o.power, o.studies,
+                               o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
     const json common = describe_parts(e, o);
     int signal = 0;
     std::optional<std::vector<study::run_power>> powers;

@@ -36,7 +36,7 @@ enum class hand_kind { left, right };
 
 /// Request for a session.
 struct session_request {
-    std::string definition;                 ///< a name that is built in, or a file
+    std::string definition = {};            ///< a name that is built in, or a file
     std::string participant = {};           ///< empty only of a dry run
     std::optional<std::uint64_t> seed = {}; ///< else that of the definition, else one of the participant's
     audience who = audience::person;
