@@ -98,16 +98,11 @@ std::string readme_text(const experiment_definition& d, bool simulated)
 {
     return fmt::format(
         "{}\n\n{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the "
-        "skin, and after\n"
-        "each trial a question was answered; each run is a task of its own, and sub-CODE/{}beh has a line "
-        "for "
-        "each\n"
-        "trial. What the columns mean is in task-NAME_beh.json. The definition, the array, the levels and "
-        "each\n"
-        "stimulus, named by the SHA-256 of its plan, are in sourcedata. Trials whose column void is true "
-        "were\n"
-        "played or answered under conditions that were not as planned; they do not count, and come again.\n"
-        "tactor analyze prints the statistics.\n",
+        "skin, and after\neach trial a question was answered; each run is a task of its own, and "
+        "sub-CODE/{}beh has a line for each\ntrial. What the columns mean is in task-NAME_beh.json. The "
+        "definition, the array, the levels and each\nstimulus, named by the SHA-256 of its plan, are in "
+        "sourcedata. Trials whose column void is true were\nplayed or answered under conditions that were "
+        "not as planned; they do not count, and come again.\ntactor analyze prints the statistics.\n",
         d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name,
         d.session ? "ses-N/" : "");
 }
