@@ -148,18 +148,23 @@ std::string_view describe_time(questionnaire_time t) noexcept
                                               : "after the last run";
 }
 
+std::vector<std::string> spread_labels(const std::vector<std::string>& labels, std::size_t answers)
+{
+    if (labels.size() == answers)
+        return labels;
+    std::vector<std::string> all(answers);
+    if (!labels.empty()) {
+        all.front() = labels.front();
+        all.back() = labels.back();
+    }
+    return all;
+}
+
 std::vector<std::string> label_answers(const questionnaire_item& item)
 {
     if (item.kind == item_kind::number || item.kind == item_kind::text)
         return {};
-    std::vector<std::string> all(item.greatest - item.lowest + 1);
-    if (item.labels.size() == all.size())
-        all = item.labels;
-    else if (!item.labels.empty()) {
-        all.front() = item.labels.front();
-        all.back() = item.labels.back();
-    }
-    return all;
+    return spread_labels(item.labels, item.greatest - item.lowest + 1);
 }
 
 } // namespace tactor::study

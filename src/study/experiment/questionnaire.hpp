@@ -3,6 +3,7 @@
 /// Questionnaires of a definition: [[run]] with task = "questionnaire", which has no trials.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -57,6 +58,9 @@ std::filesystem::path answers_path(const questionnaire& q, const char* extension
 
 /// Returns "before the first run", "after each run but the last" or "after the last run".
 std::string_view describe_time(questionnaire_time t) noexcept;
+
+/// Lists a label for each of two or more answers: those that are given, or both ends' and empty ones between.
+std::vector<std::string> spread_labels(const std::vector<std::string>& labels, std::size_t answers);
 
 /// Lists the labels of the answers from `lowest` on, empty where the number is enough; none for number and
 /// text.

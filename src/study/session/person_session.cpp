@@ -46,18 +46,9 @@ std::vector<point> sample_way(const stroke& target, const array& a, double parts
 // Lists the texts of the answers, empty if a number is enough.
 std::vector<std::string> label_choices(const run_definition& r)
 {
-    std::vector<std::string> all(choices_in(r));
-    if (r.outline.task == task_kind::identify)
-        all = r.outline.motions;
-    else if (!r.choices.empty())
-        all = r.choices;
-    else if (r.labels.size() == all.size())
-        all = r.labels;
-    else if (r.labels.size() == 2) {
-        all.front() = r.labels.front();
-        all.back() = r.labels.back();
-    }
-    return all;
+    return r.outline.task == task_kind::identify ? r.outline.motions
+           : !r.choices.empty()                  ? r.choices
+                                                 : spread_labels(r.labels, choices_in(r));
 }
 
 // Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5
@@ -140,11 +131,10 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 page_screen question_screen(const prepared_experiment& p, const session_step& s)
 {
     const run_definition& r = p.run_at(s.run);
-    page_screen shown{.name = "question", .question = r.question};
+    page_screen shown{.name = "question", .question = r.question, .where = find_progress(p, s)};
     if (r.outline.task == task_kind::estimate) {
         shown.entry = entry_kind::number;
         shown.greatest = most_estimate;
-        shown.where = find_progress(p, s);
         return shown;
     }
     shown.choices = label_choices(r);
@@ -155,7 +145,6 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(
                 sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
-    shown.where = find_progress(p, s);
     return shown;
 }
 
