@@ -17,6 +17,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <boost/locale/utf.hpp>
+
 #include <tactor/error.hpp>
 
 #include "core/split.hpp"
@@ -59,13 +61,6 @@ constexpr key others[] = {{KEY_KP1, '1'}, {KEY_KP2, '2'},    {KEY_KP3, '3'},    
 
 constexpr std::uint16_t digit_keys = 9;
 
-std::optional<operator_key> find_operator_key(char c)
-{
-    // In the order of operator_key.
-    const std::size_t at = std::string_view("rvpgq").find(c);
-    return at != std::string_view::npos ? std::optional(static_cast<operator_key>(at)) : std::nullopt;
-}
-
 session_key make_key(std::string text, bool is_key)
 {
     session_key k{.text = std::move(text), .is_key = is_key, .at_ns = rt::monotonic_ns()};
@@ -73,8 +68,9 @@ session_key make_key(std::string text, bool is_key)
         k.entered = k.text;
         std::erase_if(k.text, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
     }
-    if (k.text.size() == 1)
-        k.command = find_operator_key(k.text.front());
+    constexpr std::string_view commands = "rvpgq"; // in the order of operator_key
+    if (const std::size_t at = commands.find(k.text); k.text.size() == 1 && at != commands.npos)
+        k.command = static_cast<operator_key>(at);
     k.answer = detail::number_in<unsigned>(k.text);
     return k;
 }
@@ -114,6 +110,36 @@ std::optional<unsigned> typed_number::take(char key)
     else if (key == '\n' || key == '\r')
         return detail::number_in<unsigned>(std::exchange(digits_, {}));
     return {};
+}
+
+bool typed_text::take(char byte)
+{
+    using utf8 = boost::locale::utf::utf_traits<char>;
+    if (escape_ == '\x1b' && byte != '[' && byte != 'O')
+        escape_ = '\0'; // Esc alone
+    if (byte == '\x1b' || escape_ != '\0') {
+        // Such as ESC [ A, ESC O P and ESC [ 3 ~.
+        const bool goes_on =
+            byte == '\x1b' || escape_ == '\x1b' ||
+            (escape_ != 'O' && std::string_view(";0123456789").find(byte) != std::string_view::npos);
+        escape_ = goes_on ? byte : '\0';
+        return false;
+    }
+    if (byte == '\n' || byte == '\r')
+        return true;
+    if (byte == '\x7f' || byte == '\b') {
+        while (!text_.empty() && utf8::is_trail(text_.back()))
+            text_.pop_back();
+        if (!text_.empty())
+            text_.pop_back();
+        return false;
+    }
+    begun_ += byte;
+    if (auto at = begun_.cbegin(); utf8::decode(at, begun_.cend()) == boost::locale::utf::incomplete)
+        return false;
+    if (auto more = tidy_text(text_ + std::exchange(begun_, {})))
+        text_ = *std::move(more);
+    return false;
 }
 
 keypad::keypad(std::string device)

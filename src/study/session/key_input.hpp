@@ -14,7 +14,6 @@
 #include <unistd.h>
 
 #include "core/owned.hpp"
-#include "study/session/entry.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/stage.hpp"
 
@@ -40,6 +39,21 @@ public:
 private:
     std::size_t most_digits_;
     std::string digits_ = {};
+};
+
+/// A line that somebody types at a terminal, in UTF-8.
+class typed_text {
+public:
+    /// Takes a byte from the terminal: one of a character, backspace or Enter; ignores arrows and the like,
+    /// and characters beyond most_text_characters. Returns true at Enter.
+    bool take(char byte);
+    /// Returns the characters that are complete.
+    const std::string& text() const noexcept { return text_; }
+
+private:
+    std::string text_ = {};
+    std::string begun_ = {}; ///< bytes of a character that is not complete
+    char escape_ = '\0';     ///< last byte of the sequence of an arrow or the like; 0: not in one
 };
 
 /// Tells keys that a terminal repeats, because they are held down, from keys that are pressed. A value

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/participant_page.hpp"
-#include "net/rpc.hpp"
 
 #include <utility>
 
+#include <boost/locale/utf.hpp>
+
+#include "net/rpc.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::study {
@@ -45,6 +47,27 @@ nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
 }
 
 } // namespace
+
+std::optional<std::string> tidy_text(std::string_view entered)
+{
+    std::string tidy;
+    std::size_t characters = 0;
+    for (const char* at = entered.data(); at != entered.data() + entered.size();) {
+        const char* const first = at;
+        const auto c = boost::locale::utf::utf_traits<char>::decode(at, entered.data() + entered.size());
+        if (!boost::locale::utf::is_valid_codepoint(c))
+            return {};
+        if (c == '\t')
+            tidy += ' ';
+        else if (c == '\n' || (c >= 0x20 && (c < 0x7f || c > 0x9f)))
+            tidy.append(first, at);
+        else
+            continue;
+        if (++characters > most_text_characters)
+            return {};
+    }
+    return tidy;
+}
 
 std::string page_dialogue::state(std::int64_t now_ns) const
 {

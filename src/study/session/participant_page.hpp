@@ -4,6 +4,7 @@
 /// socket, a clock or a thread; and the server of the page.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -20,9 +21,22 @@
 #include "net/web.hpp"
 #include "rt/event_fd.hpp"
 #include "study/experiment/page_words.hpp"
-#include "study/session/entry.hpp"
 
 namespace tactor::study {
+
+/// Kind of answer that a participant enters in place of a choice.
+enum class entry_kind {
+    none,
+    number, ///< a whole number
+    text,   ///< one or several lines
+};
+
+/// Length of a text that a participant enters, in characters, at most.
+inline constexpr std::size_t most_text_characters = 2000;
+
+/// Returns a text with line ends as \n, blanks for tabs, and without other control characters. Returns
+/// nothing for a text that is too long or no UTF-8.
+std::optional<std::string> tidy_text(std::string_view entered);
 
 /// Place in the session.
 struct page_progress {

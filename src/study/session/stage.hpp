@@ -91,8 +91,7 @@ private:
     masking_options masking_ = {};
     std::unique_ptr<masker> masker_; ///< null: no noise
     synth::drive_room room_;
-    std::uint64_t before_ =
-        0; ///< frames of the streams before this one; the time between them does not count
+    std::uint64_t before_ = 0; ///< frames of earlier streams; the time between streams does not count
 };
 
 /// Guard that ends the noise, however the trial ends.

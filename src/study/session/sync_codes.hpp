@@ -24,7 +24,6 @@
 #include "study/bids/session_store.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
-#include "study/session/lsl_markers.hpp"
 #include "study/session/stage.hpp"
 
 namespace tactor::study {
@@ -73,6 +72,22 @@ private:
 /// they live as long as the stream. `o` and `e` must live until it is called.
 session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
                                   coded_pulse*& lines);
+
+/// A stream of numbers to the Lab Streaming Layer, of its type "Markers", up to the end of the process; by
+/// liblsl, which is loaded when it is asked for.
+class lsl_markers {
+public:
+    /// Loads $PYLSL_LIB, or liblsl.so.2. \throws error (not_available) if it makes no stream.
+    explicit lsl_markers(const std::string& source_id);
+
+    /// Sends a number with a time of CLOCK_REALTIME.
+    void push(unsigned number, std::int64_t at_ns) const;
+
+private:
+    double (*clock_)() = nullptr;
+    int (*push_)(void*, const std::int32_t*, double, std::int32_t) = nullptr;
+    void* outlet_ = nullptr;
+};
 
 /// The codes of one session; those of practice are not sent. Does nothing without [sync] code.
 class sync_codes {
