@@ -297,6 +297,17 @@ void person_session::wait_for_any_key()
     }
 }
 
+char person_session::wait_for_one_of(std::string_view keys)
+{
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.command == operator_key::quit)
+            obey(*k.command);
+        if (k.text.size() == 1 && keys.find(k.text) != keys.npos)
+            return k.text.front();
+    }
+}
+
 // Leaves lines alone: they answer the next question. Only keys come early.
 bool person_session::heed()
 {
@@ -572,19 +583,13 @@ void person_session::ask_consent()
              .keys = "yn"});
     session::show_lines(p_.definition.consent + "\n");
     session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
-    for (;;) {
-        const session_key k = keys_.wait();
-        if (k.command == operator_key::quit)
-            obey(*k.command);
-        if (k.text != "y" && k.text != "n")
-            continue;
-        session::show(k.text == "y" ? w["yes"] + "\n\n" : w["no"] + "\n");
-        if (k.text == "n")
-            throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
-                        "there are no data of the session");
-        agreed_at_ = acq_time_text(rt::unix_ns());
-        return flow_.agree();
-    }
+    const bool agrees = wait_for_one_of("yn") == 'y';
+    session::show(agrees ? w["yes"] + "\n\n" : w["no"] + "\n");
+    if (!agrees)
+        throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
+                    "there are no data of the session");
+    agreed_at_ = acq_time_text(rt::unix_ns());
+    flow_.agree();
 }
 
 void person_session::walk(unsigned tactor)
@@ -605,24 +610,17 @@ void person_session::walk(unsigned tactor)
     on_page(walk_screen(p_, tactor, true));
     session::show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
                               tactor > 0 ? ", b " + w["back"] : ""));
-    for (;;) {
-        const session_key k = keys_.wait();
-        if (k.command == operator_key::quit)
-            obey(*k.command);
-        if (k.text != "y" && k.text != "n" && k.text != "r" && (k.text != "b" || tactor == 0))
-            continue;
-        session::show(k.text + "\n");
-        if (k.text == "y") {
-            walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(rt::unix_ns())}});
-            flow_.felt();
-        } else if (k.text == "b") {
-            flow_.walk_back();
-        } else if (k.text == "n" && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
-            // On a page a finger slips: the first No drives the tactor once more.
-            throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
-                        "tactor check --walk finds out why; then begin again");
-        }
-        return;
+    const char key = wait_for_one_of(tactor > 0 ? "ynrb" : "ynr");
+    session::show(std::string{key, '\n'});
+    if (key == 'y') {
+        walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(rt::unix_ns())}});
+        flow_.felt();
+    } else if (key == 'b') {
+        flow_.walk_back();
+    } else if (key == 'n' && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
+        // On a page a finger slips: the first No drives the tactor once more.
+        throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
+                    "tactor check --walk finds out why; then begin again");
     }
 }
 

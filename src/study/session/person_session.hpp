@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,8 @@ private:
     void obey(operator_key k);
     void void_last();
     void wait_for_any_key();
+    /// Waits for one of these keys. Only q is a command meanwhile.
+    char wait_for_one_of(std::string_view keys);
     void find_device();
     void note_stream();
 
