@@ -150,11 +150,6 @@ keypad::keypad(std::string device)
         throw error(error_kind::not_available, device_, std::strerror(errno),
                     errno == EACCES ? "a udev rule gives it to you: tactor-experiment(1)"
                                     : "the keypads that are there: ls /dev/input/by-id");
-    hold();
-}
-
-void keypad::hold()
-{
     std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
     if (::ioctl(descriptor_.get(), EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0)
         throw error(error_kind::bad_input, device_, "it is no input device",

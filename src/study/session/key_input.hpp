@@ -97,8 +97,6 @@ public:
     std::optional<char> next();
 
 private:
-    void hold();
-
     std::string device_;
     detail::owned_fd descriptor_;
 };
