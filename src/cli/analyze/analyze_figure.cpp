@@ -49,29 +49,23 @@ plot::bar_panel make_panel(const study::run_analysis& r, error_bars kind)
     p.groups = r.run.motions;
     p.groups.emplace_back("all");
     p.joined = r.run.motions.size();
-    switch (r.run.task) {
-    case study::task_kind::choose:
+    if (r.run.task == task_kind::choose) {
+        p.y_title = has_worths(r.run) ? "chosen (% of its trials)"
+                                      : fmt::format("{} chosen (%)", r.run.methods.back());
         p.level = 50.0;
         p.y_to = 100.0;
-        if (has_worths(r.run)) {
-            p.y_title = "chosen (% of its trials)";
-            break;
-        }
-        p.y_title = fmt::format("{} chosen (%)", r.run.methods.back());
-        p.series.push_back(make_bars("", r.cells[0], kind, possible));
-        return p;
-    case study::task_kind::rate:
+    } else if (r.run.task == task_kind::rate) {
         p.y_title = "mean rating";
         p.y_from = r.run.lowest_rating();
         p.y_to = r.run.scale;
-        break;
-    case study::task_kind::identify:
+    } else { // identify
         p.y_title = "correct (%)";
         p.level = study::chance(r.run);
         p.y_to = 100.0;
-        break;
-    default:
-        break;
+    }
+    if (r.run.task == task_kind::choose && !has_worths(r.run)) {
+        p.series.push_back(make_bars("", r.cells[0], kind, possible));
+        return p;
     }
     for (std::size_t m = 0; m < r.run.methods.size(); ++m)
         p.series.push_back(make_bars(r.run.methods[m], r.cells[m], kind, possible));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/say.hpp"
@@ -203,12 +204,8 @@ void print_identify(const study::run_analysis& r)
         print_tests(r.cells[m], r.run.motions);
         print_paired(r.paired_motions[m], r.run.motions);
         say(stdout, "  answers, from left to right in the order of the rows:\n");
-        for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
-            std::string row;
-            for (const std::size_t count : r.confusion[m][i])
-                row += fmt::format(" {:>5}", count);
-            say(stdout, "    {:<{}}{}\n", r.run.motions[i], w, row);
-        }
+        for (std::size_t i = 0; i < r.run.motions.size(); ++i)
+            say(stdout, "    {:<{}} {:>5}\n", r.run.motions[i], w, fmt::join(r.confusion[m][i], " "));
     }
 }
 
@@ -296,20 +293,14 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
     if (r.n == 0)
         return;
     print_times(r.times);
-    switch (r.run.task) {
-    case task_kind::choose:
+    if (r.run.task == task_kind::choose)
         print_choose(r);
-        break;
-    case task_kind::rate:
+    else if (r.run.task == task_kind::rate)
         print_rate(r);
-        break;
-    case task_kind::identify:
+    else if (r.run.task == task_kind::identify)
         print_identify(r);
-        break;
-    default:
+    else
         print_measures(r);
-        break;
-    }
     const auto by_group = study::list_group_effects(r);
     if (std::ranges::any_of(by_group, [](const auto& one) { return one.second && one.second->f; }))
         fmt::print("  groups compared:\n");

@@ -61,17 +61,13 @@ std::string comparison_text(const study::run_outline& r)
         return against ? fmt::format("{}, t against {}", study::list_measures(r, {}).front().first, *against)
                        : "no standard: nothing to compare with";
     }
-    switch (r.task) {
-    case study::task_kind::choose:
+    if (r.task == study::task_kind::choose)
         return fmt::format("{} chosen{}, t against 50 %", r.methods.back(),
                            has_worths(r) ? " in its trials" : "");
-    case study::task_kind::rate:
+    if (r.task == study::task_kind::rate)
         return r.methods.size() < 2
                    ? std::string("one method: nothing to compare")
                    : fmt::format("{} less {}, paired t", r.methods.back(), r.methods.front());
-    default:
-        break;
-    }
     return fmt::format("{} correct, t against {:.2f} %", r.methods.back(), study::chance(r));
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <tuple>
@@ -280,43 +279,28 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
     constexpr unsigned soonest_ms = 400;
     constexpr unsigned range_ms = 1200;
     a.response_time_ms = soonest_ms + r.below(range_ms);
-    if (find_task(run_.outline.task).measures) {
-        a.response = measure(t, r);
-        return a;
-    }
     const auto noise = [&] { return simulation_.sigma * r.normal(); };
     const auto utility = [&](std::size_t method) { return -std::log(cost(t.motion, method)) + noise(); };
-    switch (run_.outline.task) {
-    case task_kind::choose: {
+    if (find_task(run_.outline.task).measures) {
+        a.response = measure(t, r);
+    } else if (run_.outline.task == task_kind::choose) {
         const double first = utility(t.method_1);
         a.response = first >= utility(t.method_2.value()) ? 1 : 2;
-        break;
-    }
-    case task_kind::rate: {
+    } else if (run_.outline.task == task_kind::rate) {
         const double lowest = run_.outline.lowest_rating();
         const double highest = run_.outline.scale;
         const double rating = std::round((highest + lowest) / 2.0 + utility(t.method_1) - mean_);
         a.response = static_cast<unsigned>(std::clamp(rating, lowest, highest));
-        break;
-    }
-    case task_kind::identify: {
+    } else { // identify
         std::vector<point> felt = stimuli_.at(t.motion, t.method_1).felt_path;
         for (point& p : felt) {
             p.x_mm += noise();
             p.y_mm += noise();
         }
-        double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < run_.motions.size(); ++i) {
-            const double d = mean_distance(targets_[i], felt);
-            if (d < nearest) {
-                nearest = d;
-                a.response = static_cast<unsigned>(run_.motions[i]);
-            }
-        }
-        break;
-    }
-    default:
-        break;
+        const auto nearest = std::ranges::min_element(
+            targets_, {}, [&felt](const std::vector<point>& target) { return mean_distance(target, felt); });
+        a.response =
+            static_cast<unsigned>(run_.motions[static_cast<std::size_t>(nearest - targets_.begin())]);
     }
     return a;
 }

@@ -465,20 +465,15 @@ session_step session_flow::next() const
 
 void session_flow::go_on()
 {
-    switch (next().what) {
-    case step_kind::pause:
+    const step_kind now = next().what;
+    if (now == step_kind::pause) {
         paused_ = false;
         void_in_row_ = 0;
-        break;
-    case step_kind::rest:
+    } else if (now == step_kind::rest) {
         leave_done_run(false);
-        break;
-    case step_kind::introduce:
+    } else if (now == step_kind::introduce) {
         place_ = place::trials;
         has_last_ = false;
-        break;
-    default:
-        break;
     }
 }
 
