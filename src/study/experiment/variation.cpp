@@ -100,14 +100,14 @@ std::size_t find_nearest(const std::vector<double>& values, double v)
 // Sets the steps of a staircase, as multiples of the least.
 void set_steps(const toml_table& t, adaptive_options& a, const std::vector<double>& steps, double step)
 {
-    for (const double s : steps)
-        a.steps.push_back(static_cast<std::size_t>(std::llround(s / step)));
     if (steps.empty())
         a.steps = {4, 2, 1};
-    for (std::size_t i = 0; i < steps.size(); ++i)
-        if (std::abs(static_cast<double>(a.steps[i]) * step - steps[i]) > 1e-6 * step)
-            t.fail("steps", fmt::format("{} is no multiple of the least step, {}", steps[i], step),
+    for (const double s : steps) {
+        a.steps.push_back(static_cast<std::size_t>(std::llround(s / step)));
+        if (std::abs(static_cast<double>(a.steps.back()) * step - s) > 1e-6 * step)
+            t.fail("steps", fmt::format("{} is no multiple of the least step, {}", s, step),
                    "such as [4, 2, 1]");
+    }
 }
 
 // Reads the procedure of an adaptive run. Its values are a grid over the range.
