@@ -232,11 +232,6 @@ void session_store::append_event(const run_definition& r, const named_cells& cel
     keep([&] { write_line(event_table(r), cells); });
 }
 
-bool session_store::has_answers(const questionnaire& q, const std::string& after) const
-{
-    return folder_.has_answers(q, after);
-}
-
 void session_store::append_answers(const questionnaire& q, const std::string& after,
                                    const std::vector<std::string>& answers)
 {

@@ -70,9 +70,9 @@ public:
     /// Adds a line to the events of a run, sub-CODE_task-NAME_events.tsv, in the order of the cells.
     void append_event(const run_definition& r, const named_cells& cells);
 
-    /// Return true if a questionnaire is answered, and add the answers; see study_folder. They are on the
-    /// disk when this returns. \throws error (runtime) as append().
-    bool has_answers(const questionnaire& q, const std::string& after) const;
+    const study_folder& folder() const noexcept { return folder_; }
+    /// Adds answers to a questionnaire; see study_folder. They are on the disk when this returns.
+    /// \throws error (runtime) as append().
     void append_answers(const questionnaire& q, const std::string& after,
                         const std::vector<std::string>& answers);
 
