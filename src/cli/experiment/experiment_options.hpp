@@ -19,9 +19,6 @@ class App;
 
 namespace tactor::cli {
 
-/// Number of simulated studies of --power.
-inline constexpr std::size_t default_studies = 200;
-
 struct experiment_options {
     study::session_request session; ///< `who` and `all_sessions` follow from the others
     std::string folder = {};        ///< with --part the file
@@ -36,7 +33,7 @@ struct experiment_options {
     std::string masker = {};               ///< PCM of the masking noise; empty: none
     std::optional<study::simulation> simulate = {};
     std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: without
-    std::size_t studies = default_studies;
+    std::size_t studies = study::power_request{}.studies;
     std::size_t part = 1;                ///< of --power, from 1
     std::size_t parts = 0;               ///< 0: all in one run
     std::vector<std::string> merge = {}; ///< files of all parts; empty: without

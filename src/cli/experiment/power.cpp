@@ -267,7 +267,7 @@ void add_power_options(CLI::App& command, experiment_options& o)
                               "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
         power->excludes(command.get_option(other));
     add_text(command, "--studies", "K",
-             fmt::format("--power: number of simulated studies (default {})", default_studies),
+             fmt::format("--power: number of simulated studies (default {})", study::power_request{}.studies),
              [&o](const std::string& t) {
                  o.studies =
                      static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
