@@ -337,7 +337,7 @@ TEST_CASE("seed, experiment, code and run each change the order, and the same on
     CHECK(make_run(d, 0, "02", 1).trials != s.trials);
     CHECK(make_run(d, 1, "01", 1).trials != s.trials);
     experiment_definition other = d;
-    other.name = "mine";
+    other.outline.name = "mine";
     CHECK(make_run(other, 0, "01", 1).trials != s.trials);
 }
 

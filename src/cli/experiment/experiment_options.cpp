@@ -175,7 +175,7 @@ void print_dry_run_json(const study::prepared_experiment& p)
 {
     json j{{"schema", "tactor-experiment/1"}};
     const study::experiment_definition& d = p.definition;
-    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
+    j["experiment"] = {{"name", d.outline.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
     j["participant"] = p.participant;
     j["group"] = files::or_null(d.group);
     if (d.session)
@@ -209,8 +209,8 @@ void print_dry_run_json(const study::prepared_experiment& p)
 void print_dry_run_text(const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
-    say(stdout, "{}: {}\nparticipant {}{}, row {} of {}, seed {}, array {}, level {}\n", d.name, d.title,
-        p.participant,
+    say(stdout, "{}: {}\nparticipant {}{}, row {} of {}, seed {}, array {}, level {}\n", d.outline.name,
+        d.title, p.participant,
         (d.group.empty() ? "" : ", group " + d.group) +
             (d.session ? fmt::format(", session {} of {}", *d.session, d.outline.sessions) : ""),
         p.row, study::count_rows(d), p.seed, p.where.tactors.name, level_text(p.render));

@@ -82,7 +82,7 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
     say(stdout,
         "{}: {} SIMULATED studies ({}): this says what the design can do where the model is right,\n"
         "and nothing about people\n",
-        e.definition.name, studies, study::to_text(s));
+        e.definition.outline.name, studies, study::to_text(s));
     for (const study::run_power& p : all) {
         const study::run_outline& r = e.definition.runs[p.run].outline;
         say(stdout, "\n{}: {}\n", r.name, comparison_text(r));
@@ -124,7 +124,7 @@ void print_power_json(const study::prepared_experiment& e, const std::vector<stu
 {
     const study::experiment_definition& d = e.definition;
     json j{{"schema", "tactor-power/1"}, {"simulated", true}};
-    j["experiment"] = {{"name", d.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
+    j["experiment"] = {{"name", d.outline.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
     j["simulation"] = study::to_text(s);
     j["studies"] = studies;
     j["alpha"] = study::significant_p;

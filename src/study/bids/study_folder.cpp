@@ -103,7 +103,7 @@ std::string readme_text(const experiment_definition& d, bool simulated)
         "definition, the array, the levels and each\nstimulus, named by the SHA-256 of its plan, are in "
         "sourcedata. Trials whose column void is true were\nplayed or answered under conditions that were "
         "not as planned; they do not count, and come again.\ntactor analyze prints the statistics.\n",
-        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name,
+        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.outline.name,
         d.session ? "ses-N/" : "");
 }
 

@@ -260,13 +260,13 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
     if (!t)
         root.fail("there is no [experiment]", "it begins with one");
-    d.name = name_in(*t, "name");
+    d.outline.name = name_in(*t, "name");
     d.outline.sessions = t->whole("sessions", 1, 99).value_or(1);
     if (e.outline_only)
         return;
     t->only({"name", "title", "array", "level", "gap_s", "rest_s", "order", "seed", "consent", "authors",
              "sessions"});
-    d.title = t->has("title") ? name_in(*t, "title") : d.name;
+    d.title = t->has("title") ? name_in(*t, "title") : d.outline.name;
     if (t->has("array") && e.folder != nullptr)
         d.array = array_in(*t, *e.folder);
     read_level(*t, d);
@@ -564,7 +564,6 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
         return e.outline_only ? method_definition{name_in(t, "name"), {}, {}, t.where()}
                               : read_method(t, d, e.folder);
     });
-    d.outline.name = d.name;
     std::vector<method_definition> variants;
     for (const toml_table& t : need_tables(root, "run")) {
         if (t.text("task") == "questionnaire") {

@@ -100,7 +100,6 @@ struct rest_range {
 };
 
 struct experiment_definition {
-    std::string name;
     std::string title;
     std::optional<std::string> array = {};  ///< a preset's name, or a file
     std::optional<double> level_dbfs = {};  ///< none: sl_db

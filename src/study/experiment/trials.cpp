@@ -353,7 +353,8 @@ std::size_t count_rows(const experiment_definition& d)
 
 std::string session_seed(std::uint64_t seed, const experiment_definition& d, std::string_view code)
 {
-    return fmt::format("{}/{}/{}{}", seed, d.name, code, d.session ? fmt::format("/ses-{}", *d.session) : "");
+    return fmt::format("{}/{}/{}{}", seed, d.outline.name, code,
+                       d.session ? fmt::format("/ses-{}", *d.session) : "");
 }
 
 std::size_t default_row(const experiment_definition& d, std::string_view code)

@@ -431,7 +431,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["masking"] = masking_facts(d.masking);
     j["masker"] = simulate || masker.empty() ? json(nullptr) : json(masker);
     j["stimuli"] = stimulus_facts(p);
-    j["experiment"] = {{"name", d.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
+    j["experiment"] = {{"name", d.outline.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
     j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
     j["device"] = simulate ? json(nullptr) : json(p.pcm);
     j["sound_server"] = nullptr;
