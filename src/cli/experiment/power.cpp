@@ -293,20 +293,17 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
                       "a study or more in each part");
     study::power_request asked{*o.simulate,    o.power, o.studies,
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
-    const json common = describe_parts(e, o);
+    if (!o.merge.empty())
+        asked.studies = 0; // the files have the counts
     int signal = 0;
-    std::optional<std::vector<study::run_power>> powers;
-    if (o.merge.empty()) {
-        powers = simulate(e, asked, signal);
-    } else {
-        asked.studies = 0; // none: the files have their counts
-        powers = simulate(e, asked, signal);
-        merge_parts(*powers, common, o.merge);
-    }
+    auto powers = simulate(e, asked, signal);
     if (!powers) {
         say(stderr, "tactor: ended by a signal, before there was a result\n");
         return session::interrupt::status(signal);
     }
+    const json common = describe_parts(e, o);
+    if (!o.merge.empty())
+        merge_parts(*powers, common, o.merge);
     if (o.parts != 0)
         write_part(o.folder, common, asked, *powers);
     else if (o.format == "json")
