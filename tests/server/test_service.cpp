@@ -372,8 +372,18 @@ TEST_CASE("a stroke that repeats has one beginning and one end")
     CHECK(rig.code(c, "plan", with(stroke, "repeat", 2)) == -32602);
 }
 
+// Under a sanitizer or emulation the clock may outrun a service this slow, so that its strokes end.
+bool is_outrun(const char* name)
+{
+    if (shortened())
+        std::printf("SKIPPED: %s: the clock outruns a service this slow\n", name);
+    return shortened();
+}
+
 TEST_CASE("what repeats until it is cancelled has no gap")
 {
+    if (is_outrun("what repeats until it is cancelled"))
+        return;
     service_rig rig;
     rig.captures = running_clock::capture_kind::kept;
     fake_dac& card = rig.plug();
@@ -409,10 +419,8 @@ TEST_CASE("what repeats until it is cancelled has no gap")
 
 TEST_CASE("what repeats ends with its client, and is not cut")
 {
-    if (shortened()) {
-        std::puts("SKIPPED: what repeats ends with its client: the clock outruns a service this slow");
+    if (is_outrun("what repeats ends with its client"))
         return;
-    }
     running_rig rig;
     const auto goes = rig.client();
     const auto looks = rig.client();
