@@ -147,6 +147,7 @@ NOT_RUN = {
     "sudo ": "needs root and changes the system",
     "/usr/bin/python3 -m venv": "the lane tests/lanes/python makes one",
     "~/tactor-venv/bin/pip ": "the lane tests/lanes/python installs the package",
+    "tactor play STROKE --array both.toml ": "tests/machines/rtp.py plays the array over PipeWire",
     "rm -rf strokes/sub-P07": "there is no such study here",
     "sed -i '/^sub-P07": "there is no such study here",
     "rm P07.toml": "there is no such study here",
