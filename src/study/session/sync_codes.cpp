@@ -280,7 +280,7 @@ void sync_codes::send(code_event e, const session_step& s, const planned_trial& 
     finish();
     const unsigned n = number(e, t, t.method_1);
     const std::uint64_t now = there_->position().played;
-    sending_.emplace(sent{e, n, now, now, rt::unix_ns(), 0});
+    sending_ = sending{sent{e, n, now, now, rt::unix_ns(), 0}};
     sending_->lines_until =
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                std::chrono::duration<double>(code_->pulse_s));
