@@ -293,7 +293,7 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
     const json* said = member(params, "name");
     if (said == nullptr)
         return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
-    const std::string name = text(*said, "name");
+    std::string name = text(*said, "name");
     if (make_file_name(name) != name)
         bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
     return name;

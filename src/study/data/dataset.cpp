@@ -71,7 +71,7 @@ std::vector<std::string> read_codes(const fs::path& folder)
         throw error(error_kind::bad_input, source_place{folder.string()},
                     failed ? failed.message() : "it is no folder", "name the folder of a study")
             .with_os_code(failed ? failed.value() : ENOTDIR);
-    const std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
+    std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
     if (known.empty())
         throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
                     "nobody is in it", "tactor experiment adds a line for each participant");
