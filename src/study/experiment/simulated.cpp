@@ -297,10 +297,11 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
             p.x_mm += noise();
             p.y_mm += noise();
         }
-        const auto nearest = std::ranges::min_element(
-            targets_, {}, [&felt](const std::vector<point>& target) { return mean_distance(target, felt); });
-        a.response =
-            static_cast<unsigned>(run_.motions[static_cast<std::size_t>(nearest - targets_.begin())]);
+        std::vector<double> distances;
+        for (const std::vector<point>& target : targets_)
+            distances.push_back(mean_distance(target, felt));
+        const auto nearest = std::ranges::min_element(distances) - distances.begin();
+        a.response = static_cast<unsigned>(run_.motions[static_cast<std::size_t>(nearest)]);
     }
     return a;
 }
