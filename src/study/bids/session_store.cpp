@@ -142,7 +142,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
         write_whole(source_ / "session.json", json_text(facts_));
     folder_.describe();
     for (const run_definition* r : runs_) {
-        const fs::path file = folder_.path() / fmt::format("task-{}_events.json", r->outline.file_name);
+        const fs::path file = folder_.path() / events_description(*r);
         if (!events.is_null() && !is_on_disk(file))
             write_whole(file, json_text(events));
     }

@@ -333,10 +333,15 @@ void study_folder::describe() const
         put(folder_ / answers_path(q, ".json"), questionnaire_text(q, session(), simulated_));
 }
 
+std::string events_description(const run_definition& r)
+{
+    return fmt::format("task-{}_events.json", r.outline.file_name);
+}
+
 bool study_folder::has_codes() const
 {
     return std::ranges::any_of(definition_.runs, [this](const run_definition& r) {
-        return is_on_disk(folder_ / fmt::format("task-{}_events.json", r.outline.file_name));
+        return is_on_disk(folder_ / events_description(r));
     });
 }
 

@@ -18,6 +18,9 @@ namespace tactor::study {
 /// Checks that a participant's code is letters and digits. \throws error (bad_input).
 void check_code(const std::string& code);
 
+/// Returns the name of the file that describes the events of a run's trials, if codes are sent.
+std::string events_description(const run_definition& r);
+
 /// A study's folder with a participant's session, locked as long as this lives. One thread.
 class study_folder {
 public:
