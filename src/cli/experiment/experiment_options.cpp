@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,13 +17,9 @@
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
 #include "core/sha256.hpp"
-#include "core/split.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "options/option.hpp"
-#include "session/process.hpp"
-#include "study/analysis/analysis.hpp"
-#include "study/bids/disk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
