@@ -6,6 +6,7 @@ import fcntl
 import hashlib
 import io
 import json
+import math
 import os
 import pathlib
 import re
@@ -626,6 +627,9 @@ class Power(ExperimentTest):
             for line, p in zip(block, run["power"]):
                 self.assertEqual(p["power"], p["significant"] / 60)
                 self.assertTrue(p["ci"][0] <= p["power"] <= p["ci"][1] and p["for_last"] <= p["significant"])
+                for k, bound, ends in ((p["significant"], p["ci"][0], range(p["significant"], 61)), (60 - p["significant"], p["ci"][1], range(p["significant"] + 1))):
+                    tail = sum(math.comb(60, i) * bound ** i * (1 - bound) ** (60 - i) for i in ends)
+                    self.assertAlmostEqual(tail, 0.025 if k else 1, 9)  # exact: Clopper and Pearson 1934
                 self.assertEqual(line.split(), [str(p["participants"]), f"{100 * p['power']:.1f}", "%",
                                                 f"{100 * p['ci'][0]:.1f}", "...", f"{100 * p['ci'][1]:.1f}",
                                                 f"{100 * p['for_last'] / 60:.1f}", "%", str(p["untested"])])
