@@ -293,6 +293,8 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
                       "a study or more in each part");
     study::power_request asked{*o.simulate,    o.power, o.studies,
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
+    if (o.parts != 0)
+        study::try_whole(o.folder); // now, not after hours
     if (!o.merge.empty())
         asked.studies = 0; // the files have the counts
     int signal = 0;

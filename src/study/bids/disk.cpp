@@ -72,6 +72,11 @@ void write_whole(const fs::path& file, std::string_view text)
     out.commit();
 }
 
+void try_whole(const fs::path& file)
+{
+    const detail::output_file tried(file);
+}
+
 void append_text(const fs::path& file, std::string_view text, bool synced)
 {
     const detail::owned_fd d = open_file(file, O_WRONLY | O_APPEND);

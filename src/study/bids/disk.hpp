@@ -20,6 +20,9 @@ std::string json_text(const nlohmann::ordered_json& j);
 /// Writes a file beside its name, dot-named, and gives it the name when it is on the disk. \throws error.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
+/// Throws what write_whole() would throw before it has anything to write.
+void try_whole(const std::filesystem::path& file);
+
 /// Appends text to a file that is there; if `synced` it is on the disk when this returns. Where that fails
 /// nothing of it is left. \throws error (runtime).
 void append_text(const std::filesystem::path& file, std::string_view text, bool synced = true);

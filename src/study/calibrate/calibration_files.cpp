@@ -352,7 +352,7 @@ void check_new_output(const std::filesystem::path& file)
     if (is_on_disk(file))
         throw error(error_kind::bad_input, file.string(), "there is such a file already",
                     "choose another name: it is not overwritten");
-    const detail::output_file tried(file);
+    try_whole(file);
 }
 
 void write_new_output(const std::filesystem::path& file, const std::string& text)
