@@ -148,6 +148,7 @@ NOT_RUN = {
     "/usr/bin/python3 -m venv": "the lane tests/lanes/python makes one",
     "~/tactor-venv/bin/pip ": "the lane tests/lanes/python installs the package",
     "tactor play STROKE --array both.toml ": "tests/machines/rtp.py plays the array over PipeWire",
+    "python3 examples/python/two_machines.py": "the lane tests/lanes/python runs it",
     "rm -rf strokes/sub-P07": "there is no such study here",
     "sed -i '/^sub-P07": "there is no such study here",
     "rm P07.toml": "there is no such study here",

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: MIT
 """The examples run."""
 import ast
+import contextlib
 import json
 import os
 import pathlib
 import re
 import runpy
 import signal
+import socket
+import socketserver
 import subprocess
 import sys
 import textwrap
+import threading
 import xml.etree.ElementTree
 
 import pytest
@@ -138,6 +142,56 @@ def shown(cell, names):
     last = ast.Expression(tree.body.pop().value) if isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, cell["id"], "exec"), names)
     return None if last is None else eval(compile(last, cell["id"], "eval"), names)
+
+
+@contextlib.contextmanager
+def service(tool, folder, array):
+    """Runs a service on a PCM that plays nothing; gives HOST:PORT of its TCP endpoint."""
+    folder.mkdir()
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": str(folder)}
+    with subprocess.Popen([tool.program, "serve", "-D", "null", "--array", array, "--tcp", "0", "--format", "json"], env=env,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as p:
+        yield json.loads(p.stdout.readline())["tcp"]
+        p.send_signal(signal.SIGTERM)
+
+
+class Between(socketserver.StreamRequestHandler):
+    """Stands between a client and a service, whose clock then is 3 ms ahead."""
+
+    def handle(self):
+        with socket.create_connection(self.server.behind) as behind, behind.makefile("r", encoding="utf-8") as lines:
+            for line in self.rfile:
+                behind.sendall(line)
+                answer = json.loads(lines.readline())
+                answer["result"]["clock"]["unix_s"] += 0.003
+                self.wfile.write(json.dumps(answer).encode() + b"\n")
+
+
+def test_two_machines_draw_one_array(root, tool, tmp_path):
+    program, array = root / "examples/python/two_machines.py", root / "examples/rtp/both.toml"
+
+    def refuse(*arguments):
+        r = subprocess.run([sys.executable, program, *map(str, arguments)], capture_output=True, text=True, cwd=tmp_path, timeout=120, check=False)
+        assert r.returncode == 1
+        return r.stderr
+
+    run(program, "split", array, "left=0-11", "right=12-23", cwd=tmp_path)
+    for place, first in (("left", 0), ("right", 12)):
+        bindings = re.findall(r"^bindings\.(\d+) { slave (\w+) channel (\d+) }$", (tmp_path / f"{place}.asoundrc").read_text(encoding="utf-8"), re.M)
+        assert [(int(c), int(at)) for c, slave, at in bindings if slave == "card"] == [(first + i, i) for i in range(12)]
+        assert sorted(int(c) for c, _, _ in bindings) == list(range(24))
+    assert "channel 11 is on no machine, or on both" in refuse("split", array, "left=0-11", "right=11-23")
+
+    with service(tool, tmp_path / "l", array) as left, service(tool, tmp_path / "r", array) as right, service(tool, tmp_path / "o", "palm-3x3") as other:
+        said = run(program, "draw", left, right, "M 0 0 H 100").splitlines()
+        assert re.fullmatch(rf"{right}'s clock is [+-]0\.\d{{3}} ms from {left}'s, known to \d\.\d{{3}} ms", said[0])
+        assert [re.sub(r"\d+\.\d+ ms", "0 ms", s) for s in said[1:]] == [f"{m}: finished, 0 ms late" for m in (left, right)]
+        assert "different arrays" in refuse("draw", left, other, "M 0 0 H 100")
+        with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Between) as between:
+            between.behind = right.rsplit(":", 1)
+            threading.Thread(target=between.serve_forever).start()
+            assert "the clocks must agree within 2 ms" in refuse("draw", left, f"127.0.0.1:{between.server_address[1]}", "M 0 0 H 100")
+            between.shutdown()
 
 
 def test_a_notebook_goes_from_stroke_to_figure(root, tool, tmp_path, monkeypatch):
