@@ -15,8 +15,7 @@ import tomllib
 
 def split(file, *machines):
     array = tomllib.loads(pathlib.Path(file).read_text(encoding="utf-8"))
-    grid = array.get("array", {}).get("grid", {"rows": 0, "columns": 0})
-    channels = sorted(t["channel"] for t in array.get("tactor", [])) or range(grid["rows"] * grid["columns"])
+    channels = sorted(t["channel"] for t in array.get("tactor", [])) or range((grid := array["array"]["grid"])["rows"] * grid["columns"])
     own = {name: range(int(first), int(last) + 1) for name, first, last in (m.replace("=", "-").split("-") for m in machines)}
     if unclear := [c for c in channels if sum(c in mine for mine in own.values()) != 1]:
         sys.exit(f"{file}: channel {unclear[0]} is on no machine, or on both (give each channel to one)")
@@ -55,12 +54,10 @@ class Machine:  # JSON-RPC over TCP, an object a line: tactor-protocol(7)
 def draw(first, second, path, token_file=None, limit_s=0.002, after_s=0.5):
     token = {"token": pathlib.Path(token_file).read_text(encoding="utf-8").strip()} if token_file else {}
     machines, strokes = [Machine(first, token), Machine(second, token)], {}
-    if machines[0].hello["array"] != machines[1].hello["array"]:
-        sys.exit("the machines have different arrays (start both services with the same --array)")
+    machines[0].hello["array"] == machines[1].hello["array"] or sys.exit("the machines have different arrays (start both with the same --array)")
     apart_s, known_s = machines[1].lead_s - machines[0].lead_s, sum(m.trip_s for m in machines) / 2
     print(f"{second}'s clock is {1000 * apart_s:+.3f} ms from {first}'s, known to {1000 * known_s:.3f} ms")
-    if abs(apart_s) > limit_s or known_s > limit_s:
-        sys.exit(f"the clocks must agree within {1000 * limit_s:g} ms (synchronise them by PTP or NTP, over a wire)")
+    max(abs(apart_s), known_s) > limit_s and sys.exit(f"the clocks must agree within {1000 * limit_s:g} ms (synchronise them, over a wire)")
     start_s = machines[0].lead_s + time.monotonic() + after_s
     try:
         for m in machines:
@@ -77,4 +74,7 @@ def draw(first, second, path, token_file=None, limit_s=0.002, after_s=0.5):
 
 
 if __name__ == "__main__":
-    {"split": split, "draw": draw}.get(sys.argv[1] if len(sys.argv) > 4 else "", lambda *_: sys.exit(__doc__))(*sys.argv[2:])
+    try:
+        {"split": split, "draw": draw}.get(sys.argv[1] if len(sys.argv) > 4 else "", lambda *_: sys.exit(__doc__))(*sys.argv[2:])
+    except (OSError, KeyError, ValueError) as e:
+        sys.exit(f"{' '.join(sys.argv[1:])}: {type(e).__name__}: {e}")
