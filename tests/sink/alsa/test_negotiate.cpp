@@ -363,8 +363,8 @@ TEST_CASE("an adopted PCM is closed with its sink, and when it does not fit")
 
 TEST_CASE("a plugin that passes its channels on changes nothing")
 {
-    for (const char* name :
-         {"null", "hw:0", "hw:CARD=Tactor,DEV=3", "plug:null", "plug:'hw:0,1'", "unbound"}) {
+    for (const char* name : {"null", "hw:0", "hw:CARD=Tactor,DEV=3", "hw:0,777767777773", "plug:null",
+                             "plug:'hw:0,1'", "unbound"}) {
         CAPTURE(name);
         const stream_wiring w = defined(name, 8);
         CHECK(w.outputs.empty());

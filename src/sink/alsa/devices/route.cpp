@@ -49,6 +49,10 @@ snd_config_t* member(snd_config_t* compound, const char* id)
 // Returns a value as text; empty for null and for a compound.
 std::string value_text(snd_config_t* value)
 {
+    // snd_config_get_ascii() of libasound 1.2.8 asserts that a number is shorter than 12 characters.
+    long number = 0;
+    if (value != nullptr && snd_config_get_integer(value, &number) >= 0)
+        return fmt::to_string(number);
     char* text = nullptr;
     if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
         return {};
