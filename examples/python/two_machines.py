@@ -5,6 +5,7 @@
     two_machines.py split ARRAY.toml NAME=FIRST-LAST NAME=FIRST-LAST   writes NAME.asoundrc: a PCM that plays these channels of the array
     two_machines.py draw HOST:PORT HOST:PORT PATH [TOKEN_FILE]         draws a path, if the clocks of both agree within 2 ms
 """
+import contextlib
 import json
 import pathlib
 import socket
@@ -59,17 +60,16 @@ def draw(first, second, path, token_file=None, limit_s=0.002, after_s=0.5):
     print(f"{second}'s clock is {1000 * apart_s:+.3f} ms from {first}'s, known to {1000 * known_s:.3f} ms")
     max(abs(apart_s), known_s) > limit_s and sys.exit(f"the clocks must agree within {1000 * limit_s:g} ms (synchronise them, over a wire)")
     start_s = machines[0].lead_s + time.monotonic() + after_s
-    try:
+    with contextlib.ExitStack() as at_end:
         for m in machines:
             strokes[m] = m.call("play", path=path, start={"unix_s": start_s})
+            # Without this client the strokes would play on. One that has ended takes no notice.
+            at_end.callback(m.socket.sendall, b'{"jsonrpc":"2.0","method":"cancel","params":{"stroke":%d}}\n' % strokes[m]["stroke"])
         for m, played in strokes.items():
             m.socket.settimeout(after_s + played["total_s"] + 5)
             end = m.wait(lambda n, s=played["stroke"]: (p := n.get("params", {})).get("stroke") == s and p["state"] != "started")["params"]
             print(f"{m.place}: {end['state']} {end['reason']}".rstrip() + f", {1000 * end['late_s']:.3f} ms late")
-    except BaseException:
-        for m, played in strokes.items():  # the others' strokes go on
-            m.socket.sendall(b'{"jsonrpc":"2.0","method":"cancel","params":{"stroke":%d}}\n' % played["stroke"])
-        raise
+            end["state"] == "finished" or sys.exit(1)
     return start_s
 
 

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+import time
 import xml.etree.ElementTree
 
 import pytest
@@ -126,13 +127,22 @@ def test_strokes_drawn_with_the_mouse_are_played(root, tmp_path, display):
     assert re.fullmatch(r"finished: (\d+) points, (\d+) outside", said[1]) and int(said[1].split()[1]) >= 51 and int(said[1].split()[3]) > 0
 
 
+@contextlib.contextmanager
+def service(tool, folder, *options):
+    """Runs a service on a PCM that plays nothing; gives where it listens."""
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": str(folder)}
+    with subprocess.Popen([tool.program, "serve", "-D", "null", "--format", "json", *options], env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                          text=True) as p:
+        try:
+            yield json.loads(p.stdout.readline())
+        finally:
+            p.send_signal(signal.SIGTERM)
+
+
 def test_a_client_draws_through_the_service(root, tool, tmp_path):
-    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": str(tmp_path)}
-    with subprocess.Popen([tool.program, "serve", "-D", "null", "--format", "json"], env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as service:
-        where = json.loads(service.stdout.readline())["socket"]
-        said = run(root / "examples/python/serve_client.py", where)
+    with service(tool, tmp_path) as where:
+        said = run(root / "examples/python/serve_client.py", where["socket"])
         assert run(root / "examples/python/serve_client.py", XDG_RUNTIME_DIR=str(tmp_path)) == said
-        service.send_signal(signal.SIGTERM)
     assert re.fullmatch(r"tactor/1 on palm-3x3, 48000 Hz\npark2016-1: finished after [1-9]\d+ frames\ncircle: finished\n", said)
 
 
@@ -142,17 +152,6 @@ def shown(cell, names):
     last = ast.Expression(tree.body.pop().value) if isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, cell["id"], "exec"), names)
     return None if last is None else eval(compile(last, cell["id"], "eval"), names)
-
-
-@contextlib.contextmanager
-def service(tool, folder, array):
-    """Runs a service on a PCM that plays nothing; gives HOST:PORT of its TCP endpoint."""
-    folder.mkdir()
-    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": str(folder)}
-    with subprocess.Popen([tool.program, "serve", "-D", "null", "--array", array, "--tcp", "0", "--format", "json"], env=env,
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as p:
-        yield json.loads(p.stdout.readline())["tcp"]
-        p.send_signal(signal.SIGTERM)
 
 
 class Between(socketserver.StreamRequestHandler):
@@ -175,6 +174,10 @@ def test_two_machines_draw_one_array(root, tool, tmp_path):
         assert r.returncode == 1
         return r.stderr
 
+    def strokes(i):
+        r = subprocess.run([tool.program, "status", "--socket", tmp_path / str(i), "--format", "json"], capture_output=True, text=True, timeout=60, check=True)
+        return json.loads(r.stdout)["strokes"]
+
     run(program, "split", array, "left=0-11", "right=12-23", cwd=tmp_path)
     for place, first in (("left", 0), ("right", 12)):
         bindings = re.findall(r"^bindings\.(\d+) { slave (\w+) channel (\d+) }$", (tmp_path / f"{place}.asoundrc").read_text(encoding="utf-8"), re.M)
@@ -182,14 +185,28 @@ def test_two_machines_draw_one_array(root, tool, tmp_path):
         assert sorted(int(c) for c, _, _ in bindings) == list(range(24))
     assert "channel 11 is on no machine, or on both" in refuse("split", array, "left=0-11", "right=11-23")
 
-    with service(tool, tmp_path / "l", array) as left, service(tool, tmp_path / "r", array) as right, service(tool, tmp_path / "o", "palm-3x3") as other:
+    with contextlib.ExitStack() as services:
+        places = []
+        for i, its_array in enumerate((array, array, "palm-3x3")):
+            where = services.enter_context(service(tool, tmp_path, "--socket", f"{tmp_path}/{i}", "--array", its_array, "--tcp", "0"))
+            places.append(where["tcp"])
+        left, right, other = places
         said = run(program, "draw", left, right, "M 0 0 H 100").splitlines()
         assert re.fullmatch(rf"{right}'s clock is [+-]0\.\d{{3}} ms from {left}'s, known to \d\.\d{{3}} ms", said[0])
         assert [re.sub(r"\d+\.\d+ ms", "0 ms", s) for s in said[1:]] == [f"{m}: finished, 0 ms late" for m in (left, right)]
+        with subprocess.Popen([sys.executable, program, "draw", left, right, "M 0 0 H 100" + " H 0 H 100" * 19], stdout=subprocess.PIPE, text=True) as client:
+            client.stdout.readline()
+            while not all(strokes(i) for i in (0, 1)):
+                assert client.poll() is None
+            subprocess.run([tool.program, "stop", "--socket", tmp_path / "0"], check=True)
+            assert "cancelled stopped by another client" in client.communicate(timeout=60)[0] and client.returncode == 1
+        end = time.monotonic() + 20
+        while strokes(1):  # it fades, though nobody stopped it there
+            assert time.monotonic() < end
         assert "different arrays" in refuse("draw", left, other, "M 0 0 H 100")
         with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Between) as between:
             between.behind = right.rsplit(":", 1)
-            threading.Thread(target=between.serve_forever).start()
+            threading.Thread(target=between.serve_forever, daemon=True).start()
             assert "the clocks must agree within 2 ms" in refuse("draw", left, f"127.0.0.1:{between.server_address[1]}", "M 0 0 H 100")
             between.shutdown()
 
