@@ -30,9 +30,9 @@ def run(*command):
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
 
 
-def ends(data):
+def ends(data, frame=FRAME):
     """Returns the frame with the first sound, and the one after the last."""
-    return (len(data) - len(data.lstrip(b"\0"))) // FRAME, -(-len(data.rstrip(b"\0")) // FRAME)
+    return (len(data) - len(data.lstrip(b"\0"))) // frame, -(-len(data.rstrip(b"\0")) // frame)
 
 
 class Machine:

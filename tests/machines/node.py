@@ -2,7 +2,6 @@
 """One of the two virtual machines of clocks.py: a card, a clock, an amplifier and half of an array."""
 import contextlib
 import ctypes
-import importlib.util
 import json
 import mmap
 import os
@@ -10,13 +9,20 @@ import pathlib
 import re
 import socket
 import subprocess
+import sys
 import threading
 import time
 
+from namespaces import ends, wait_for
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests/vm/guest"), str(ROOT / "examples/python")]
+import two_machines  # noqa: E402
+from rig import TOOL, GpioSim, wav_data  # noqa: E402
+
 ADDRESSES = {"left": "10.25.0.1", "right": "10.25.0.2"}
 AGENT, ECHO, RPC, OSC = 9001, 9002, 4001, 4002
-RATE, HALF = 48000, 10
+RATE, HALF, FRAME = 48000, 10, 40  # Hz, channels, bytes of ten samples
 STROKE = "M 0 30 H 80"  # between the halves: both vibrate from the first sample
 STATUS = pathlib.Path("/proc/asound/Tactor/pcm0p/sub0/status")
 RUN = pathlib.Path("/run/tmp")
@@ -42,22 +48,6 @@ RECORDED = f"""pcm.recorded {{ type file slave.pcm "hw:CARD=Tactor" file "{RUN}/
 """
 
 
-def wait_for(condition, what, seconds=60.0):
-    end = time.monotonic() + seconds
-    while not (value := condition()):
-        if time.monotonic() > end:
-            raise TimeoutError(f"not within {seconds:g} s: {what}")
-        time.sleep(0.05)
-    return value
-
-
-def example():
-    spec = importlib.util.spec_from_file_location("two_machines", ROOT / "examples/python/two_machines.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 class Counter:
     """The processor's time stamp counter."""
 
@@ -72,9 +62,8 @@ class Counter:
 class Node:
     """A machine; right's is called by left, too."""
 
-    def __init__(self, role, tool):
-        from rig import GpioSim  # pylint: disable=import-outside-toplevel
-        self.role, self.tool, self.processes, self.samples, self.seen = role, tool, {}, [], []
+    def __init__(self, role):
+        self.role, self.processes, self.samples, self.seen = role, {}, [], []
         kernel = re.search(r"kernel_root=(\S+)", pathlib.Path("/proc/cmdline").read_text(encoding="ascii"))[1]
         for module in ("virtio_net", "snd-dummy index=1 id=Tactor model=ice1712 hrtimer=1 fake_buffer=0"):
             subprocess.run(["modprobe", "-d", kernel, *module.split()], check=True)
@@ -87,7 +76,7 @@ class Node:
         (RUN / "tactor").mkdir()
         (RUN / "tactor/tactor.toml").write_text(SERVE, encoding="ascii")
         os.chdir(RUN)
-        example().split("array.toml", f"left=0-{HALF - 1}", f"right={HALF}-{2 * HALF - 1}")
+        two_machines.split("array.toml", f"left=0-{HALF - 1}", f"right={HALF}-{2 * HALF - 1}")
         half = (RUN / f"{role}.asoundrc").read_text(encoding="ascii").replace("hw:CARD=Tactor", "recorded")
         (RUN / ".asoundrc").write_text(RECORDED + half, encoding="ascii")
         for what in (self.sample, self.watch):
@@ -120,7 +109,7 @@ class Node:
             self.processes[name] = subprocess.Popen(command, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
 
     def serve(self):
-        self.start("serve", self.tool, "serve", "--array", "array.toml", "-D", "tactor-half", "--socket", f"{RUN}/tactor.sock")
+        self.start("serve", TOOL, "serve", "--array", "array.toml", "-D", "tactor-half", "--socket", f"{RUN}/tactor.sock")
 
     def log(self, name):
         return (RUN / f"{name}.log").read_text(encoding="utf-8", errors="replace")
@@ -143,27 +132,25 @@ class Node:
     def played(self):
         """Returns the first frame of each sound after 0.1 s of silence, and whether it is what `tactor render` writes of this half."""
         first, rendered = self.rendered()
-        data, frame, gap = (RUN / "played.raw").read_bytes(), 4 * HALF, RATE // 10 * 4 * HALF
+        data, gap = (RUN / "played.raw").read_bytes(), RATE // 10 * FRAME
         at, found, silence = 0, [], bytes(gap)
         while at < len(data):
             piece = data[at:at + gap]
             if piece == silence[:len(piece)]:
                 at += gap
                 continue
-            begin = (at + len(piece) - len(piece.lstrip(b"\0"))) // frame * frame
-            found.append([begin // frame - first, data[begin:begin + len(rendered)] == rendered])
-            at = begin + len(rendered)
+            begin = at // FRAME + ends(piece, FRAME)[0]
+            found.append([begin - first, data[FRAME * begin:FRAME * begin + len(rendered)] == rendered])
+            at = FRAME * begin + len(rendered)
         return found
 
     def rendered(self):
-        subprocess.run([self.tool, "render", "--array", "array.toml", "--path", STROKE, "--sample-format", "s32", "-o", "all.wav"], check=True,
+        subprocess.run([TOOL, "render", "--array", "array.toml", "--path", STROKE, "--sample-format", "s32", "-o", "all.wav"], check=True,
                        stdout=subprocess.DEVNULL)
-        data = (RUN / "all.wav").read_bytes()
-        data = data[data.index(b"data") + 8:]
-        begin = 0 if self.role == "left" else 4 * HALF
-        half = b"".join(data[i + begin:i + begin + 4 * HALF] for i in range(0, len(data), 8 * HALF))
-        first = (len(half) - len(half.lstrip(b"\0"))) // (4 * HALF)
-        return first, half[first * 4 * HALF:-(-len(half.rstrip(b"\0")) // (4 * HALF)) * 4 * HALF]
+        data, begin = wav_data(RUN / "all.wav"), 0 if self.role == "left" else FRAME
+        half = b"".join(data[i + begin:i + begin + FRAME] for i in range(0, len(data), 2 * FRAME))
+        first, end = ends(half, FRAME)
+        return first, half[FRAME * first:FRAME * end]
 
     def set_clock(self, ahead_s):
         time.clock_settime(time.CLOCK_REALTIME, time.time() + ahead_s)
