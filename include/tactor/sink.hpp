@@ -49,6 +49,7 @@ struct stream_setup {
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
     bool batch = false;        ///< the position moves by whole periods
+    bool planar = false;       ///< the device takes a block for each channel; write() still takes frames
     bool has_clock = true;     ///< false for null and file devices, which the sink paces; known after start()
     stream_wiring wiring = {}; ///< map behind this stream
 

@@ -56,15 +56,27 @@ struct fake_dac::callbacks {
         return static_cast<snd_pcm_sframes_t>(d.clock_);
     }
 
+    static const std::byte* sample(const snd_pcm_channel_area_t& a, snd_pcm_uframes_t frame)
+    {
+        return static_cast<const std::byte*>(a.addr) + (a.first + frame * a.step) / 8;
+    }
+
     static snd_pcm_sframes_t transfer(snd_pcm_ioplug_t* io, const snd_pcm_channel_area_t* areas,
                                       snd_pcm_uframes_t offset, snd_pcm_uframes_t size)
     {
         fake_dac& d = self(io);
         const std::lock_guard lock(d.mutex_);
-        const std::byte* from =
-            static_cast<const std::byte*>(areas[0].addr) + areas[0].first / 8 + offset * d.frame_bytes_;
         const std::size_t space = d.capture_limit_ - std::min(d.capture_limit_, d.captured_.size());
-        d.captured_.insert(d.captured_.end(), from, from + std::min(size * d.frame_bytes_, space));
+        if (io->access == SND_PCM_ACCESS_RW_INTERLEAVED) {
+            const std::byte* from = sample(areas[0], offset);
+            d.captured_.insert(d.captured_.end(), from, from + std::min(size * d.frame_bytes_, space));
+        } else {
+            for (std::size_t f = 0; f < std::min(size, space / d.frame_bytes_); ++f)
+                for (unsigned c = 0; c < io->channels; ++c) {
+                    const std::byte* from = sample(areas[c], offset + f);
+                    d.captured_.insert(d.captured_.end(), from, from + d.frame_bytes_ / io->channels);
+                }
+        }
         d.transferred_ += size;
         d.total_ += size;
         d.happened();
@@ -151,7 +163,7 @@ void must(int code)
 
 void limit(snd_pcm_ioplug_t& io, const fake_dac_options& o)
 {
-    const unsigned access = SND_PCM_ACCESS_RW_INTERLEAVED;
+    const unsigned access = o.planar ? SND_PCM_ACCESS_RW_NONINTERLEAVED : SND_PCM_ACCESS_RW_INTERLEAVED;
     must(snd_pcm_ioplug_set_param_list(&io, SND_PCM_IOPLUG_HW_ACCESS, 1, &access));
     std::vector<unsigned> formats;
     for (const snd_pcm_format_t f : o.formats)

@@ -21,6 +21,7 @@ struct fake_dac_options {
     unsigned most_channels = 64;
     std::vector<unsigned> channel_counts{}; ///< these only, instead
     unsigned rate = 48000;
+    bool planar = false; ///< takes a block for each channel, as RME's cards do
     std::size_t least_period_bytes = 32;
     std::size_t most_buffer_bytes = 1 << 20;
 };
@@ -61,7 +62,8 @@ public:
     /// Number of polls while it had no descriptors; dmix ends the process then.
     unsigned asked_in_vain() const { return look(asked_in_vain_); }
 
-    /// Returns all bytes that were transferred so far, over all epochs, from a frame on.
+    /// Returns all bytes that were transferred so far, over all epochs, from a frame on: whole frames, also
+    /// of a planar device.
     std::vector<std::byte> captured(std::uint64_t from = 0) const;
     std::size_t captured_frames() const { return look(total_); }
     std::size_t frame_bytes() const { return look(frame_bytes_); }

@@ -304,6 +304,9 @@ stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& a
     s.period_frames = static_cast<unsigned>(period);
     s.buffer_frames = static_cast<unsigned>(buffer);
     s.batch = snd_pcm_hw_params_is_batch(h.get()) != 0;
+    snd_pcm_access_t access{};
+    snd_pcm_hw_params_get_access(h.get(), &access);
+    s.planar = access == SND_PCM_ACCESS_RW_NONINTERLEAVED;
     if (s.device_channels != asked_for.channels || s.rate != o.rate || period == 0 || buffer < period)
         throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                     fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it",
@@ -338,8 +341,10 @@ hw_params configuration_space(snd_pcm_t* p, const std::string& name)
     must(snd_pcm_hw_params_any(p, h.get()), name, "snd_pcm_hw_params_any");
     // Forbids resampling. Not every plugin knows the setting, but open() forbids it as well.
     snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
-    must(snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED), name,
-         "snd_pcm_hw_params_set_access (interleaved)");
+    // Some cards, such as RME's, take only planar samples: a block for each channel.
+    if (snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED) < 0)
+        must(snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_NONINTERLEAVED), name,
+             "snd_pcm_hw_params_set_access (interleaved or planar)");
     return h;
 }
 

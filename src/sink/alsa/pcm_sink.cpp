@@ -47,14 +47,18 @@ io_kind classify_state(int state) noexcept
 pcm_sink::pcm_sink(handle h, stream_setup s, bool on_card)
     : handle_(std::move(h)),
       setup_(std::move(s)),
-      wide_(setup_.device_channels > setup_.channels
-                ? std::size_t{setup_.buffer_frames} * setup_.device_channels * sample_bytes(setup_.format)
-                : 0),
+      arranged_(setup_.planar || setup_.device_channels > setup_.channels
+                    ? std::size_t{setup_.buffer_frames} * setup_.device_channels * sample_bytes(setup_.format)
+                    : 0),
+      planes_(setup_.planar ? setup_.device_channels : 0),
       status_(allocate<status>(snd_pcm_status_malloc)),
       pacer_(setup_.rate, setup_.buffer_frames, setup_.period_frames),
       max_descriptors_(static_cast<std::size_t>(std::max(1, snd_pcm_poll_descriptors_count(handle_.get())))),
       on_card_(on_card)
 {
+    const std::size_t plane_bytes = setup_.buffer_frames * sample_bytes(setup_.format);
+    for (std::size_t c = 0; c < planes_.size(); ++c)
+        planes_[c] = &arranged_[c * plane_bytes];
 }
 
 io_kind pcm_sink::prepare() noexcept
@@ -186,42 +190,59 @@ void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t available) noexcept
     at_ = at;
 }
 
+// Copies the frames as the PCM takes them. Its other channels have been silent since construction.
+void pcm_sink::arrange(std::span<const std::byte> frames) noexcept
+{
+    const std::size_t own = setup_.frame_bytes();
+    const std::size_t bytes = sample_bytes(setup_.format);
+    if (setup_.planar) {
+        for (unsigned c = 0; c < setup_.channels; ++c) {
+            auto* to = static_cast<std::byte*>(planes_[c]);
+            for (std::size_t at = c * bytes; at < frames.size(); at += own)
+                to = std::copy_n(&frames[at], bytes, to);
+        }
+        return;
+    }
+    const std::size_t wide = setup_.device_channels * bytes;
+    for (std::size_t f = 0; f < frames.size() / own; ++f)
+        std::copy_n(&frames[f * own], own, &arranged_[f * wide]);
+}
+
+// Writes frames that were arranged, if the PCM needs that. Returns as snd_pcm_writei() does.
+long pcm_sink::hand_over(std::span<const std::byte> frames) noexcept
+{
+    const std::size_t count = frames.size() / setup_.frame_bytes();
+    if (setup_.planar)
+        return snd_pcm_writen(handle_.get(), planes_.data(), count);
+    return snd_pcm_writei(handle_.get(), arranged_.empty() ? frames.data() : arranged_.data(), count);
+}
+
 // Writes frames of a paced stream. A multi of nulls fills up before its start and breaks after it; after
 // prepare() it takes frames again.
-long pcm_sink::write_paced(const std::byte* data, std::size_t frames) noexcept
+long pcm_sink::write_paced(std::span<const std::byte> frames) noexcept
 {
-    const long n = snd_pcm_writei(handle_.get(), data, frames);
+    const long n = hand_over(frames);
     if (n > 0 || (n != 0 && n != -EAGAIN && n != -EPIPE))
         return n;
     snd_pcm_drop(handle_.get());
     snd_pcm_prepare(handle_.get());
-    return snd_pcm_writei(handle_.get(), data, frames);
-}
-
-// Copies the frames into a buffer of the PCM's width. Its other channels have been silent since construction.
-const std::byte* pcm_sink::widen(std::span<const std::byte> frames) noexcept
-{
-    if (wide_.empty())
-        return frames.data();
-    const std::size_t own = setup_.frame_bytes();
-    const std::size_t wide = std::size_t{setup_.device_channels} * sample_bytes(setup_.format);
-    for (std::size_t f = 0; f < frames.size() / own; ++f)
-        std::copy_n(&frames[f * own], own, &wide_[f * wide]);
-    return wide_.data();
+    return hand_over(frames);
 }
 
 io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
 {
     const quiet silent;
     std::size_t count = frames.size() / setup_.frame_bytes();
-    if (!wide_.empty())
+    if (!arranged_.empty())
         count = std::min<std::size_t>(count, setup_.buffer_frames);
     if (paced_)
         count = std::min<std::size_t>(count, pacer_.available());
     if (count == 0)
         return {io_kind::again, 0, 0};
-    const std::byte* const data = widen(frames.first(count * setup_.frame_bytes()));
-    const long n = paced_ ? write_paced(data, count) : snd_pcm_writei(handle_.get(), data, count);
+    const std::span<const std::byte> taken_from = frames.first(count * setup_.frame_bytes());
+    if (!arranged_.empty())
+        arrange(taken_from);
+    const long n = paced_ ? write_paced(taken_from) : hand_over(taken_from);
     if (n < 0)
         return {classify_error(n, state()), 0, static_cast<int>(n)};
     const auto taken = static_cast<std::size_t>(n);

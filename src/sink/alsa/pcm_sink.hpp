@@ -46,15 +46,17 @@ public:
 
 private:
     int state() noexcept { return static_cast<int>(snd_pcm_state(handle_.get())); }
-    const std::byte* widen(std::span<const std::byte> frames) noexcept;
-    long write_paced(const std::byte* data, std::size_t frames) noexcept;
+    void arrange(std::span<const std::byte> frames) noexcept;
+    long hand_over(std::span<const std::byte> frames) noexcept;
+    long write_paced(std::span<const std::byte> frames) noexcept;
     bool runs_without_clock() noexcept;
     std::int64_t frames_to_ns(std::uint64_t frames) const noexcept;
     void look(std::int64_t now, snd_pcm_sframes_t available) noexcept;
 
     handle handle_;
     stream_setup setup_;
-    std::vector<std::byte> wide_; ///< a buffer of the PCM's frames, if they have more channels
+    std::vector<std::byte> arranged_; ///< a buffer as the PCM takes it, if it is planar or has more channels
+    std::vector<void*> planes_;       ///< the channels in `arranged_`, if it is planar
     status status_;
     detail::pacer pacer_;
     std::size_t max_descriptors_;

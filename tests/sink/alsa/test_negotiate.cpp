@@ -207,7 +207,15 @@ TEST_CASE("a card of 2, 8 or 16 channels and no other takes 16 for nine")
 
 TEST_CASE("channels beyond the stream's are silent, whatever was in their memory")
 {
-    test::fake_dac dac({.least_channels = 16, .most_channels = 16});
+    bool planar = false;
+    SUBCASE("interleaved")
+    {
+    }
+    SUBCASE("planar")
+    {
+        planar = true;
+    }
+    test::fake_dac dac({.least_channels = 16, .most_channels = 16, .planar = planar});
     alsa_options o{.channels = 3, .wider = true, .format = format_kind::s16};
     const auto s = alsa::adopt(dac.pcm(), o);
     REQUIRE(s->prepare() == io_kind::ok);
@@ -225,6 +233,30 @@ TEST_CASE("channels beyond the stream's are silent, whatever was in their memory
         std::memcpy(sample, &got[f * 32], 32);
         for (std::size_t c = 0; c < 16; ++c)
             REQUIRE(sample[c] == (c < 3 ? static_cast<int>(3 * f + c + 1) : 0));
+    }
+}
+
+TEST_CASE("a planar card gets each sample of each format")
+{
+    using pair = std::pair<format_kind, snd_pcm_format_t>;
+    for (const auto& [format, its] :
+         {pair(format_kind::s16, SND_PCM_FORMAT_S16_LE), pair(format_kind::s24_3, SND_PCM_FORMAT_S24_3LE),
+          pair(format_kind::s32, SND_PCM_FORMAT_S32_LE),
+          pair(format_kind::float32, SND_PCM_FORMAT_FLOAT_LE)}) {
+        CAPTURE(to_string(format));
+        test::fake_dac dac({.formats = {its}, .planar = true});
+        const auto s = alsa::adopt(dac.pcm(), {.channels = 9, .format = format});
+        CHECK(s->setup().planar);
+        REQUIRE(s->prepare() == io_kind::ok);
+        std::vector<std::byte> frames(s->setup().buffer_frames * s->setup().frame_bytes());
+        for (std::size_t i = 0; i < frames.size(); ++i)
+            frames[i] = static_cast<std::byte>(i * 7 % 251);
+        const std::span<const std::byte> all = frames;
+        const std::size_t first = 101 * s->setup().frame_bytes();
+        REQUIRE(s->write(all.first(first)).frames == 101);
+        REQUIRE(s->start() == io_kind::ok);
+        REQUIRE(s->write(all.subspan(first)).status == io_kind::ok);
+        CHECK(dac.captured() == frames);
     }
 }
 
