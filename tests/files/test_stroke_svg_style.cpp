@@ -208,6 +208,64 @@ TEST_CASE("of a switch its first child plays")
           list{"a"});
 }
 
+TEST_CASE("a switch follows the conditions of its children")
+{
+    const std::string other = "<line id='b' x2='2'/>";
+    const auto of = [&](const std::string& conditions) {
+        return names(strokes("<switch><line id='a' x2='1' " + conditions + "/>" + other + "</switch>"));
+    };
+    CHECK(of("") == list{"a"});
+    CHECK(of("requiredExtensions='http://example.org/x'") == list{"b"});
+    CHECK(of("systemLanguage='de'") == list{"b"});
+    CHECK(names(strokes("<switch><line id='a' x2='1' systemLanguage='de'/>"
+                        "<line id='b' x2='2' systemLanguage='en'/></switch>")) == list{"a"});
+    CHECK(warned("<switch><line x2='1' systemLanguage='de'/>" + other + "</switch>") ==
+          "d.svg:1:15: systemLanguage of <line> is not followed: a <switch> plays its first shape without "
+          "one\n");
+    // Outside a switch as well, what needs an extension is not drawn.
+    CHECK(names(strokes("<line x2='1' requiredExtensions='x'/>" + other)) == list{"b"});
+}
+
+TEST_CASE("a shape that a browser shows nothing of plays, and is warned of")
+{
+    for (const char* clear :
+         {"stroke='none'", "stroke='#00000000'", "stroke='#0000'", "stroke='rgba(0, 0, 0, 0)'",
+          "stroke='rgb(0 0 0 / 0%)'", "stroke='#000' stroke-opacity='0'", "stroke='#000' stroke-width='0'",
+          "style='stroke:#000;stroke-width:0px'", "stroke='#000' opacity='0'"}) {
+        CAPTURE(clear);
+        CHECK(warned(std::string("<line x2='1' fill='none' ") + clear + "/>") ==
+              "d.svg:1:7: <line> has neither fill nor stroke, or no opacity: it plays all the same\n");
+    }
+    for (const char* shown :
+         {"stroke='#000'", "stroke='#00000080'", "stroke='#0008'", "stroke='rgba(0, 0, 0, 0.5)'",
+          "stroke='rgb(0, 0, 0)'", "stroke='url(#x)'", "stroke='#000' stroke-opacity='0.1'",
+          "stroke='#000' fill-opacity='0'", "stroke='#000' stroke-width='0.1'"}) {
+        CAPTURE(shown);
+        CHECK(warned(std::string("<line x2='1' fill='none' ") + shown + "/>").empty());
+    }
+    // Inherited, and set anew inside.
+    CHECK(warned("<g stroke='#000' stroke-opacity='0'><line x2='1' fill='none'/></g>") != "");
+    CHECK(warned("<g stroke='#000' stroke-opacity='0'><line x2='1' fill='none' stroke-opacity='1'/></g>")
+              .empty());
+}
+
+TEST_CASE("rules of another file are not read, which is warned of")
+{
+    const std::string end = " names another file, which is not read: what its rules hide or move plays as if "
+                            "they were not there (put the rules into the drawing)\n";
+    const std::string line = "<line class='guide' x2='1' stroke='#000'/>";
+    CHECK(warned("<style>@import \"hide.css\";</style>" + line) == "d.svg:1:7: @import" + end);
+    CHECK(warned("<style>@IMPORT url(hide.css); .x { stroke: red }</style>" + line) ==
+          "d.svg:1:7: @import" + end);
+    // A rule behind it is still understood.
+    CHECK(names(strokes("<style>@import 'x.css'; .guide {display:none}</style>" + line +
+                        "<line id='b' x2='2'/>")) == list{"b"});
+    const auto s = parse_strokes_svg(
+        "<?xml-stylesheet type='text/css' href='hide.css'?><svg>" + line + "</svg>", "d.svg");
+    REQUIRE(s.front().warnings.size() == 1);
+    CHECK(s.front().warnings.front() + "\n" == "d.svg:1:3: <?xml-stylesheet?>" + end);
+}
+
 TEST_CASE("rules and styles that do not end, end")
 {
     for (const char* css : {"{", "}", "a{", "a{display", "@", "@media{", "/*", "a{fill:none", "a{b:\"",

@@ -301,7 +301,8 @@ std::string_view svg_style::value(std::string_view property) const
 svg_document::svg_document(std::string_view text, const std::string& name)
     : text_(without_mark(text)), name_(name), buffer_(text_)
 {
-    const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
+    const pugi::xml_parse_result r =
+        tree_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default | pugi::parse_pi);
     if (r.status == pugi::status_out_of_memory)
         throw std::bad_alloc();
     if (!r) {
@@ -312,6 +313,8 @@ svg_document::svg_document(std::string_view text, const std::string& name)
     }
     if (svg_tag(root()) != "svg")
         fail(root(), fmt::format("{} is not <svg>", called(root())), "is it an SVG file?");
+    for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
+        note_other_file(n, "<?xml-stylesheet?>");
     // A search that finds nothing visits all, and not by recursion. Of two with one id the first counts.
     tree_.find_node([this](pugi::xml_node n) {
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
@@ -419,6 +422,12 @@ void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std:
          ": what it hides or moves plays as if it were not there");
 }
 
+void svg_document::note_other_file(pugi::xml_node n, std::string_view what) const
+{
+    note(offset(n), "stylesheet", fmt::format("{} names another file, which is not read", what), ", as do",
+         ": what its rules hide or move plays as if they were not there (put the rules into the drawing)");
+}
+
 // Rules are nearly always paint, which does not decide what plays; Illustrator hides layers by their class.
 // Refuses other selectors that hide: it is not known what, and that must not play.
 void svg_document::note_rules(pugi::xml_node style)
@@ -426,8 +435,11 @@ void svg_document::note_rules(pugi::xml_node style)
     has_rules_ = true;
     for (const pugi::xml_node c : style.children()) {
         std::string_view css = c.value();
+        if (in_small_letters(std::string(css)).find("@import") != css.npos)
+            note_other_file(style, "@import");
         for (std::size_t open = css.find('{'); open != css.npos; open = css.find('{')) {
-            const std::string_view selectors = css.substr(0, open);
+            const std::string_view before = css.substr(0, open);
+            const std::string_view selectors = before.substr(before.rfind(';') + 1);
             const std::size_t close = std::min(css.find('}', open), css.size() - 1);
             for_each_declaration(
                 css.substr(open + 1, close - open), [&](std::size_t property, std::string_view v) {

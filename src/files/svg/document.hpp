@@ -52,19 +52,20 @@ struct left_out {
 };
 
 /// Properties that decide what plays and where, or what a browser shows.
-inline constexpr std::array<std::string_view, 27> svg_properties{
+inline constexpr std::array<std::string_view, 30> svg_properties{
     // Followed:
-    "fill", "stroke", "opacity", "display", "visibility", "transform",
+    "fill", "stroke", "opacity", "fill-opacity", "stroke-opacity", "stroke-width", "display", "visibility",
+    "transform",
     // Not followed:
     "transform-origin", "transform-box", "clip-path", "mask", "filter",
     // Not followed in styles; attributes of these names are geometry, or mean nothing:
     "-webkit-transform", "translate", "rotate", "scale", "animation", "animation-name", "width", "height",
     "x", "y", "cx", "cy", "r", "rx", "ry", "d"};
-inline constexpr std::size_t svg_paints = 3;      ///< those before only paint
-inline constexpr std::size_t svg_display = 3;     ///< "display"
-inline constexpr std::size_t svg_visibility = 4;  ///< "visibility"
-inline constexpr std::size_t svg_followed = 6;    ///< those before are followed
-inline constexpr std::size_t svg_attributes = 11; ///< those before are presentation attributes
+inline constexpr std::size_t svg_paints = 6;      ///< those before only paint
+inline constexpr std::size_t svg_display = 6;     ///< "display"
+inline constexpr std::size_t svg_visibility = 7;  ///< "visibility"
+inline constexpr std::size_t svg_followed = 9;    ///< those before are followed
+inline constexpr std::size_t svg_attributes = 14; ///< those before are presentation attributes
 
 /// The svg_properties of one element: of its attributes, and of its own style, which wins.
 class svg_style {
@@ -155,6 +156,7 @@ private:
     source_place place(std::optional<std::size_t> offset) const;
     left_out fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
     void note_rules(pugi::xml_node style);
+    void note_other_file(pugi::xml_node n, std::string_view what) const;
     /// Keeps the classes of ".st0, .st1" as hidden. Returns false for selectors that are not only classes.
     bool add_hidden(std::string_view selectors);
 

@@ -52,14 +52,44 @@ struct scope {
     bool filled = true;
     bool outlined = false;
     bool clear = false; ///< an opacity of 0, of its own or round it
-    unsigned depth = 0; ///< elements round this one
+    bool fill_clear = false;
+    bool stroke_clear = false;
+    bool stroke_thin = false; ///< a stroke-width of 0
+    unsigned depth = 0;       ///< elements round this one
 
-    bool is_painted() const noexcept { return (filled || outlined) && !clear; }
+    bool is_painted() const noexcept
+    {
+        return ((filled && !fill_clear) || (outlined && !stroke_clear && !stroke_thin)) && !clear;
+    }
 };
 
 bool is_one(std::string_view word, std::initializer_list<std::string_view> words)
 {
     return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// Reads a number with any unit, such as an opacity.
+bool is_zero(std::string_view text)
+{
+    std::size_t at = 0;
+    const auto v = detail::scan_number(text, at);
+    return v && *v <= 0.0;
+}
+
+// Returns true for "none" and for colours whose alpha is 0: #rgb0, #rrggbb00, rgba(r, g, b, 0), rgb(r g b /
+// 0).
+bool is_clear_paint(std::string_view text)
+{
+    if (text.starts_with('#'))
+        return (text.size() == 5 && text.back() == '0') || (text.size() == 9 && text.ends_with("00"));
+    const std::size_t open = text.find('(');
+    if (open == text.npos || text.starts_with("url"))
+        return text == "none" || text == "transparent";
+    const std::size_t slash = text.rfind('/');
+    const std::size_t alpha = slash != text.npos                               ? slash
+                              : std::count(text.begin(), text.end(), ',') == 3 ? text.rfind(',')
+                                                                               : text.npos;
+    return alpha != text.npos && is_zero(detail::without_blanks(text.substr(alpha + 1)));
 }
 
 bool draws(xml_node n)
@@ -160,13 +190,30 @@ private:
 
     void children(xml_node n, const scope& s)
     {
+        const bool one = svg_tag(n) == "switch";
+        const xml_node chosen = one ? choose(n) : xml_node();
+        for (const xml_node c : n.children())
+            if (c.type() == pugi::node_element && (!one || c == chosen || !draws(c)))
+                visit(c, s);
+    }
+
+    // Returns the child of a <switch> that plays: the first one without conditions. If each has a language,
+    // the first one.
+    xml_node choose(xml_node n) const
+    {
+        xml_node first;
         for (const xml_node c : n.children()) {
-            if (c.type() != pugi::node_element)
+            if (c.type() != pugi::node_element || !draws(c) || c.attribute("requiredExtensions"))
                 continue;
-            visit(c, s);
-            if (svg_tag(n) == "switch" && draws(c))
-                return;
+            if (!c.attribute("systemLanguage"))
+                return c;
+            doc_.note(doc_.offset(c), "systemLanguage",
+                      fmt::format("systemLanguage of {} is not followed", doc_.called(c)), ", nor of",
+                      ": a <switch> plays its first shape without one");
+            if (!first)
+                first = c;
         }
+        return first;
     }
 
     void visit(xml_node n, const scope& s)
@@ -189,7 +236,8 @@ private:
             return note_no_shape(n);
         const std::string_view tag = svg_tag(n);
         const svg_style style(n);
-        if (is_hidden(n, style))
+        // A browser does not show what needs an extension.
+        if (is_hidden(n, style) || n.attribute("requiredExtensions"))
             return note_hidden(n);
         note_unfollowed(n, style);
         inherit(n, style, s);
@@ -276,12 +324,17 @@ private:
             if (!s.visible && !is_one(visibility, {"hidden", "collapse"}))
                 note_unknown(n, "visibility", visibility);
         }
-        std::size_t at = 0;
-        const auto opacity = detail::scan_number(style.value("opacity"), at);
-        s.clear = s.clear || opacity.value_or(1.0) <= 0.0;
-        for (const auto& [paint, painted] : {std::pair("fill", &s.filled), {"stroke", &s.outlined}})
-            if (const auto text = style.value(paint); !is_one(text, {"", "inherit"}))
-                *painted = text != "none" && text != "transparent";
+        s.clear = s.clear || is_zero(style.value("opacity"));
+        const auto set = [&style](const char* property, bool& to, bool (*is)(std::string_view)) {
+            if (const auto text = style.value(property); !is_one(text, {"", "inherit"}))
+                to = is(text);
+        };
+        const auto paints = [](std::string_view text) { return !is_clear_paint(text); };
+        set("fill", s.filled, paints);
+        set("stroke", s.outlined, paints);
+        set("fill-opacity", s.fill_clear, is_zero);
+        set("stroke-opacity", s.stroke_clear, is_zero);
+        set("stroke-width", s.stroke_thin, is_zero);
         if (const auto v = doc_.number(n, "data-speed-mm-s", 1e-6, detail::max_mm))
             s.speed_mm_s = v;
         if (const auto v = doc_.number(n, "data-intensity", 0.0, detail::max_intensity))
