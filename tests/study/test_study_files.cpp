@@ -260,7 +260,9 @@ TEST_CASE("a line fills the existing columns, and ends like the others")
     CHECK(added("a\n", "NA") == "\"NA\"\n");
     CHECK(added("a\n", "\"x\"") == "\"\"\"x\"\"\"\n");
     CHECK(added("a\n", "x\ty") == "\"x\ty\"\n");
-    CHECK(added("a\n", "x \"y\"") == "x \"y\"\n");
+    // R takes a mark anywhere for the begin of a text, and loses the rows until the next one.
+    CHECK(added("a\n", "6\" tall") == "\"6\"\" tall\"\n");
+    CHECK(added("a\n", "it's") == "\"it's\"\n");
 }
 
 TEST_CASE("cells change in their place")

@@ -74,10 +74,10 @@ std::vector<table_line> split_table(std::string_view text, std::size_t from)
     return lines;
 }
 
-// Writes a cell in quotes where it would be read as another.
+// Writes a cell in quotes if it would be read as another: R takes any quotation mark for the begin of a text.
 std::string written_cell(std::string_view text)
 {
-    if (text != "NA" && !text.starts_with('"') && text.find_first_of(ends) == text.npos)
+    if (text != "NA" && text.find_first_of("\t\r\n\"'") == text.npos)
         return std::string(text);
     std::string q = "\"";
     for (const char c : text)
