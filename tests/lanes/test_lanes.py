@@ -68,6 +68,16 @@ class Lanes(ToolTest):
         for wanted in re.findall(r"^    lane \S+ \d+ (\S+)", table, re.M):
             self.assertLessEqual(set(wanted.split(",")) - {"-"}, purposes)
 
+    def test_a_lane_without_its_package_says_why(self):
+        for name in ("node", "npm"):
+            self.write(f"bin/{name}", "#!/bin/sh\n").chmod(0o755)
+        for status, why in ((124, "npm did not answer within 180 s"), (1, "npm refused p 1")):
+            self.write("bin/timeout", f"#!/bin/sh\nexit {status}\n").chmod(0o755)
+            ends = said("sh", "-euc", "lane=some; build=$1; . tests/lanes/say; . tests/lanes/from-npm; from_npm p 1", "sh", str(self.dir), cwd=ROOT,
+                        env=os.environ | {"PATH": f"{self.dir}/bin:{os.environ['PATH']}", "XDG_CACHE_HOME": str(self.dir)})
+            self.assertIn(f"SKIPPED: some: {why}", ends)
+            self.assertTrue(ends.endswith("0 passed, 0 failed, 1 skipped\n"), ends)
+
     def test_fuzzers_have_targets_and_seeds(self):
         names = {f.stem for f in FUZZ.glob("*.cpp") if "LLVMFuzzerTestOneInput" in f.read_text(encoding="utf-8")}
         lane = (ROOT / "tests/lanes/fuzz").read_text(encoding="utf-8")
