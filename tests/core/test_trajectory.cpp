@@ -260,7 +260,7 @@ TEST_CASE("places at hand are within 1e-9 mm of those that are computed, at cusp
     all.emplace_back("M 0 0 A 30 0.01 0 1 1 40 0");
     all.emplace_back("M 0 0 A 20 20 0 1 1 10 0");
     std::mt19937_64 random(43);
-    for (int i = 0; i < test::rounds(100); ++i)
+    for (int i = 0; i < test::rounds(16, 100); ++i)
         all.push_back(test::random_path(random, 5));
     std::size_t at_hand = 0;
     for (const std::string& data : all) {
