@@ -29,7 +29,7 @@ class Block:
 def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
     for kind, pattern in (("c++", r"^#include"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
-                          ("drawing", r"-->"), ("runner", r"PsychPortAudio|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
+                          ("drawing", r"-->"), ("runner", r"PsychPortAudio|TcpClient|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):
             return kind
@@ -197,6 +197,7 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
 }
 # Files that documents name and that are in the sources.
 FILES = {
+    "man/guide/questions.md": {"left.wav": "examples/strokes/comb.wav", "right.wav": "examples/strokes/comb.wav"},
     "man/guide/study.md": {"felt.toml": "examples/arrays/palm-measured.toml"},
     "man/tactor-check.1": {"palm.toml": "examples/arrays/palm-measured.toml"},
     "man/tactor-options.7": {"palm.toml": "examples/arrays/palm-measured.toml"},
