@@ -62,6 +62,13 @@ TACTOR_KIND(scale_kind);
 enum class phase_kind { stroke, burst };
 TACTOR_KIND(phase_kind);
 
+/// Treatment of a score whose strokes, or bursts, together exceed the level asked for on a tactor.
+enum class together_kind {
+    weaken, ///< the whole score is weakened by the one factor that brings its loudest tactor to that level
+    sum,    ///< they add up, to the tactor's max_dbfs and full scale
+};
+TACTOR_KIND(together_kind);
+
 /// Model of the person who feels a plan.
 enum class observer_kind {
     centroid,  ///< feels the centre of energy of the tactors that sound

@@ -64,6 +64,16 @@ struct render_options {
     std::optional<unsigned> marker_channel = {};
     double marker_s = 0.005; ///< above 0, at most 10 s
     burst_envelope envelope = {};
+    /// Treatment of strokes that meet on a tactor.
+    together_kind together = together_kind::weaken;
+};
+
+/// Weakening of a score by together_kind::weaken, and the place where it would be loudest.
+struct weakening {
+    double weakened_db = 0.0; ///< added to the level of all of it, 0 or less; 0: all else says nothing
+    unsigned tactor = 0;
+    double at_s = 0.0;                   ///< from the start of the score
+    std::vector<std::size_t> plans = {}; ///< those that sound there, by number, ascending
 };
 
 /// Returns the ramp of a burst (or of a continuous stroke, whose onset is 0) in s: o.ramp_s, or the default.
@@ -93,7 +103,8 @@ struct placed_plan {
 /// copy, so a moved-from score keeps its value.
 class TACTOR_API score {
 public:
-    /// Makes a score of several plans.
+    /// Makes a score of several plans. The level asked for is the most that any tactor reaches, before its
+    /// gain_db and the boost for its rise_s: by default a score that would exceed it is weakened as a whole.
     /// \throws error (bad_input) for a carrier at or above half the rate, for a level above full scale or a
     ///         tactor's max_dbfs (with its line in the array file), for a sensation level on a tactor
     ///         without a threshold, and for too few channels.
@@ -111,6 +122,8 @@ public:
     [[nodiscard]] unsigned rate() const noexcept; ///< Hz
     /// Returns the start of each plan in frames.
     [[nodiscard]] const std::vector<std::uint64_t>& starts() const noexcept;
+    /// Returns how much weaker than asked for the score is, so that no tactor exceeds the level.
+    [[nodiscard]] const weakening& weakened() const noexcept;
     /// Returns the plans without their bursts: the score stores those in another form.
     [[nodiscard]] const std::vector<placed_plan>& plans() const noexcept;
 

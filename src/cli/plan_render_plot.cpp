@@ -87,11 +87,13 @@ void print_one(const std::string& title, const stroke& s, const plan& p, double 
 }
 
 // Both write as they go: a plan of an hour needs no document in memory.
-void print_text(const piece& p, const environment& e, const render_options& sound)
+void print_text(const piece& p, const environment& e, const render_options& sound, const weakening& weakened)
 {
     const auto starts = start_times_s(p.plans);
     if (p.fit)
         say(stdout, "{}", fit_note(*p.fit));
+    if (const std::string text = session::weakening_text(weakened, p.plans.size()); !text.empty())
+        say(stdout, "{}\n", spelled(text));
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print("\n");
@@ -129,9 +131,10 @@ void print_plan(settings& s, const std::string& format)
         });
     else if (format == "csv") {
         say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
+        warn_of_weakening(shown_name(p.name), samples.weakened(), p.plans.size());
         print_csv(p, e);
     } else
-        print_text(p, e, sound);
+        print_text(p, e, sound, samples.weakened());
 }
 
 // Returns true for a file that may be replaced: an empty one, or a WAV file.
@@ -179,6 +182,7 @@ int render(settings& s, const std::string& name)
     const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);
     say_warnings(collect_warnings(sc.plans()));
+    warn_of_weakening(shown_name(p.name), sc.weakened(), sc.plans().size());
     session::tell_of_other_carrier(e, how, std::span(&sc, 1));
     session::tell_of_pipe_to_write(file.string());
     session::interrupt stop;
@@ -221,6 +225,8 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     session::tell_of_pipe_to_write(o.file);
     plot::save(picture, o.file, o.dpi, o.force);
     say_warnings(collect_warnings(q.plans));
+    if (sound)
+        warn_of_weakening(shown_name(q.name), sound->weakened(), q.plans.size());
     say(stdout, "{}: {:.4g} x {:.4g} mm\n", o.file, picture.width / plot::pt_per_mm,
         picture.height / plot::pt_per_mm);
     return status_ok;

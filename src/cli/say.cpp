@@ -10,6 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "cli/settings.hpp"
+#include "session/piece.hpp"
+
 namespace tactor::cli {
 
 namespace {
@@ -48,6 +51,12 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
     for (const placed_plan& p : plans)
         all.insert(all.end(), p.plan.warnings.begin(), p.plan.warnings.end());
     return all;
+}
+
+void warn_of_weakening(const std::string& name, const weakening& w, std::size_t strokes)
+{
+    if (const std::string text = session::weakening_text(w, strokes); !text.empty())
+        say(stderr, "tactor: warning: {}: {}\n", name, spelled(text));
 }
 
 progress_line::~progress_line()

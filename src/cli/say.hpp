@@ -33,6 +33,9 @@ void say_warnings(std::span<const std::string> warnings);
 /// Returns the warnings of all plans, in order.
 std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);
 
+/// Warns of a score of a STROKE that is weaker than asked for.
+void warn_of_weakening(const std::string& name, const weakening& w, std::size_t strokes);
+
 /// A line on standard error that counts up in per cent. It needs a terminal, begins after half a second, and
 /// leaves nothing behind.
 class progress_line {

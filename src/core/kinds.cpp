@@ -39,6 +39,7 @@ TACTOR_KIND_NAMES(outside_kind, "outside", {error, "error"}, {clamp, "clamp"});
 TACTOR_KIND_NAMES(overlap_kind, "overlap", {energy, "energy"}, {max, "max"}, {sum, "sum"});
 TACTOR_KIND_NAMES(scale_kind, "intensity scale", {linear, "linear"}, {sl, "sl"}, {stevens, "stevens"});
 TACTOR_KIND_NAMES(phase_kind, "phase", {stroke, "stroke"}, {burst, "burst"});
+TACTOR_KIND_NAMES(together_kind, "together", {weaken, "weaken"}, {sum, "sum"});
 TACTOR_KIND_NAMES(observer_kind, "observer", {centroid, "centroid"}, {low_speed, "low-speed"});
 TACTOR_KIND_NAMES(start_from_kind, "start_from", {piece, "piece"}, {start, "start"}, {end, "end"});
 

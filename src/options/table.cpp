@@ -85,6 +85,8 @@ constexpr std::uint64_t planned = drawing | in_defaults | by_client | in_python 
 // Places of what makes the sound of bursts.
 constexpr std::uint64_t heard =
     sounding | in_defaults | by_client | live | in_plan | in_score | in_method | unstated;
+// The same of what concerns strokes that are planned ahead.
+constexpr std::uint64_t heard_together = heard & ~(live | std::uint64_t{on_check});
 
 constexpr auto low_speed_choices = [] { return std::vector<std::string_view>{"none", "low-speed"}; };
 
@@ -353,6 +355,10 @@ constexpr std::array table{
            .help = "level above each tactor's threshold, in place of dBFS",
            .where = heard | on_compare | in_compare, .rival = "level_dbfs",
            .to = reach([](auto& w) -> auto& { return w.render.sl_db; })},
+    option{.name = "together", .what = kind::choice, .choices = detail::kind_names<together_kind>, .in = group::level,
+           .help = "strokes that meet on a tactor: weaken all so that none is above the level, or let them add up (default weaken)",
+           .where = heard_together,
+           .to = reach([](auto& w) -> auto& { return w.render.together; })},
     option{.name = "intensity_scale", .what = kind::choice, .choices = detail::kind_names<scale_kind>, .in = group::level,
            .help = "scale of intensities: amplitude (default), dB of {sl}, or felt strength",
            .where = planned | on_check | live | in_method | unstated,

@@ -254,6 +254,7 @@ void check_alike(const render_options& a, const render_options& b)
     check("attack", a.envelope.attack_s, b.envelope.attack_s, value_text);
     check("release", a.envelope.release_s, b.envelope.release_s, value_text);
     check("envelope", a.envelope, b.envelope, envelope_text);
+    check("together", a.together, b.together, [](together_kind k) { return std::string(to_string(k)); });
     if (a.sl_db.has_value() != b.sl_db.has_value())
         refuse_different("sl", value_text(a.sl_db), value_text(b.sl_db));
     if (a.marker_channel && b.marker_channel)
@@ -290,7 +291,7 @@ py::tuple recipe(const render_options& o)
 {
     return py::make_tuple(o.rate, o.phase, o.ramp_s, envelope_text(o.envelope), o.envelope.attack_s,
                           o.envelope.release_s, o.channels, o.marker_channel, o.marker_s, o.limits,
-                          o.sl_db.has_value());
+                          o.sl_db.has_value(), o.together);
 }
 
 // Returns all that decides how the plan sounds by itself, as values that Python compares and hashes.
@@ -394,6 +395,15 @@ void bind_score(py::module_& m)
         .def_property_readonly("channels", &score::channels)
         .def_property_readonly("rate", &score::rate)
         .def_property_readonly("starts", &score::starts)
+        .def_property_readonly("weakened_db", [](const score& s) { return s.weakened().weakened_db; })
+        .def_property_readonly("meets",
+                               [](const score& s) -> py::object {
+                                   const weakening& w = s.weakened();
+                                   if (!(w.weakened_db < 0.0))
+                                       return py::none();
+                                   return py::dict("tactor"_a = w.tactor, "at"_a = w.at_s,
+                                                   "plans"_a = w.plans);
+                               })
         .def("write", &write);
     py::class_<block_renderer>(m, "Renderer")
         .def(py::init<const score&, format_kind>())

@@ -200,14 +200,14 @@ double highest_level(const planning& with, const options::wishes& s, double carr
     return level;
 }
 
-// Returns how much weaker plans must be so that they can be played, dB; 0: not at all. \throws error for what
-// no level mends.
-double find_excess_db(const planning& with, const planned& p)
+// Returns how much weaker plans must be so that they can be played, dB; 0: not at all. Notes how much weaker
+// than asked for they are then. \throws error for what no level mends.
+double find_excess_db(const planning& with, planned& p)
 {
     const auto try_to_play = [&](double weaker_db) {
         render_options weaker = p.render;
         (weaker.sl_db ? *weaker.sl_db : weaker.level_dbfs) -= weaker_db;
-        static_cast<void>(score(with.tactors, p.plans, weaker));
+        p.weakened = score(with.tactors, p.plans, weaker).weakened();
     };
     const auto can_play = [&](double weaker_db) {
         try {
@@ -382,7 +382,10 @@ double planned::count_bursts() const
 
 score planned::make_score(const array& a, std::size_t i) const
 {
-    score_builder made(a, render);
+    render_options alone = render;
+    alone.together = together_kind::sum;
+    (alone.sl_db ? *alone.sl_db : alone.level_dbfs) += weakened.weakened_db;
+    score_builder made(a, alone);
     const double round_s = total_s();
     for (std::uint64_t k = 0; k < rounds; ++k)
         made.add(plans[i].plan, static_cast<double>(k) * round_s);
@@ -412,7 +415,14 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
     if (picture)
         p.over_db = std::max(p.over_db, find_excess_db(with, p));
     else
-        static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+        p.weakened = score(with.tactors, p.plans, p.render).weakened(); // checks levels and carriers
+}
+
+void add_weakening(reply_json& to, const weakening& w)
+{
+    to["weakened_db"] = w.weakened_db;
+    if (w.weakened_db < 0.0)
+        to["meets"] = {{"tactor", w.tactor}, {"at_s", w.at_s}, {"strokes", w.plans}};
 }
 
 planned make_planned(const planning& with, const layout& faces, const json& params, const options::wishes& s,

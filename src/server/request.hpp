@@ -67,11 +67,12 @@ struct planned : session::piece {
     std::uint64_t rounds = 1; ///< how often one submission plays them, each total_s() after the last
     detail::observer_choice observer = {}; ///< of the view percept
     double over_db = 0.0;                  ///< of a view: how much weaker it must be to be played
+    weakening weakened = {};               ///< of all plans together
 
     std::vector<std::string> warnings() const;
     /// Returns the bursts of one round; a continuous stroke counts as one.
     double count_bursts() const;
-    /// Returns the score of all rounds of a plan alone, to be submitted by itself.
+    /// Returns the score of all rounds of a plan alone, to be submitted by itself, as weak as all together.
     score make_score(const array& a, std::size_t i) const;
 };
 
@@ -101,6 +102,9 @@ using go_on_check = std::function<void()>;
 /// owner's; error.
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
                   const std::string& source, const go_on_check& go_on, bool picture = false);
+
+/// Adds to an answer how much weaker than asked for strokes are, and where they meet.
+void add_weakening(net::reply_json& to, const weakening& w);
 
 /// Reads and plans. `s`: what settle_options() returned for these parameters. \throws fault_error, and what
 /// `go_on` throws.

@@ -222,9 +222,10 @@ void service::submit_all(const plan_job& job)
     auto warnings = p.warnings();
     for (std::string& w : warnings)
         w = net::cut_echo(w);
-    job.to.result(
-        {{"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}},
-        numbers);
+    net::reply_json answer{
+        {"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}};
+    add_weakening(answer, p.weakened);
+    job.to.result(answer, numbers);
 }
 
 } // namespace tactor::server

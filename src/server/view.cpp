@@ -301,6 +301,7 @@ std::string view_text(const planned& p, const array& a, const view_choice& v, st
     head["warnings"] = reply_json::array();
     for (const std::string& w : p.warnings())
         head["warnings"].push_back(net::cut_echo(w));
+    add_weakening(head, p.weakened);
     constexpr double level_parts = 100.0;
     if (const double over_db = rounded(p.over_db, level_parts); over_db > 0.0)
         head["warnings"].push_back({{"kind", "level"}, {"over_db", over_db}});

@@ -5,6 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+
 namespace tactor::session {
 namespace {
 
@@ -73,6 +77,23 @@ void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, c
     }
     p.moved.push_back(make_compensated_plan(a, faces, k, o.plan, o.low_speed));
     p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
+}
+
+std::string weakening_text(const weakening& w, std::size_t strokes)
+{
+    if (!(w.weakened_db < 0.0))
+        return "";
+    std::string who = "it exceeds the level";
+    if (w.plans.size() == 1 && strokes > 1)
+        who = fmt::format("stroke {} exceeds the level", w.plans.front() + 1);
+    if (w.plans.size() > 1) {
+        who = fmt::format("strokes {}", w.plans.front() + 1);
+        for (std::size_t i = 1; i < w.plans.size(); ++i)
+            who += fmt::format("{}{}", i + 1 < w.plans.size() ? ", " : " and ", w.plans[i] + 1);
+        who += " meet";
+    }
+    return fmt::format("weakened by {:.2f} dB: {} on tactor {} at {} ({{together=sum}} lets them add up)",
+                       -w.weakened_db, who, w.tactor, seconds_text(w.at_s));
 }
 
 } // namespace tactor::session

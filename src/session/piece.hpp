@@ -29,4 +29,8 @@ void place_strokes(piece& p, const layout& faces, const options::wishes& o);
 /// Plans stroke i of a piece, which has plans of those before. \throws error (bad_input).
 void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, const options::wishes& o);
 
+/// Returns how much weaker than asked for a score of so many strokes is, and where they meet, with marks;
+/// empty: it is as strong as asked for.
+std::string weakening_text(const weakening& w, std::size_t strokes);
+
 } // namespace tactor::session

@@ -97,6 +97,18 @@ class DryRun(ExperimentTest):
                     self.assertEqual(row[key], "n/a" if trial[key] is None else str(trial[key]))
                 self.assertAlmostEqual(float(row["duration"]), trial["duration_s"], 6)
 
+    def test_a_stimulus_whose_bursts_add_up_is_weakened_by_itself(self):
+        # Bursts of the Tactile Brush that follow each other share a tactor here: two halves of the energy, both 0.707, make 1.414.
+        small = self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nlevel = { dbfs = -20 }").replace("M20 0V40", "M10 0L40 30")
+                           .replace('algorithm = "tactile-brush"', 'algorithm = "tactile-brush"\noverlap = "sum"'))
+        weaker = {(s["motion"], s["method"]): s["weakened_db"] for s in self.dry(small)[0]["stimuli"]}
+        self.assertEqual([weaker["to the right", "brush"], weaker["to the right", "park"], weaker["down", "park"]], [0, 0, 0])
+        self.assertAlmostEqual(weaker["down", "brush"], -20 * math.log10(2 ** 0.5), 2)
+        self.assertIn("motion down by method brush: weakened by 3.01 dB", self.ok("experiment", small, "--dry-run").stdout)
+        self.simulate(definition=small)
+        self.assertEqual({(s["motion"], s["method"]): s["weakened_db"] for s in self.session()["stimuli"]}, weaker)
+        self.assertIn("down by brush: 3.01 dB weaker than the level, so that no tactor exceeds it", self.ok("report", "study").stdout)
+
     def test_random_rests_are_listed_and_recorded(self):
         told, _ = self.dry(self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nrest_s = [2, 4]")), "--participant", "01")
         self.assertEqual(told["rest_s"], [2, 4])

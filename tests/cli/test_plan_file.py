@@ -173,8 +173,9 @@ class PlanFile(ToolTest):
             return json.dumps(p)
 
         drive = "continuous.points.5.drives.0.amplitude"
-        # A custom model may exceed its intensity, as far as the channel goes.
+        # A custom model may exceed its intensity; where that adds up, as far as the channel goes.
         own = json.loads(changed(good, drive, 900.0)) | {"phantom": "own"}
+        own["render"]["together"] = "sum"
         for text in ("", "[]", "{\n  \"schema\": \"tactor-plan/1\",\n  \"algorithm\" }", '{"schema": "tactor-play/1"}', "[" * 100000,
                      changed(good, "continuous.points.700"), changed(good, "continuous.points.7.x_mm"), changed(bursts, "render.phase"),
                      changed(bursts, "array.tactors.2.channel"), changed(bursts, "bursts.3.intensity", "loud"),
@@ -188,6 +189,9 @@ class PlanFile(ToolTest):
                      json.dumps(bursts).replace('"total_s": ', '"total_s": 1e999, "x": ')):
             self.write("bad.json", text)
             self.refused(2, "render", "bad.json", "-o", "x.wav")
+        del own["render"]["together"]
+        self.write("own.json", json.dumps(own))
+        self.assertIn("own.json: weakened by 59.08 dB: it exceeds the level on tactor 0 at ", self.ok("render", "own.json", "-o", "own.wav").stderr)
         (self.dir / "folder.json").mkdir()
         for name in ("none.json", "folder.json", self.dir.name + ".json/"):
             self.refused(2, "render", name, "-o", "x.wav")

@@ -51,7 +51,7 @@ class Play(ToolTest):
         stroke = '[[stroke]]\npath = "M 0 10 L 1 10"\nduration_s = 1.0\nstart_s = 0.0\n'
         for strokes, cut in ((1, False), (20, True)):  # weak ones count together
             self.write("s.toml", stroke * strokes)
-            r = self.ok("play", "s.toml", *long[5:], "--level-dbfs", "-40.1", "--max-drive-s", "0.3", "--drive-window-s", "1")
+            r = self.ok("play", "s.toml", *long[5:], "--level-dbfs", "-40.1", "--together", "sum", "--max-drive-s", "0.3", "--drive-window-s", "1")
             self.assertEqual((json.loads(r.stdout)["counters"]["drives_cut"] > 0, "wait 0.7 s before the next stroke" in r.stderr), (cut, cut), r.stderr)
 
     def test_ctrl_c_fades_out_reports_and_exits_130(self):
@@ -98,6 +98,18 @@ class Play(ToolTest):
         counters = told["counters"]
         self.assertEqual((counters["xruns"], counters["xrun_s"], counters["reopened"]), (0, [], 0))
         self.assertGreaterEqual(counters["frames"], stroke["frames"])
+
+    def test_strokes_that_meet_are_reported_with_how_much_weaker_they_are(self):
+        self.write("two.toml", "".join(f'[[stroke]]\nstart_s = 0.0\npath = "{path}"\nduration_s = 0.56\n'
+                                       for path in ("M 0 20 H 40", "M 40 20 H 0")))
+        ran = self.ok("play", "two.toml", "park2016-1", "-D", "null", "--level-dbfs", "-30", "--format", "json")
+        self.assertIn("two.toml: weakened by 6.02 dB: strokes 1 and 2 meet on tactor 4 at 0.28 s (--together sum lets them add up)", ran.stderr)
+        two, alone = json.loads(ran.stdout)["strokes"]
+        self.assertAlmostEqual(two["weakened_db"], -6.0206, 3)
+        self.assertEqual(two["meets"]["strokes"], [0, 1])
+        self.assertEqual(alone["weakened_db"], 0)
+        self.assertNotIn("meets", alone)
+        self.assertIn("; weakened by 6.02 dB", self.ok("play", "two.toml", "-D", "null", "--level-dbfs", "-30").stdout)
 
     def test_counters_are_reported_where_asked_for_and_where_one_is_bad(self):
         quiet = self.ok("play", *self.SHORT, "-D", "null").stdout

@@ -45,6 +45,13 @@ class Remote(ServeTest):
                          [("park2016-1", "finished"), (str(stroke), "finished")])
         self.assertEqual(record["strokes"][1]["frames"], 9600)
         self.assertEqual((record["schema"], record["device"]["pcm"]), ("tactor-play/1", "null"))
+        self.write("meet.toml", "".join(f"[[stroke]]\nstart_s = 0.0\npath = '{path}'\nduration_s = 0.56\n" for path in ("M 0 20 H 40", "M 40 20 H 0")))
+        for where in ((), ("--socket", s.where["socket"])):
+            ran = self.ok("play", "meet.toml", "--format", "json", *where)
+            self.assertIn("meet.toml: weakened by 6.02 dB: strokes 1 and 2 meet on tactor 4 at 0.28 s (--together sum lets them add up)", ran.stderr)
+            met = json.loads(ran.stdout)["strokes"][0]
+            self.assertAlmostEqual(met["weakened_db"], -6.0206, 3)
+            self.assertEqual((met["meets"]["tactor"], met["meets"]["strokes"]), (4, [0, 1]))
 
     def test_bursts_are_moved_through_a_server(self):
         s = self.serve()

@@ -112,6 +112,55 @@ class Samples(RenderTest):
             self.assertLessEqual({round(b["ramp_s"], 9) for b in self.plan("park2016-1", *more)["bursts"]}, ramps)
 
 
+class Together(RenderTest):
+    def setUp(self):
+        super().setUp()
+        self.write("cross.toml", "".join(f'[[stroke]]\nstart_s = 0.0\npath = "{path}"\nduration_s = 1.4\n'
+                                         for path in ("M 0 20 H 40", "M 40 20 H 0", "M 20 0 V 40")))
+
+    def peaks_dbfs(self, *args):
+        peaks = [max(map(abs, channel)) for channel in zip(*self.rendered("cross.toml", *args).samples())]
+        return [20 * math.log10(p) if p else -math.inf for p in peaks]
+
+    def test_strokes_that_meet_are_no_louder_than_the_level(self):
+        for how in ((), ("--algorithm", "continuous")):
+            with self.subTest(how):
+                peaks = self.peaks_dbfs("--level-dbfs", "-40", *how)
+                self.assertAlmostEqual(max(peaks), -40, 2)
+                self.assertEqual(peaks.index(max(peaks)), 4)
+                as_is = self.peaks_dbfs("--level-dbfs", "-40", "--together", "sum", *how)
+                self.assertAlmostEqual(as_is[4], -40 + 20 * math.log10(3), 2)
+                for weak, strong in zip(peaks, as_is):
+                    self.assertTrue(weak == strong == -math.inf or abs(strong - weak - 20 * math.log10(3)) < 0.01)
+
+    def test_it_is_said_by_how_much_and_where(self):
+        said = "cross.toml: weakened by 9.54 dB: strokes 1, 2 and 3 meet on tactor 4 at 0.7 s (--together sum lets them add up)"
+        for args in (("render", "cross.toml", "-o", "o.wav"), ("plan", "cross.toml", "--format", "csv"),
+                     ("plot", "cross.toml", "--view", "wave", "-o", "o.svg")):
+            self.assertIn(said, self.ok(*args).stderr)
+        self.assertIn(said.partition(": ")[2], self.ok("plan", "cross.toml").stdout)
+        plans = self.plan("cross.toml")["plans"]
+        for plan in plans:
+            self.assertAlmostEqual(plan["weakened_db"], -20 * math.log10(3), 6)
+            self.assertEqual(plan["meets"], {"tactor": 4, "at_s": plan["meets"]["at_s"], "strokes": [0, 1, 2]})
+            self.assertAlmostEqual(plan["meets"]["at_s"], 0.7, 3)
+            self.assertAlmostEqual(plan["render"]["peak_dbfs"][4], -12 - 20 * math.log10(3), 6)
+        alone = self.plan("park2016-1")
+        self.assertEqual(alone["weakened_db"], 0)
+        self.assertNotIn("meets", alone)
+        self.assertEqual(self.ok("render", "park2016-1", "-o", "o.wav").stderr, "")
+        # Strokes that add up keep their sum in the plan, too.
+        self.write("sum.json", self.ok("plan", "cross.toml", "--together", "sum", "--level-dbfs", "-40", "--format", "json").stdout)
+        self.assertEqual([p["weakened_db"] for p in self.plan("sum.json")["plans"]], [0, 0, 0])
+        self.assertAlmostEqual(self.plan("sum.json", "--together", "weaken")["plans"][0]["weakened_db"], -20 * math.log10(3), 6)
+
+    def test_a_sum_is_held_to_the_limits(self):
+        self.write("limited.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -31\n')
+        self.refused(2, "render", "cross.toml", "--array", "limited.toml", "--level-dbfs", "-40", "--together", "sum", "-o", "o.wav",
+                     says=["limited.toml:3:1: tactor 4 would be driven at -30.46 dBFS"])
+        self.ok("render", "cross.toml", "--array", "limited.toml", "--level-dbfs", "-40", "-o", "o.wav")
+
+
 class Sound(RenderTest):
     def test_usual_values_have_the_same_bytes(self):
         plain = self.rendered("park2016-3").data

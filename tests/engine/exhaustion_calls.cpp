@@ -93,8 +93,8 @@ call_table value_calls(const call_things& t)
              from_no_name<actuator_kind, algorithm_kind, easing_kind, edge_kind, envelope_kind, error_kind,
                           faces_kind, format_kind, io_kind, log_kind, note_kind, observer_kind, outside_kind,
                           overlap_kind, phantom_kind, phase_kind, pull_kind, reason_kind, scale_kind,
-                          start_from_kind, start_kind, state_kind, texture_kind, timing_kind, wait_kind,
-                          waveform_kind>();
+                          start_from_kind, start_kind, state_kind, texture_kind, timing_kind, together_kind,
+                          wait_kind, waveform_kind>();
          }},
         {"build_facts", [] { return build_facts(); }},
         {"threshold_at", [&t] { return threshold_at(t.a.tactors.front(), 250.0); }},

@@ -117,7 +117,7 @@ TEST_CASE_TEMPLATE("every value of an enumeration has a name that leads back to 
                    algorithm_kind, easing_kind, edge_kind, envelope_kind, error_kind, faces_kind, format_kind,
                    io_kind, log_kind, note_kind, observer_kind, outside_kind, overlap_kind, phantom_kind,
                    phase_kind, pull_kind, reason_kind, scale_kind, start_from_kind, start_kind, state_kind,
-                   texture_kind, timing_kind, wait_kind, waveform_kind)
+                   texture_kind, timing_kind, together_kind, wait_kind, waveform_kind)
 {
     std::set<std::string> names;
     for (const Kind k : all_values<Kind>()) {

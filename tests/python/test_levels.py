@@ -49,6 +49,21 @@ def test_each_plan_keeps_its_level(palm, tap, how):
     assert all(np.array_equal(parts(loud)[0][:1000], part[:1000]) for part in parts(loud))
 
 
+@pytest.mark.parametrize("algorithm", ["park2016", "continuous"])
+def test_plans_that_meet_are_no_louder_than_the_level(palm, algorithm):
+    lines = [tactor.Stroke.along(tactor.Path.svg(d), duration=1.4) for d in ("M 0 20 H 40", "M 40 20 H 0", "M 20 0 V 40")]
+    plans = [(0.0, tactor.plan(palm, line, algorithm=algorithm, level_dbfs=-40)) for line in lines]
+    score, summed = tactor.Score(palm, plans), tactor.Score(palm, plans, together="sum")
+    assert np.abs(score.render()).max() == pytest.approx(0.01, rel=1e-3)
+    assert np.abs(summed.render()).max() == pytest.approx(0.03, rel=1e-3)
+    assert np.allclose(3 * score.render(), summed.render(), rtol=0, atol=1e-7)
+    assert score.weakened_db == pytest.approx(-20 * np.log10(3), abs=1e-4)
+    assert score.meets == {"tactor": 4, "at": pytest.approx(0.7, abs=0.05), "plans": [0, 1, 2]}
+    assert (summed.weakened_db, summed.meets) == (0, None) and score != summed
+    mixed = [plans[0], (0.0, tactor.plan(palm, lines[1], algorithm=algorithm, level_dbfs=-40, together="sum"))]
+    assert refused(lambda: tactor.Score(palm, mixed)).field == "together"
+
+
 def test_sensation_levels_are_kept(tap):
     palm = tactor.Array.preset("palm-3x3").replace(thresholds=[-40.0] * 9)
     quiet, loud = (tactor.plan(palm, tap, sl=sl) for sl in (7, 17))

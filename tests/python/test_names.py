@@ -19,7 +19,7 @@ HAS = {
     "Array.weights": "make_phantom",
     "plan": "make_plan make_compensated_plan outside_kind plan_options timing_kind timing_profile waveform waveform_kind texture_kind modulation scale_kind intensity_scale",
     "Meeting": "meeting", "Stroke.note": "note_kind", "compare": "observer_kind person low_speed_observer predict_taps tap tap_summary",
-    "Plan.compensation": "compensated_plan", "Plan.overlap": "overlap_kind",
+    "Plan.compensation": "compensated_plan", "Plan.overlap": "overlap_kind", "Score.weakened_db": "weakening together_kind",
     "parse": "parse_strokes parse_strokes_csv parse_strokes_svg parse_strokes_toml", "Path": "path", "PerceptSample": "percept_sample",
     "Plan.percept_summary": "percept_summary summarise", "Plan.phantom": "phantom_kind", "PhantomModel": "phantom_model", "Plan.start": "placed_plan",
     "Plan": "plan", "Player.position": "player_position", "Player.stats": "player_stats", "Point": "point",

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+
+#include <tactor/render.hpp>
 
 #include "options/option.hpp"
 #include "server/faults.hpp"
@@ -383,6 +389,50 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     CHECK_FALSE(plays(half("linear"))); // -12 dBFS
     CHECK_FALSE(plays(half("stevens")));
     CHECK(plays(half("sl"))); // -23 dBFS
+}
+
+TEST_CASE("strokes that meet are weakened, not refused, where only their meeting exceeds level or ceiling")
+{
+    planning with = palm();
+    for (tactor_spec& t : with.tactors.tactors)
+        t.max_dbfs = -12.0; // as the server limits all channels to the ceiling
+    const layout faces(with.tactors);
+    const auto peak_db = [&](const planned& p) { // of the middle tactor, all strokes together
+        std::vector<double> sum;
+        for (std::size_t i = 0; i < p.plans.size(); ++i) {
+            const score s = p.make_score(with.tactors, i);
+            std::vector<float> x(s.frames() * s.channels());
+            renderer(s, format_kind::float32).process(std::as_writable_bytes(std::span(x)));
+            sum.resize(std::max<std::size_t>(sum.size(), s.frames()));
+            for (std::size_t k = 0; k < s.frames(); ++k)
+                sum[k] += static_cast<double>(x[k * s.channels() + 4]);
+        }
+        double most = 0.0;
+        for (const double v : sum)
+            most = std::max(most, std::abs(v));
+        return 20.0 * std::log10(most);
+    };
+    const auto make = [&](double level_dbfs, double intensity, const char* together) {
+        std::string toml;
+        for (const char* path : {"M 0 20 H 40", "M 40 20 H 0", "M 20 0 V 40"})
+            toml += fmt::format("[[stroke]]\npath = '{}'\nduration_s = 1.4\nstart_s = 0.0\nintensity = {}\n",
+                                path, intensity);
+        const json params{{"toml", toml}, {"options", {{"level_dbfs", level_dbfs}, {"together", together}}}};
+        return make_planned(with, faces, params, settle_options(with.owner, params));
+    };
+    for (const double level : {-40.0, -12.0}) {
+        const planned p = make(level, 1.0, "weaken");
+        CHECK(p.weakened.weakened_db == doctest::Approx(-9.542).epsilon(1e-4));
+        CHECK(p.weakened.tactor == 4);
+        CHECK(p.weakened.plans == std::vector<std::size_t>{0, 1, 2});
+        CHECK(peak_db(p) == doctest::Approx(level).epsilon(1e-4));
+    }
+    // Each is within the ceiling by its intensity: -6 dBFS of 0.5.
+    const planned loud = make(-6.0, 0.5, "weaken");
+    CHECK(loud.weakened.weakened_db == doctest::Approx(-9.522).epsilon(1e-4)); // three times -12.02 dBFS
+    CHECK(peak_db(loud) == doctest::Approx(-12.0).epsilon(1e-4));
+    CHECK(peak_db(make(-40.0, 1.0, "sum")) == doctest::Approx(-30.458).epsilon(1e-4));
+    CHECK(fault_from([&] { make(-12.0, 1.0, "sum"); }).what == "options.level_dbfs");
 }
 
 } // namespace request_test

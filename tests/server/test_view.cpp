@@ -179,7 +179,7 @@ TEST_CASE("a view answers where play would refuse for the level, and says by how
 {
     const json both{{"toml", "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n"
                              "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n"},
-                    {"options", {{"level_dbfs", -1.0}}}};
+                    {"options", {{"level_dbfs", -1.0}, {"together", "sum"}}}};
     tactor::test::running_rig rig([](service_options& o, stream_options&) { o.plans.max_level_dbfs = -1.0; });
     const auto c = rig.client();
     CHECK(rig.code(c, "plan", both) == -32602);
@@ -191,6 +191,21 @@ TEST_CASE("a view answers where play would refuse for the level, and says by how
     CHECK(told["over_db"].get<double>() == doctest::Approx(5.02).epsilon(0.01));
     picture["options"]["level_dbfs"] = -6.1;
     CHECK(rig.ok(c, "plan", picture)["warnings"].empty());
+    // Weakened, they may be played.
+    picture["options"] = {{"level_dbfs", -1.0}};
+    const json weakened = rig.ok(c, "plan", picture);
+    CHECK(weakened["warnings"].empty());
+    CHECK(weakened["weakened_db"].get<double>() == doctest::Approx(-6.02).epsilon(0.001));
+    CHECK(weakened["meets"]["strokes"] == json{0, 1});
+    json played = both;
+    played.erase("options");
+    const json answer = rig.ok(c, "play", played);
+    CHECK(answer["weakened_db"].get<double>() == doctest::Approx(-6.02).epsilon(0.001));
+    CHECK(answer["meets"]["tactor"] == weakened["meets"]["tactor"]);
+    played["toml"] = "[stroke]\npath = 'M 0 0 H 40'\nduration_s = 0.1\n";
+    const json alone = rig.ok(c, "play", played);
+    CHECK(alone["weakened_db"] == 0.0);
+    CHECK_FALSE(alone.contains("meets"));
     // The owner's ceiling counts, too.
     picture["options"]["level_dbfs"] = 0.0;
     picture["toml"] = "[stroke]\npath = 'M 0 0 H 40'\nduration_s = 1.0\n";

@@ -66,6 +66,7 @@ inline array some_array(dice& d)
 inline render_options some_options(dice& d)
 {
     render_options o{.rate = d.one_in(2) ? 48000U : static_cast<unsigned>(8000 + d.up_to(92000))};
+    o.together = together_kind::sum;
     o.level_dbfs = d.one_in(3) ? 0.0 : d.from_to(-20.0, 0.0);
     if (d.one_in(5))
         o.sl_db = d.from_to(0.0, 35.0);

@@ -31,9 +31,10 @@ double peak(const score& s, unsigned c)
     return p;
 }
 
-// Returns the message of the error for a score, or "".
-std::string refusal(const array& a, const std::vector<placed_plan>& plans, const render_options& o = {})
+// Returns the message of the error for a score whose strokes add up, or "".
+std::string refusal(const array& a, const std::vector<placed_plan>& plans, render_options o = {})
 {
+    o.together = together_kind::sum;
     return caught_message([&] { score(a, plans, o); });
 }
 

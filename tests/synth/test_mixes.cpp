@@ -291,7 +291,8 @@ plan opaque(plan p)
 
 std::string refusal(const std::vector<placed_plan>& plans, double level_dbfs)
 {
-    return caught_message([&] { score(palm, plans, {.level_dbfs = level_dbfs}); });
+    return caught_message(
+        [&] { score(palm, plans, {.level_dbfs = level_dbfs, .together = together_kind::sum}); });
 }
 
 /// Makes intensity 0.0005 over the array, except for 8 ms round a time.

@@ -211,6 +211,11 @@ void print_dry_run_text(const study::prepared_experiment& p)
     for (const study::method_definition& m : d.methods)
         if (m.has_level() && !m.is_variant())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));
+    for (const study::stimulus& s : p.stimuli.all())
+        if (s.weakened_db < 0.0)
+            say(stdout,
+                "motion {} by method {}: weakened by {:.2f} dB, so that no tactor exceeds the level\n",
+                d.motions[s.motion].name, d.methods[s.method].name, -s.weakened_db);
     for (const study::questionnaire& q : d.questionnaires)
         say(stdout, "questionnaire {}: {}, {}\n", q.name, describe_time(q.when),
             counted(q.items.size(), "item"));

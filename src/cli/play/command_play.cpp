@@ -73,6 +73,8 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
             warnings.push_back(std::move(w));
     }
     say_warnings(warnings);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        warn_of_weakening(shown_name(pieces[i].name), scores[i].weakened(), scores[i].plans().size());
     session::tell_of_other_carrier(e, render, scores);
     return scores;
 }
@@ -126,7 +128,7 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
                               std::vector<stroke_outcome>& outcomes)
 {
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        outcomes.push_back({pieces[i].name, scores[i].frames()});
+        outcomes.push_back({pieces[i].name, scores[i].frames(), {}, scores[i].weakened()});
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const bool there = play_piece(session, as_json, a, pieces[i], scores[i], outcomes[i]);
         if (!there && session.signal() == 0)
@@ -195,7 +197,8 @@ void check_live(const settings& s)
         refuse_option("--live", "it takes its points from standard input",
                       "give - as the only STROKE: tactor play --live -");
     for (const options::option& o : options::all())
-        if ((o.where & options::planning) != 0 && (o.where & options::live) == 0 && s.gives(o))
+        if ((o.where & (options::planning | options::by_client)) != 0 && (o.where & options::live) == 0 &&
+            s.gives(o))
             refuse_option(option_name(o), "a live stroke does not know it",
                           "its points say when it is where");
     if (s.stream.arm)

@@ -104,6 +104,7 @@ struct stroke_outcome {
     std::string name;
     std::uint64_t length_frames = 0;
     std::optional<stroke_report> report = {};
+    weakening weakened = {};
 };
 
 struct play_report : session::run_facts {

@@ -12,6 +12,7 @@
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
+#include "files/plan/plan_members.hpp"
 #include "session/device.hpp"
 
 namespace tactor::cli {
@@ -37,6 +38,7 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
     io("frames", frames, {"how many were played"});
     io("length_frames", s.length_frames, {"how many it has"});
     io("played_s", seconds(frames, rate), {"how long it was played", detail::from_0});
+    files::weakening_members(io, s.weakened);
     io("late_s", r.late_s, {"how much later than asked for it began", detail::from_0});
     io.or_null("started_ns", r.started_ns,
                {"CLOCK_MONOTONIC of its first sample at the DAC; null where it did not sound or the clock of "
@@ -150,6 +152,8 @@ std::string fate(const stroke_outcome& s, unsigned rate)
 std::string describe(const stroke_outcome& s, unsigned rate)
 {
     std::string text = fmt::format("{}: {}", shown_name(s.name), fate(s, rate));
+    if (s.weakened.weakened_db < 0.0)
+        text += fmt::format("; weakened by {:.2f} dB", -s.weakened.weakened_db);
     if (s.report && s.report->delay) {
         const live_delay& d = *s.report->delay;
         text += fmt::format("; from {} to the DAC {:.1f} ms ({:.1f} to {:.1f})", counted(d.points, "point"),

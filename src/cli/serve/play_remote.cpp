@@ -110,6 +110,18 @@ net::json client_options(const settings& s)
     return given;
 }
 
+// Reads how much weaker than asked for the server plays a piece.
+weakening read_weakening(const net::json& answer)
+{
+    weakening w{.weakened_db = answer.value("weakened_db", 0.0)};
+    if (const auto at = answer.find("meets"); at != answer.end()) {
+        w.tactor = at->value("tactor", 0U);
+        w.at_s = at->value("at_s", 0.0);
+        w.plans = at->value("strokes", std::vector<std::size_t>{});
+    }
+    return w;
+}
+
 class remote_player {
 public:
     remote_player(const settings& s, const play_options& o)
@@ -219,6 +231,8 @@ private:
             throw name_argument(e, shown_name(out.name));
         }
         say_warnings(name_in(r["warnings"].get<std::vector<std::string>>(), out.name));
+        out.weakened = read_weakening(r);
+        warn_of_weakening(shown_name(out.name), out.weakened, r["strokes"].size());
         out.length_frames =
             static_cast<std::uint64_t>(std::llround(r.value("total_s", 0.0) * report_.device.rate));
         if (stream_.arm && !options_.json())

@@ -45,6 +45,7 @@ struct written_plan {
     double step_s;
     std::uint64_t start_frame;
     std::uint64_t frames;
+    const weakening& weakened;
 };
 
 template <class T>
@@ -88,15 +89,16 @@ void set_thresholds(tactor_spec& t, const thresholds& v)
             t.thresholds.push_back({hz, dbfs});
 }
 
-std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o)
+std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o,
+                                                   double weakened_db)
 {
     std::vector<std::optional<double>> all;
     for (const tactor_spec& t : a.tactors) {
-        all.emplace_back(o.level_dbfs + t.gain_db);
+        all.emplace_back(o.level_dbfs + t.gain_db + weakened_db);
         if (!o.sl_db)
             continue;
         const auto threshold = threshold_at(t, carrier_hz);
-        all.back() = threshold ? std::optional(*threshold + *o.sl_db) : std::nullopt;
+        all.back() = threshold ? std::optional(*threshold + *o.sl_db + weakened_db) : std::nullopt;
     }
     return all;
 }
@@ -189,7 +191,8 @@ void write_plans(const plan_record& r, const text_sink& out)
                                  p.curve.has_value(),
                                  continuous_step_s,
                                  r.samples.starts()[i],
-                                 r.samples.frames()};
+                                 r.samples.frames(),
+                                 r.samples.weakened()};
         json_writer io(text, &out);
         plan_members(io, parts);
         out(text + '}');

@@ -111,6 +111,37 @@ struct marker {
     double duration_s = 0.0;
 };
 
+/// The place at which a score would be loudest.
+struct loudest_place {
+    unsigned tactor = 0;
+    double at_s = 0.0;
+    std::vector<std::size_t> strokes = {};
+};
+
+template <class Io, either<loudest_place> Place>
+void members(Io& io, Place& p)
+{
+    io("tactor", p.tactor, {"number of the tactor"});
+    io("at_s", p.at_s, {"when, from the start of the piece", detail::from_0});
+    io("strokes", p.strokes, {"those that sound there then: their places in the piece, from 0"});
+}
+
+/// Describes by how much a piece is weaker than asked for, and where its strokes meet.
+template <class Io>
+void weakening_members(Io& io, const weakening& w)
+{
+    io.fact("weakened_db", [&w] { return std::optional(w.weakened_db); },
+            {"how much weaker than asked for the whole piece is, so that no tactor exceeds the level, see "
+             "{together}; 0: not at all",
+             detail::up_to_0});
+    io.fact("meets",
+            [&w] {
+                return w.weakened_db < 0.0 ? std::optional(loudest_place{w.tactor, w.at_s, w.plans})
+                                           : std::nullopt;
+            },
+            {"only where it is weakened: where it would be loudest"});
+}
+
 /// Parts of an object that is read. A written one has the same members, as references.
 struct plan_parts {
     std::string name = {};
@@ -127,11 +158,13 @@ struct plan_parts {
     double step_s = continuous_step_s;
     std::uint64_t start_frame = 0;
     std::uint64_t frames = 0;
+    weakening weakened = {};
 };
 
-/// Returns the peak of each tactor's channel for amplitude 1; nothing drives one without a value.
-std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz,
-                                                   const render_options& o);
+/// Returns the peak of each tactor's channel for amplitude 1 in a piece that is weakened so much; nothing
+/// drives one without a value.
+std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o,
+                                                   double weakened_db);
 
 /// Describes which tactor it is.
 template <class Io, either<tactor_spec> Tactor>
@@ -330,9 +363,14 @@ void render_members(Io& io, Parts& r)
     io.exactly_one("level_dbfs", "sl_db");
     io("overlap", r.plan.overlap, {"energy, max or sum: what becomes of bursts that overlap on one tactor"});
     io.fact(
-        "peak_dbfs", [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options); },
-        {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold in "
-         "it; null where the level is above a threshold that it does not have, and nothing drives it"});
+        "peak_dbfs",
+        [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options, r.weakened.weakened_db); },
+        {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold and "
+         "weakened_db in it; null where the level is above a threshold that it does not have, and nothing "
+         "drives it"});
+    unless_usual(io, "together", o.together, together_kind::weaken,
+                 {"sum where strokes that meet on a tactor add up; absent: the piece is weakened, as with "
+                  "{together=weaken}"});
     unless_usual(io, "envelope", o.envelope, burst_envelope{},
                  {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
     io.with("marker",
@@ -375,6 +413,7 @@ void plan_members(Io& io, Parts& r)
     io("total_s", p.total_s, {"end of the last sound", detail::from_0});
     io.object("render", {"how the plan becomes samples; the same in all strokes of a file"},
               [&r](auto& inner) { render_members(inner, r); });
+    weakening_members(io, r.weakened);
     io.new_line();
     io.template rows<burst>(
         "bursts", [&p](const auto& row) { std::for_each(p.bursts.begin(), p.bursts.end(), row); },

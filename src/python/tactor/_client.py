@@ -91,6 +91,10 @@ class RemoteStroke(Reply):
         self._pending: str | None = None
         self.warnings: list[str] = []
         """Oddities that were accepted; there once the service has answered."""
+        self.weakened_db = 0.0
+        """How much weaker than asked for its strokes are, so that no tactor exceeds the level, dB; 0 or less."""
+        self.meets: dict[str, _t.Any] | None = None
+        """Where they would be loudest: "tactor", "at_s" and "strokes" (from 0); None where they are not weakened."""
 
     @property
     def id(self) -> int | None:
@@ -122,6 +126,8 @@ class RemoteStroke(Reply):
             self._numbers = result.get("strokes", [result["stroke"]])
             self._open = set(self._numbers)
             self.warnings = result.get("warnings", [])
+            self.weakened_db = result.get("weakened_db", 0.0)
+            self.meets = result.get("meets")
             pending = self._pending
         for number in self._numbers:
             self._client.strokes[number] = self

@@ -24,6 +24,7 @@ if _t.TYPE_CHECKING:
     _Compensate = _t.Literal["none", "low-speed"]
     _Texture = _t.Literal["cycle", "time", "length"]
     _Phase = _t.Literal["stroke", "burst"]
+    _Together = _t.Literal["weaken", "sum"]
     _IntensityScale = _t.Literal["linear", "sl", "stevens"]
     _SampleFormat = _t.Literal["float", "s16", "s24", "s24-4", "s32"]
     _Observer = _t.Literal["centroid", "low-speed"]
@@ -411,7 +412,8 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
          am: _t.Union[float, str, None] = None, noise_seed: int | None = None, texture: _Texture | None = None, texture_mm: float | None = None,
          phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None, attack: float | None = None,
          release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None, sl: float | None = None,
-         intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None, rate: int | None = None) -> Plan:
+         together: _Together | None = None, intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None,
+         rate: int | None = None) -> Plan:
     """Plans a stroke on an array. Options are the tool's, see tactor-options(7); None is its default.
 
     Parameters
@@ -489,6 +491,8 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
         Peak of the carrier at intensity 1 (default -12). -200 to 0 dBFS.
     sl : float
         Level above each tactor's threshold, in place of dBFS. -60 to 100 dB SL.
+    together : str
+        Strokes that meet on a tactor: weaken all so that none is above the level, or let them add up (default weaken). One of "weaken", "sum".
     intensity_scale : str
         Scale of intensities: amplitude (default), dB of sl, or felt strength. One of "linear", "sl", "stevens".
     stevens_exponent : float

@@ -16,7 +16,7 @@ from tactor._plan import Plan
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import DTypeLike as _DTypeLike, NDArray as _NDArray
-    from tactor._plan import _Phase
+    from tactor._plan import _Phase, _Together
     _WavFormat = _t.Literal["float", "s16", "s24", "s32"]
     _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
 
@@ -73,8 +73,9 @@ class Score(_Value):
 
     def __init__(self, array: Array, plans: _Plans, *, phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None,
                  attack: float | None = None, release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None,
-                 sl: float | None = None, rate: int | None = None, channels: int | None = None, marker_channel: int | None = None,
-                 marker_s: float | None = None, power_dbfs: float | None = None, max_drive_s: float | None = None, drive_window_s: float | None = None) -> None:
+                 sl: float | None = None, together: _Together | None = None, rate: int | None = None, channels: int | None = None,
+                 marker_channel: int | None = None, marker_s: float | None = None, power_dbfs: float | None = None, max_drive_s: float | None = None,
+                 drive_window_s: float | None = None) -> None:
         """Makes a score.
 
         Parameters
@@ -82,7 +83,7 @@ class Score(_Value):
         array : Array
         plans : Plan, or iterable of Plan or of (float, Plan)
             A number is the start in seconds; a plan without one starts at its stroke's, or when the plan before it has ended.
-        phase, ramp, envelope, attack, release, tukey_part, level_dbfs, sl, rate
+        phase, ramp, envelope, attack, release, tukey_part, level_dbfs, sl, together, rate
             As in `plan`.
         channels : int
             Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
@@ -128,6 +129,12 @@ class Score(_Value):
         return self.frames / self.rate
 
     starts: _Member[list[int]] = _Member("starts", "First frame of each plan.")
+    weakened_db: _Member[float] = _Member("weakened_db", "How much weaker than asked for all of it is, so that no tactor exceeds the level, dB; 0 or less.")
+
+    @property
+    def meets(self) -> dict[str, _t.Any] | None:
+        """Where it would be loudest: "tactor", "at" (s) and "plans" (numbers of those that sound there); None where it is not weakened."""
+        return _t.cast(_t.Any, self._core.meets)
 
     def render(self, dtype: _DTypeLike = "float32", *, start: int = 0, frames: int | None = None,
                out: _NDArray[_t.Any] | None = None) -> _NDArray[_t.Any]:

@@ -554,6 +554,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         s.render = choose_render(options_, method.options);
         const score sounds(array_, one.plans, s.render);
         s.frames = sounds.frames();
+        s.weakened_db = sounds.weakened().weakened_db;
         s.text = files::plans_text({one, array_, sounds, s.render});
         s.hash = detail::sha256_text(s.text);
         const std::vector<percept_sample> samples =

@@ -228,6 +228,7 @@ struct stimulus {
     std::size_t method = 0;
     tactor::plan plan = {};
     render_options render = {};        ///< the session's, with those that the method gives
+    double weakened_db = 0.0;          ///< how much weaker than its level it is, see weakening
     std::uint64_t frames = 0;          ///< from its first frame to its last sound's end
     std::string text = {};             ///< the plan as tactor-plan/1
     std::string hash = {};             ///< its SHA-256

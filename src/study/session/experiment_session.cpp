@@ -384,6 +384,7 @@ json stimulus_facts(const prepared_experiment& p)
         const method_definition& m = p.definition.methods[s.method];
         all.push_back(
             {{"sha256", s.hash}, {"motion", p.definition.motions[s.motion].name}, {"method", m.name}});
+        all.back()["weakened_db"] = s.weakened_db;
         if (m.value)
             all.back()["value"] = *m.value;
         if (m.has_level())

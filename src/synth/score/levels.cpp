@@ -22,6 +22,7 @@
 #include "synth/mix/window.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/frames.hpp"
+#include "synth/score/together.hpp"
 
 namespace tactor::synth {
 
@@ -114,10 +115,14 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 
 namespace {
 
+/// Part of a level that comes from the last digits.
+constexpr double last_digits = 1e-9;
+
 /// At a frame, a tactor's possible amplitude changes.
 struct change {
     std::uint64_t frame;
     double by;
+    double plain; // the same without the tactor's level
     std::size_t tactor;
 
     /// Orders by frame. At the same frame, changes downwards come first.
@@ -129,13 +134,21 @@ struct change {
 class sweep {
 public:
     explicit sweep(std::size_t tactors)
-        : sums_(tactors), peaks_(tactors), loudest_(tactors), factors_(tactors, 1.0)
+        : sums_(tactors),
+          plain_sums_(tactors),
+          peaks_(tactors),
+          plain_peaks_(tactors),
+          loudest_(tactors),
+          factors_(tactors, 1.0)
     {
     }
 
-    /// `from`: as heard_from(). `factor` is in the peak, for the threshold at the carrier.
-    void note(std::size_t tactor, const item& it, std::uint64_t from, double peak, double factor)
+    /// `from`: as heard_from(). `amplitude`: 1 is the level asked for. `factor` is that for the threshold at
+    /// the carrier.
+    void note(std::size_t tactor, const item& it, std::uint64_t from, double amplitude, double gain,
+              double factor)
     {
+        const double peak = amplitude * (gain * factor);
         if (!(peak > 0.0 && from < it.end()))
             return;
         if (peak > loudest_[tactor]) {
@@ -143,16 +156,18 @@ public:
             factors_[tactor] = factor;
         }
         pass(it.start);
-        add({from, peak, tactor});
-        add({it.end(), -peak, tactor});
+        add({from, peak, amplitude, tactor});
+        add({it.end(), -peak, -amplitude, tactor});
     }
 
-    const std::vector<double>& peaks()
-    {
-        pass(UINT64_MAX);
-        return peaks_;
-    }
+    /// Ends the sweep.
+    void end() { pass(UINT64_MAX); }
+    const std::vector<double>& peaks() const noexcept { return peaks_; }
+    /// Returns the greatest sum on any tactor; 1 is the level asked for.
+    double plain_peak() const { return *std::max_element(plain_peaks_.begin(), plain_peaks_.end()); }
 
+    /// Returns the level of each tactor's loudest item.
+    const std::vector<double>& loudest() const noexcept { return loudest_; }
     /// Returns the factor of each tactor's loudest item.
     const std::vector<double>& factors() const noexcept { return factors_; }
 
@@ -172,28 +187,22 @@ private:
             heap_.pop_back();
             sums_[c.tactor] += c.by;
             peaks_[c.tactor] = std::max(peaks_[c.tactor], sums_[c.tactor]);
+            plain_sums_[c.tactor] += c.plain;
+            plain_peaks_[c.tactor] = std::max(plain_peaks_[c.tactor], plain_sums_[c.tactor]);
         }
     }
 
     std::vector<change> heap_;
-    std::vector<double> sums_;  // by tactor
-    std::vector<double> peaks_; // by tactor
+    // By tactor.
+    std::vector<double> sums_;
+    std::vector<double> plain_sums_;
+    std::vector<double> peaks_;
+    std::vector<double> plain_peaks_;
     std::vector<double> loudest_;
     std::vector<double> factors_;
 };
 
-// Returns the first frame in which an item may be heard: a ramp begins with a zero, and so do most carriers.
-// Rounding may put that frame into the end of another burst or stroke, which it touches.
-std::uint64_t heard_from(const score::impl& s, const item& it)
-{
-    const bool joined = it.kind == item_kind::joined;
-    const std::uint32_t ramp = joined ? s.list.members[it.first].ramp : it.ramp;
-    const waveform_kind wave = s.plans[it.plan].plan.wave.kind;
-    const bool at_zero = (s.phase == phase_kind::burst || it.start == s.starts[it.plan]) &&
-                         wave != waveform_kind::noise && wave != waveform_kind::recording;
-    return it.start + (it.length > 1 && (ramp > 0 || at_zero) ? 1 : 0);
-}
-
+// Returns the greatest amplitude of a joined item; 1 is the level asked for.
 double joined_peak(const score::impl& s, std::size_t number)
 {
     double peak = 0.0;
@@ -202,7 +211,8 @@ double joined_peak(const score::impl& s, std::size_t number)
         const channel_drive& d = e.event().drive[0];
         peak = std::max({peak, std::abs(d.from), std::abs(d.to)});
     }
-    return peak;
+    const item& it = s.list.items[number];
+    return peak / (std::abs(s.tactors[it.tactor].gain) * s.equalised(it.tactor, it.plan, it.start));
 }
 
 /// Sums what the items may reach; `exact`: also where the intensity of a continuous stroke is a bound.
@@ -215,7 +225,8 @@ sweep sweep_items(const score::impl& s, bool exact)
         const std::uint64_t from = heard_from(s, it);
         switch (it.kind) {
         case item_kind::joined:
-            all.note(it.tactor, it, from, joined_peak(s, i), s.equalised(it.tactor, it.plan, it.start));
+            all.note(it.tactor, it, from, joined_peak(s, i), std::abs(s.tactors[it.tactor].gain),
+                     s.equalised(it.tactor, it.plan, it.start));
             break;
         case item_kind::continuous: {
             const plan& p = s.plans[it.plan].plan;
@@ -225,7 +236,7 @@ sweep sweep_items(const score::impl& s, bool exact)
                 peaks = continuous_peaks(p, s.tactors.size());
             for (std::size_t k = 0; k < peaks.size(); ++k) {
                 const double factor = s.most_equalised(k, it.plan); // at the carrier that needs most
-                all.note(k, it, from, peaks[k] * (std::abs(s.tactors[k].gain) * factor), factor);
+                all.note(k, it, from, peaks[k], std::abs(s.tactors[k].gain), factor);
             }
             break;
         }
@@ -235,12 +246,13 @@ sweep sweep_items(const score::impl& s, bool exact)
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
                 const std::size_t tactor = list.drive_tactors[k];
                 const double factor = s.equalised(tactor, it.plan, it.start);
-                const double gain = s.tactors[tactor].gain * factor;
-                all.note(tactor, it, from, std::abs(list.drive_amplitudes[k] * gain), factor);
+                all.note(tactor, it, from, std::abs(list.drive_amplitudes[k]),
+                         std::abs(s.tactors[tactor].gain), factor);
             }
             break;
         }
     }
+    all.end();
     return all;
 }
 
@@ -310,8 +322,38 @@ std::vector<double> continuous_peaks(const plan& p, std::size_t tactors)
     return peaks;
 }
 
-std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o)
+namespace {
+
+/// Returns the level of each tactor, after sums that exceed a tactor's limit were weakened, unless something
+/// exceeds it alone.
+std::vector<double> weaken_sums(const std::shared_ptr<score::impl>& made, const array& a, const sweep& all)
 {
+    std::vector<double> peaks;
+    std::vector<double> limits;
+    bool is_sum = false;
+    bool is_alone = false;
+    const std::vector<tactor_peak> found = find_peaks(made);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        peaks.push_back(found[i].level);
+        limits.push_back(tactor_limit(a, i));
+        is_sum = is_sum || peaks[i] > limits[i];
+        is_alone = is_alone || all.loudest()[i] > limits[i];
+    }
+    if (!is_sum || is_alone)
+        return peaks;
+    const double before_db = made->weakened.weakened_db;
+    weaken_to_limits(*made, found, limits);
+    for (double& peak : peaks)
+        peak *= std::pow(10.0, (made->weakened.weakened_db - before_db) / 20.0) * (1.0 - 1e-12);
+    return peaks;
+}
+
+} // namespace
+
+std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const array& a,
+                                const render_options& o)
+{
+    score::impl& s = *made;
     const auto within = [&](const std::vector<double>& peaks) {
         for (std::size_t i = 0; i < peaks.size(); ++i)
             if (!(peaks[i] <= tactor_limit(a, i)))
@@ -321,9 +363,14 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
     };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
     sweep all = sweep_items(s, false);
+    const bool weakens = o.together == together_kind::weaken;
+    if (weakens && all.plain_peak() > 1.0 + last_digits && weaken_to_level(made))
+        all = sweep_items(s, false);
     if (!within(all.peaks()))
         all = sweep_items(s, true);
-    const std::vector<double>& peaks = all.peaks();
+    std::vector<double> peaks = all.peaks();
+    if (weakens && !within(peaks))
+        peaks = weaken_sums(made, a, all);
     for (const std::size_t i : s.unmeasured)
         if (peaks[i] > 0.0)
             refuse_unmeasured(a, i, o);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "synth/score/score.hpp"
@@ -43,12 +44,15 @@ std::vector<double> continuous_peaks(const plan& p, std::size_t tactors);
 /// Empty if the intensity is not known to be a bound.
 std::vector<double> continuous_bounds(const plan& p, std::size_t tactors);
 
-/// Compares the levels that the items ask of each tactor, added up where they sound together, with its limit
-/// and with full scale. For continuous strokes, too, these are bounds, not samples. Returns the greatest
-/// level of each tactor, linear. Tactors that nobody measured must not be driven, and have no gain
-/// afterwards.
+/// Weakens the score where `o` asks for that: no tactor then exceeds the level asked for, nor do sums exceed
+/// a tactor's limit that nothing exceeds alone. Then compares the
+/// levels that the items ask of each tactor, added up where they sound together, with its limit and with
+/// full scale. For continuous strokes, too, these are bounds, not samples. Returns the greatest level of each
+/// tactor, linear. Tactors that nobody measured must not be driven, and have no gain afterwards.
+/// \pre The items of the score are measured, by start.
 /// \throws error (bad_input) with the tactor's line.
-std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o);
+std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const array& a,
+                                const render_options& o);
 
 /// Lets the actuators of tactors with a rise_s reach a burst's strength as soon as the tactor's limit allows:
 /// adds a second burst over the first half cycles of the carrier. Only for bursts that sound on their tactor

@@ -300,12 +300,14 @@ score score_builder::take()
     if (o.marker_channel)
         place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
     sort_by_start(s.list.items);
-    std::vector<double> peaks = synth::check_peaks(s, done->a, o);
-    s.boosted = synth::boost_rises(s, done->a, peaks);
-    if (s.boosted)
-        sort_by_start(s.list.items);
-    s.asked = std::move(peaks);
     measure(s);
+    std::vector<double> peaks = synth::check_peaks(done->s, done->a, o);
+    s.boosted = synth::boost_rises(s, done->a, peaks);
+    if (s.boosted) {
+        sort_by_start(s.list.items);
+        measure(s);
+    }
+    s.asked = std::move(peaks);
     return detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(done->s)));
 }
 
@@ -352,6 +354,11 @@ unsigned score::rate() const noexcept
 const std::vector<std::uint64_t>& score::starts() const noexcept
 {
     return impl_->starts;
+}
+
+const weakening& score::weakened() const noexcept
+{
+    return impl_->weakened;
 }
 
 const std::vector<placed_plan>& score::plans() const noexcept

@@ -89,6 +89,7 @@ struct score::impl {
     /// By tactor: greatest level that it is driven with, linear; 0 where it is not driven. A continuous
     /// stroke counts for all tactors. The boost for a slow actuator's rise is not included.
     std::vector<double> asked;
+    weakening weakened;             ///< in the gains of the tactors
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any
     double marker_level = 1.0;      ///< of full scale

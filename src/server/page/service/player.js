@@ -87,7 +87,7 @@ async function ask_to_play() {
     warned = true;
   } catch (e) {
     if (state.playing !== own) return;
-    // Strokes of several fingers add up: the take is played as strong as it may be.
+    // A tactor may have a lower limit than the level: the take is played as strong as it may be.
     if (e.code !== 0 && !own.weakened && await weaken_take(take).catch(() => false)) {
       own.weakened = true;
       return state.playing === own ? ask_to_play() : undefined;

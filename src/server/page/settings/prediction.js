@@ -52,7 +52,10 @@ function show_warnings() {
   if (state.outside.length && !take.leaves_array) found.push({...outside_text(),
     buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   const over_db = excess_db(state.plan);
-  if (over_db && take) found.push({text: `${take.strokes.length > 1 ? "Together the strokes are" : "It is"} ${number_text(over_db)} dB stronger than may be played.`,
+  const weaker_db = -(state.plan?.weakened_db ?? 0);
+  if (weaker_db > 0 && take) found.push({text: `Its strokes meet on a tactor, so all of it is played ${number_text(weaker_db)} dB weaker.`,
+    short: `${number_text(weaker_db)} dB weaker`, buttons: []});
+  if (over_db && take) found.push({text: `It is ${number_text(over_db)} dB stronger than may be played.`,
     short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(current_take()).catch(e => say(e.message))]]});
   for (const w of new Set(state.plan?.warnings)) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings"), more = found.length - 1;
