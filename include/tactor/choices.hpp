@@ -83,7 +83,7 @@ struct stroke_choices {
     std::optional<phantom_kind> phantom = {};
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
-    double level_db = 0.0; ///< added to its amplitudes, dB, after plan_options::scale
+    double level_db = 0.0; ///< of its amplitudes, dB, 0 or less, after plan_options::scale
     std::optional<faces_kind> faces = {};
 
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;

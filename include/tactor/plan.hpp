@@ -40,7 +40,7 @@ struct intensity_scale {
     /// finger it is 0.95 at 60 Hz and 0.6 at 250 Hz (Stevens, Perception & Psychophysics 3, 1968).
     double exponent = 0.6;
     double sl_db = 0.0; ///< sl: sensation level of intensity 1, dB, above 0
-    /// Level that is added to the amplitudes, dB; then 1 does not stay 1. A stroke's own level
+    /// Level that is added to the amplitudes, dB, 0 or less; then 1 does not stay 1. A stroke's own level
     /// (stroke_choices) adds to it.
     double level_db = 0.0;
 

@@ -263,8 +263,9 @@ double intensity_scale::amplitude(double intensity) const
     if (!(intensity > 0.0))
         return intensity;
     if (level_db != 0.0) {
-        if (!std::isfinite(level_db))
-            throw detail::bad_field("level_db", fmt::format("{} is no level", level_db), "give decibels");
+        if (!(std::isfinite(level_db) && level_db < 0.0))
+            throw detail::bad_field("level_db", fmt::format("{} is not a level of 0 dB or less", level_db),
+                                    "a stroke may be weaker than asked for, not stronger");
         return intensity_scale{kind, exponent, sl_db}.amplitude(intensity) * std::pow(10.0, level_db / 20.0);
     }
     if (kind == scale_kind::linear)

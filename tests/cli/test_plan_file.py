@@ -178,7 +178,7 @@ class PlanFile(ToolTest):
         own["render"]["together"] = "sum"
         for text in ("", "[]", "{\n  \"schema\": \"tactor-plan/1\",\n  \"algorithm\" }", '{"schema": "tactor-play/1"}', "[" * 100000,
                      changed(good, "continuous.points.700"), changed(good, "continuous.points.7.x_mm"), changed(bursts, "render.phase"),
-                     changed(bursts, "array.tactors.2.channel"), changed(bursts, "bursts.3.intensity", "loud"),
+                     changed(bursts, "array.tactors.2.channel"), changed(bursts, "bursts.3.intensity", "loud"), changed(bursts, "bursts.3.intensity", 25.0),
                      changed(bursts, "bursts.3.drives.0.tactor", 9), changed(bursts, "bursts.3.onset_s", 0.0),
                      changed(bursts, "render.overlap", "tango"), changed(bursts, "render.phase", "tango"), changed(bursts, "bursts", []),
                      changed(bursts, "stroke.carier_hz", 250), changed(bursts, "bursts.3.drives.0.gain_db", 1),

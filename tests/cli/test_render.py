@@ -160,6 +160,12 @@ class Together(RenderTest):
                      says=["limited.toml:3:1: tactor 4 would be driven at -30.46 dBFS"])
         self.ok("render", "cross.toml", "--array", "limited.toml", "--level-dbfs", "-40", "-o", "o.wav")
 
+    def test_a_stroke_s_own_level_is_at_most_that_asked_for(self):
+        self.write("loud.toml", STROKE + "level_db = 28\n")
+        for command in (("render", "-o", "o.wav"), ("plan",), ("play", "-D", "null")):
+            self.refused(2, command[0], "loud.toml", *command[1:], "--level-dbfs", "-40",
+                         says=["loud.toml:4:12: level_db is 28 (allowed: -120 to 0)"])
+
 
 class Sound(RenderTest):
     def test_usual_values_have_the_same_bytes(self):

@@ -228,7 +228,7 @@ TEST_CASE("their faults have their place")
     check_refused("soa_s", {"0", "11"});
     check_refused("burst_s", {"0", "\"1\""});
     check_refused("burst_s", {"0.06"}, "soa_s = 0.05\n");
-    check_refused("level_db", {"61", "-121", "\"1\""});
+    check_refused("level_db", {"0.01", "28", "-121", "\"1\""});
     check_refused("fit", {"1"});
     check_refused("fit_margin_mm", {"2"});
     check_refused("fit_margin_mm", {"-1"}, "fit = true\n");

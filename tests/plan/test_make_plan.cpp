@@ -136,8 +136,10 @@ TEST_CASE("a scale defines half an intensity, and is held to its bounds")
         s.level_db = -9.0;
         CHECK(s.amplitude(0.5) == doctest::Approx(plain * std::pow(10.0, -9.0 / 20.0)).epsilon(1e-14));
         CHECK(s.amplitude(0.0) == 0.0);
-        s.level_db = not_a_number;
-        CHECK_THROWS_AS(s.amplitude(0.5), error);
+        for (const double db : {0.01, 28.0, not_a_number, -HUGE_VAL}) {
+            s.level_db = db;
+            CHECK_THROWS_AS(s.amplitude(0.5), error);
+        }
     }
     for (const double exponent : {0.09, 3.01, not_a_number})
         CHECK_THROWS_AS((intensity_scale{scale_kind::stevens, exponent}.amplitude(0.5)), error);

@@ -367,17 +367,20 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     CHECK(plays({{"points", {{7, 0, 0, 51}, {7, 5, 5, 255}, {7.5, nullptr, 20, 9}, {8, 40, 40, 0}}},
                  {"options", {{"intensity_max", 255}}}}));
     CHECK(fault_from([&] { make_planned(p, faces, points(255, -60)); }).what == "points");
-    const auto of_file = [](const char* algorithm, double own_db, const char* scale) {
-        return json{{"toml", fmt::format("[stroke]\npath = 'M 0 0 L 40 40'\nintensity = 0.5\nlevel_db = {}\n",
-                                         own_db)},
-                    {"options", {{"algorithm", algorithm}, {"level_dbfs", -12}, {"intensity_scale", scale}}}};
+    const auto of_file = [](const char* algorithm, double own_db, double level_dbfs, const char* scale) {
+        return json{
+            {"toml",
+             fmt::format("[stroke]\npath = 'M 0 0 L 40 40'\nintensity = 0.5\nlevel_db = {}\n", own_db)},
+            {"options", {{"algorithm", algorithm}, {"level_dbfs", level_dbfs}, {"intensity_scale", scale}}}};
     };
     for (const char* algorithm : {"park2016", "continuous"}) {
-        CHECK(plays(of_file(algorithm, 6.02, "linear")));
-        CHECK_FALSE(plays(of_file(algorithm, 6.03, "linear")));
-        CHECK(plays(of_file(algorithm, 10.03, "stevens"))); // half is -10.034 dB
-        CHECK_FALSE(plays(of_file(algorithm, 10.04, "stevens")));
+        CHECK(plays(of_file(algorithm, -3.0, -2.98, "linear"))); // half is -6.021 dB
+        CHECK_FALSE(plays(of_file(algorithm, -3.0, -2.97, "linear")));
+        CHECK(plays(of_file(algorithm, -1.0, -0.97, "stevens"))); // half is -10.034 dB
+        CHECK_FALSE(plays(of_file(algorithm, -1.0, -0.96, "stevens")));
     }
+    CHECK(fault_from([&] { make_planned(p, faces, of_file("park2016", 0.5, -40.0, "linear")); }).what ==
+          "toml");
     // Half of the amplitude is 6 dB less than -6 dBFS, half of 34 dB SL is 17 dB less.
     const auto half = [](const char* scale) {
         return json{{"points", {{0, 0, 0, 0.5}, {1, 40, 40, 0.5}}},

@@ -20,6 +20,7 @@
 #include "mixes.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
+#include "plan/curve_impl.hpp"
 #include "rounds.hpp"
 #include "synth/guard.hpp"
 #include "synth/mix/mixer.hpp"
@@ -274,12 +275,12 @@ std::vector<example> examples()
 
 const array palm = preset_array("palm-3x3");
 
-/// \param level_db the stroke's own level, which takes it above intensity 1
+/// \param level_db takes it above intensity 1
 plan continuous(std::vector<timed_point> points, double level_db, plan_options o = {})
 {
     o.algorithm = algorithm_kind::continuous;
-    return make_plan(palm,
-                     {.motion = trajectory::timed(std::move(points)), .choices = {.level_db = level_db}}, o);
+    return detail::scaled(make_plan(palm, {.motion = trajectory::timed(std::move(points))}, o),
+                          std::pow(10.0, level_db / 20.0));
 }
 
 /// Hides everything of a plan except its values.
@@ -420,10 +421,9 @@ TEST_CASE("a plan is left unseen only where its intensity is above no limit: as 
         plan_options o{.phantom = static_cast<phantom_kind>(n % 5)};
         plan p = continuous(points, stronger_db, o);
         if (n % 3 == 0) {
-            const stroke s{.motion = trajectory::timed(points).with_duration(0.7).with_intensity(0.9),
-                           .choices = {.level_db = stronger_db}};
+            const stroke s{.motion = trajectory::timed(points).with_duration(0.7).with_intensity(0.9)};
             o.algorithm = algorithm_kind::continuous;
-            p = make_plan(palm, s, o);
+            p = detail::scaled(make_plan(palm, s, o), 1.7);
         }
         const double level = -6.0 * unit(random);
         const std::string said = refusal({{p, {}}}, level);

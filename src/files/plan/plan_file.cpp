@@ -190,13 +190,6 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
         f["bursts"].refuse("there are none");
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
     stroke s{.name = parts.name};
-    // A level of its own takes a stroke above the others.
-    double most = 1.0;
-    for (const timed_point& q : way)
-        most = std::max(most, q.intensity);
-    for (timed_point& q : way)
-        q.intensity /= most;
-    s.choices.level_db = 20.0 * std::log10(most);
     s.motion = trajectory::timed(std::move(way));
     s.sound.carrier_hz = p.carrier_hz;
     s.sound.wave = p.wave;

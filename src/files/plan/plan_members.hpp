@@ -290,7 +290,7 @@ void place_members(Io& io, Burst& b, const array& a, const char* place, const ch
 {
     io("x_mm", b.position.x_mm, {place});
     io("y_mm", b.position.y_mm, {place});
-    io("intensity", b.intensity, {intensity, detail::from_0});
+    io("intensity", b.intensity, {intensity, detail::bounds_of::part});
     io.list("drives", b.drives, {drives}, [&a](auto& inner, auto& d, std::size_t) {
         inner("tactor", d.tactor, {"number of the tactor"});
         inner.fact("channel", [&] { return a.tactors[d.tactor].channel; }, {"its channel"});

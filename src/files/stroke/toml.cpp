@@ -208,7 +208,7 @@ void read_choices(const toml_table& t, stroke& s)
 /// say. A stroke with a speed keeps it.
 void place_stroke(const toml_table& t, stroke& s)
 {
-    constexpr bounds levels_db{-120.0, 60.0};
+    constexpr bounds levels_db{-120.0, 0.0}; // a file makes a stroke weaker than asked for, never stronger
     constexpr bounds scales{0.0, 1e6, true};
     s.choices.level_db += t.number("level_db", levels_db).value_or(0.0);
     const auto about = t.place("about_mm");
