@@ -124,6 +124,19 @@ TEST_CASE(
     CHECK_FALSE(r.feed.set_gain(later, 0.5F));
 }
 
+TEST_CASE("a stroke whose level is given before it begins has no loud onset")
+{
+    for (const std::uint64_t wait : {0U, 1U, 96U, 200U}) {
+        CAPTURE(wait);
+        rig r({.format = format_kind::s32});
+        const std::uint64_t from = r.status().written;
+        const stroke_id id = wait == 0 ? r.submit(tone(0.1)) : r.submit(tone(0.1), from + wait);
+        CHECK(r.feed.set_gain(id, 0.1F));
+        r.play_out();
+        CHECK(peak(r.channel(0, from)) == doctest::Approx(0.02512).epsilon(0.01)); // a tenth of -12 dBFS
+    }
+}
+
 TEST_CASE("stop fades all sound, waits until it is out, and drops the stream")
 {
     for (const bool closing : {false, true}) {

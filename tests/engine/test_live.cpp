@@ -81,6 +81,15 @@ TEST_CASE("a live stroke is silent until its first point, then a sine at its tac
         CHECK(peak(r.channel(c)) == 0.0);
 }
 
+TEST_CASE("a live stroke whose level is given before it begins has no loud onset")
+{
+    live_rig r;
+    CHECK(r.feed.set_gain(r.last(), 0.1F));
+    r.live->to({0.0, 0.0}, 1.0);
+    r.play(9600);
+    CHECK(peak(r.channel(0)) == doctest::Approx(0.1 * live_level).epsilon(0.01));
+}
+
 TEST_CASE("a point sounds within a period and a control step, in every phase and size of period")
 {
     for (const unsigned period : {16U, 48U, 96U, 480U, 1024U}) {

@@ -356,6 +356,41 @@ TEST_CASE("a client's level holds for its strokes that sound and that come, and 
     CHECK(rig.code(me, "play", weaker) == -32602);
 }
 
+TEST_CASE("gain_db and the level of a client are what its strokes sound with, live ones too")
+{
+    const auto heard_db = [](const json& level, const json& gain, bool live) {
+        service_rig rig;
+        rig.captures = running_clock::capture_kind::kept;
+        fake_dac& card = rig.plug();
+        rig.start();
+        const auto c = rig.client();
+        if (!level.is_null())
+            rig.ok(c, "level", {{"db", level}});
+        json n;
+        if (live) {
+            n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
+            rig.ok(c, "to", {{"stroke", n}, {"x_mm", 20}, {"y_mm", 20}});
+            const std::uint64_t from = rig.all->output().stats().frames;
+            rig.until([&] { return rig.all->output().stats().frames > from + 9600; });
+            rig.ok(c, "end", {{"stroke", n}});
+        } else {
+            json params = stroke;
+            if (!gain.is_null())
+                params["gain_db"] = gain;
+            n = rig.ok(c, "play", params)["stroke"];
+        }
+        CHECK(rig.find_end(c, n)["state"] == "finished");
+        rig.clocks.clear();
+        return find_peak(card);
+    };
+    CHECK(heard_db(nullptr, nullptr, false) == doctest::Approx(-12.0).epsilon(0.01));
+    CHECK(heard_db(nullptr, -6, false) == doctest::Approx(-18.0).epsilon(0.01));
+    CHECK(heard_db(-20, nullptr, false) == doctest::Approx(-32.0).epsilon(0.01));
+    CHECK(heard_db(-20, -6, false) == doctest::Approx(-38.0).epsilon(0.01));
+    CHECK(heard_db(nullptr, nullptr, true) == doctest::Approx(-12.0).epsilon(0.01));
+    CHECK(heard_db(-20, nullptr, true) == doctest::Approx(-32.0).epsilon(0.01));
+}
+
 TEST_CASE("a stroke that repeats has one beginning and one end")
 {
     running_rig rig;
