@@ -28,7 +28,9 @@ asio::awaitable<void> draw(tactor::player& player, udp::socket& socket, udp::end
     std::string answer;
     try {
         const tactor::array palm = tactor::preset_array("palm-3x3");
-        const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke(name)));
+        // Weak, for the first time on a card: then come up in steps of 6 dB.
+        const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke(name)),
+                                  {.level_dbfs = -40.0});
         const tactor::stroke_report report =
             co_await tactor::async_play(player, score, tactor::start_at::now(), asio::use_awaitable);
         answer = name + ": " + std::string(to_string(report.state));

@@ -58,7 +58,9 @@ try {
     if (argc != 3)
         return std::fprintf(stderr, "usage: udp_sink HOST PORT\n"), 2;
     const tactor::array palm = tactor::preset_array("palm-3x3");
-    const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke("park2016-1")));
+    // Weak, for the first time: then come up in steps of 6 dB.
+    const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke("park2016-1")),
+                              {.level_dbfs = -40.0});
 
     tactor::stream_setup stream;
     stream.name = argv[1];

@@ -113,7 +113,7 @@ enum class wait_kind {
 TACTOR_KIND(wait_kind);
 
 /// Result of wait(): the report, or the reason why there is none.
-class wait_result {
+class [[nodiscard]] wait_result {
 public:
     wait_result(wait_kind without) noexcept : outcome_(without) {}
     wait_result(stroke_report r) noexcept : outcome_(wait_kind::ended), report_(std::move(r)) {}

@@ -376,7 +376,7 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
                         own.end();
                     else
                         own.cancel();
-                    p.wait(id);
+                    CHECK(p.wait(id));
                     CHECK(p.wait(own.id()));
                     CHECK_FALSE(own.to(1.0, 1.0));
                 }

@@ -402,9 +402,9 @@ TEST_CASE("each stroke's beginning is reported once and before its end, with the
     for (std::size_t i = 1; i < ids.size(); ++i)
         CHECK(p.wait(ids[i])->state == state_kind::finished);
     moved.end();
-    p.wait(live.id());
+    CHECK(p.wait(live.id()));
     p.cancel(waits);
-    p.wait(waits);
+    CHECK(p.wait(waits));
     p.stop();
     const std::lock_guard lock(mutex);
     CHECK(before);

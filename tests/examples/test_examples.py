@@ -78,6 +78,8 @@ class Examples(ToolTest):
         for source in sources:
             text = source.read_text(encoding="utf-8")
             self.assertLess(text.count("\n"), 80, source)
+            if "tactor::player" in text:  # a first try on somebody's skin
+                self.assertIn("level_dbfs = -40.0", text, source)
             self.assertIn(f'"{source.stem}"', tested)
             self.assertRegex(text.splitlines()[1], r"^// \w", source)
 
@@ -181,7 +183,7 @@ class Examples(ToolTest):
                     d = s.recv(2000)
                     datagrams[struct.unpack("<Q", d[:8])[0]] = d[8:]
         self.assertEqual(p.communicate(timeout=PATIENCE_S), ("finished\n", ""))
-        self.ok("render", "park2016-1", "--sample-format", "s16", "-o", "o.wav")
+        self.ok("render", "park2016-1", "--level-dbfs", "-40", "--sample-format", "s16", "-o", "o.wav")
         data = Wav(self.dir / "o.wav").data
         # Each at its number; packets beyond a smaller buffer are lost.
         numbers = range(0, max(datagrams) + 48, 48)
