@@ -59,7 +59,9 @@ void begin_group(CLI::App& command, const std::string& heading)
 
 void add_force_option(CLI::App& command, bool& into)
 {
-    command.add_flag("--force", into, "replace a file that tactor did not write; never one that is read");
+    command.add_flag(
+        "--force", into,
+        "replace a file that tactor did not write, or that was changed since; never one that is read");
 }
 
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,

@@ -67,7 +67,7 @@ void begin_group(CLI::App& command, const std::string& heading = "Options");
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
 
-/// --force: output replaces a file that tactor did not write.
+/// --force: output replaces a file that tactor did not write, or that was changed since.
 void add_force_option(CLI::App& command, bool& into);
 
 /// Adds an option whose text `take` reads. Returns it.
@@ -85,7 +85,7 @@ struct picture_options {
     std::string file = {}; ///< empty: none
     double width_mm = plot::figure_options{}.width_mm;
     unsigned dpi = plot::usual_dpi;
-    bool force = false;     ///< replaces a file that tactor did not write
+    bool force = false;     ///< replaces a file that tactor did not write as it is
     std::string title = {}; ///< --title; empty: the picture's own, "none": none
 
     bool has_title() const { return title != "none"; }

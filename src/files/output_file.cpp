@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
+#include "core/sha256.hpp"
 #include "core/split.hpp"
 
 namespace tactor::detail {
@@ -79,10 +81,32 @@ fs::path follow_links(const fs::path& asked)
     return p;
 }
 
+constexpr std::string_view hash_name = "sha256";
+
+/// Tests whether bytes are as with_hash() returned them.
+bool has_own_hash(std::string bytes, const hash_note& note)
+{
+    constexpr std::size_t digits = 64;
+    const std::size_t at = bytes.rfind(hash_name);
+    if (at == bytes.npos || at + hash_name.size() + 1 + digits > bytes.size())
+        return false;
+    const std::string hash = bytes.substr(at + hash_name.size() + 1, digits);
+    const std::string all = note(hash);
+    const std::size_t begin = bytes.rfind(all);
+    return begin != bytes.npos && sha256_text(bytes.erase(begin, all.size())) == hash;
+}
+
 } // namespace
 
+std::string with_hash(std::string bytes, std::size_t at, const hash_note& note)
+{
+    const std::string hash = sha256_text(bytes);
+    return bytes.insert(at, note(hash));
+}
+
 void check_replaced(const fs::path& file, bool force,
-                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours)
+                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
+                    const hash_note& note)
 {
     constexpr std::size_t begin_bytes = 16384;
     constexpr std::size_t end_bytes = 1024;
@@ -102,11 +126,17 @@ void check_replaced(const fs::path& file, bool force,
         end.resize(end_bytes);
         in.read(end.data(), end_bytes);
     }
-    if (!is_ours(begin, end))
-        throw error(error_kind::bad_input, source_place{file.string()},
-                    "there is such a file already, and tactor did not write it",
+    const auto refuse_foreign = [&file](std::string_view why) {
+        throw error(error_kind::bad_input, source_place{file.string()}, why,
                     "choose another name, or replace it with {force=true}")
             .with_field("force");
+    };
+    if (!is_ours(begin, end))
+        refuse_foreign("there is such a file already, and tactor did not write it");
+    in.clear();
+    in.seekg(0);
+    if (!has_own_hash(std::string(std::istreambuf_iterator<char>(in), {}), note))
+        refuse_foreign("it was changed after tactor wrote it");
 }
 
 void sync_folder(const fs::path& folder) noexcept

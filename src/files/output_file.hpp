@@ -3,9 +3,11 @@
 /// A file that appears under its name only when it is complete.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "core/owned.hpp"
@@ -13,11 +15,18 @@
 
 namespace tactor::detail {
 
+/// Returns the note in which a format keeps a SHA-256: "sha256", one byte and the digits are in it.
+using hash_note = std::function<std::string(std::string_view digits)>;
+
+/// Returns bytes with the note of their SHA-256 at a place.
+std::string with_hash(std::string bytes, std::size_t at, const hash_note& note);
+
 /// Refuses to replace a file that was read as input, and, without `force`, one that another program or a
-/// person wrote: a regular file, not empty, of whose first 16 kB and last 1 kB `is_ours` returns false.
-/// \throws error (bad_input).
+/// person wrote or changed: a regular file, not empty, of whose first 16 kB and last 1 kB `is_ours` returns
+/// false, or without the note that with_hash() gave it. \throws error (bad_input).
 void check_replaced(const std::filesystem::path& file, bool force,
-                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours);
+                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
+                    const hash_note& note);
 
 /// Syncs the names in a folder (empty: this one), so that they survive a power cut, too. Not every file
 /// system can, and none says so.

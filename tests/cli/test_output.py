@@ -2,10 +2,12 @@
 """Outputs of every command: pipes, standard output, files of others and inputs, which none replaces; names chosen by strangers; and
 inputs of the largest size."""
 import contextlib
+import hashlib
 import itertools
 import os
 import pathlib
 import pty
+import re
 import resource
 import select
 import signal
@@ -254,7 +256,7 @@ class Inputs(ExperimentTest):
         self.simulate("02", definition="study/participants.json")
         self.assertEqual(definition.read_bytes(), before)
 
-    def test_a_file_of_another_program_is_replaced_only_with_force(self):
+    def test_a_file_of_another_program_or_one_that_was_changed_is_replaced_only_with_force(self):
         self.simulate()
         png = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sIIBBBBBI", 13, b"IHDR", 1, 1, 8, 2, 0, 0, 0, 0)
         foreign = {".svg": self.SVG.encode(), ".png": png, ".pdf": b"%PDF-1.4\n" + b"x" * 40000 + b"\nstartxref\n9\n%%EOF\n",
@@ -271,6 +273,16 @@ class Inputs(ExperimentTest):
                 self.assertNotEqual(ours, foreign[extension])
                 self.ok(command, stroke, "-o", name)  # its own
                 self.assertEqual((self.dir / name).read_bytes(), ours)
+                for edited in (ours[:-30] + bytes([ours[-30] ^ 1]) + ours[-29:], ours[:4000] + b" " + ours[4000:], ours + b"A label\n"):
+                    self.write(name, edited)
+                    said = self.kept(name, command, stroke, "-o", name)
+                    self.assertTrue(name in said and "it was changed after tactor wrote it" in said and "--force" in said, said)
+                    self.ok(command, stroke, "-o", name, "--force")
+                    self.assertEqual((self.dir / name).read_bytes(), ours)
+                digits = re.search(rb"sha256.([0-9a-f]{64})", ours)
+                note = {".svg": ours[digits.start() - 5:], ".md": ours[digits.start() - 6:], ".pdf": ours[digits.start() - 2:digits.end() + 1],
+                        ".png": ours[digits.start() - 8:digits.end() + 4]}[extension]
+                self.assertEqual(hashlib.sha256(ours.replace(note, b"")).hexdigest(), digits[1].decode())
         self.ok("plot", "park2016-1", "-o", "p.svg")
         edited = (self.dir / "p.svg").read_text(encoding="utf-8").replace(
             'encoding="UTF-8"?>', 'encoding="UTF-8" standalone="no"?>\n<!-- Created with Inkscape -->', 1)

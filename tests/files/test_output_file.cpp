@@ -199,21 +199,45 @@ TEST_CASE("the library's caller replaces any input, the program its own records,
     }
 }
 
-TEST_CASE("a file of another program is replaced by force only")
+TEST_CASE("a file that another program wrote or somebody changed is replaced by force only")
 {
     const folder dir;
     const auto ours = [](std::string_view begin, std::string_view end) {
-        return begin.starts_with("ours") || end.ends_with("ours");
+        return begin.starts_with("ours") || end.find("ours") != end.npos;
     };
-    std::ofstream(dir / "a") << std::string(50000, 'x');
-    CHECK_THROWS_WITH_AS(detail::check_replaced(dir / "a", false, ours), doctest::Contains("force"), error);
-    CHECK_NOTHROW(detail::check_replaced(dir / "a", true, ours));
-    std::ofstream(dir / "a", std::ios::app) << "ours";
-    CHECK_NOTHROW(detail::check_replaced(dir / "a", false, ours));
-    std::ofstream(dir / "b");
-    CHECK_NOTHROW(detail::check_replaced(dir / "b", false, ours));
-    CHECK_NOTHROW(detail::check_replaced(dir / "none", false, ours));
-    CHECK_NOTHROW(detail::check_replaced("/dev/null", false, ours));
+    const auto note = [](std::string_view digits) { return "<sha256 " + std::string(digits) + ">"; };
+    const auto check = [&](const char* name, bool force) {
+        detail::check_replaced(dir / name, force, ours, note);
+    };
+    const auto write = [&](const char* name, std::string_view text) { std::ofstream(dir / name) << text; };
+    write("a", std::string(50000, 'x'));
+    CHECK_THROWS_WITH_AS(check("a", false), doctest::Contains("tactor did not write it"), error);
+    CHECK_NOTHROW(check("a", true));
+    write("b", "");
+    CHECK_NOTHROW(check("b", false));
+    CHECK_NOTHROW(check("none", false));
+    CHECK_NOTHROW(detail::check_replaced("/dev/null", false, ours, note));
+    // The digits are those of sha256sum.
+    const std::string abc = "<sha256 ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad>";
+    CHECK(detail::with_hash("abc", 1, note) == "a" + abc + "bc");
+    for (const std::size_t at : {std::size_t{4}, std::size_t{30000}}) {
+        const std::string written = detail::with_hash("ours" + std::string(29996, 'x'), at, note);
+        write("c", written);
+        CHECK_NOTHROW(check("c", false));
+        for (const std::size_t place : {std::size_t{5}, written.size() / 2, written.size() - 1}) {
+            std::string changed = written;
+            changed[place] = changed[place] == 'y' ? 'z' : 'y';
+            write("c", changed);
+            CHECK_THROWS_WITH_AS(check("c", false), doctest::Contains("it was changed"), error);
+        }
+        for (const std::string& changed : {written + "\n", written + "<sha256 >", written.substr(0, 29000)}) {
+            write("c", changed);
+            CHECK_THROWS_WITH_AS(check("c", false), doctest::Contains("force"), error);
+            CHECK_NOTHROW(check("c", true));
+        }
+    }
+    write("d", "ours, without a hash");
+    CHECK_THROWS_WITH_AS(check("d", false), doctest::Contains("it was changed"), error);
 }
 
 } // namespace output_file_test

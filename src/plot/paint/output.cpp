@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <boost/crc.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -200,7 +201,45 @@ private:
     double loop_s_ = 0.0;
 };
 
+// Returns how a format keeps a SHA-256.
+detail::hash_note write_hash(file_format format)
+{
+    return [format](std::string_view digits) {
+        return format == file_format::svg   ? fmt::format("<!-- sha256 {} -->\n", digits)
+               : format == file_format::png ? make_chunk(fmt::format("tEXtsha256{}{}", '\0', digits))
+                                            : fmt::format("% sha256 {}\n", digits);
+    };
+}
+
+// Returns a picture with its SHA-256, by which check_output() knows it: in an SVG behind its end, in a PNG in
+// a chunk before the last one (of 12 bytes), in a PDF before its mark, so that no reference moves.
+std::string with_hash(std::string bytes, file_format format)
+{
+    const std::size_t at = format == file_format::svg   ? bytes.size()
+                           : format == file_format::png ? bytes.size() - 12
+                                                        : bytes.rfind(pdf_mark) + 1;
+    return detail::with_hash(std::move(bytes), at, write_hash(format));
+}
+
 } // namespace
+
+void add_big_endian(std::string& s, std::uint32_t v)
+{
+    for (int shift = 24; shift >= 0; shift -= 8)
+        s += static_cast<char>((v >> shift) & 0xFFU);
+}
+
+std::string make_chunk(const std::string& name_and_content)
+{
+    constexpr std::size_t name_bytes = 4;
+    std::string chunk;
+    add_big_endian(chunk, static_cast<std::uint32_t>(name_and_content.size() - name_bytes));
+    chunk += name_and_content;
+    boost::crc_32_type crc;
+    crc.process_bytes(name_and_content.data(), name_and_content.size());
+    add_big_endian(chunk, crc.checksum());
+    return chunk;
+}
 
 std::string to_svg(const canvas& c)
 {
@@ -232,17 +271,19 @@ file_format find_format(const fs::path& file)
 void check_output(const fs::path& file, bool force)
 {
     const file_format format = find_format(file);
-    detail::check_replaced(file, force, [format](std::string_view begin, std::string_view end) {
+    const auto is_ours = [format](std::string_view begin, std::string_view end) {
         return format == file_format::pdf   ? end.find(pdf_mark) != end.npos
                : format == file_format::png ? begin.find(png_mark) != begin.npos
                                             : begin.find(svg_mark) != begin.npos;
-    });
+    };
+    detail::check_replaced(file, force, is_ours, write_hash(format));
 }
 
 void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)
 {
     check_output(file, force);
-    detail::write_file(file, to_bytes(c, find_format(file), dpi));
+    const file_format format = find_format(file);
+    detail::write_file(file, with_hash(to_bytes(c, format, dpi), format));
 }
 
 } // namespace tactor::plot

@@ -4,6 +4,7 @@
 /// time.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -25,6 +26,11 @@ inline constexpr std::string_view pdf_mark = "\n% Drawn by tactor\nstartxref";
 
 inline constexpr unsigned least_dpi = 30;
 inline constexpr unsigned most_dpi = 2400;
+
+/// Adds a number of a PNG.
+void add_big_endian(std::string& s, std::uint32_t v);
+/// Returns a chunk of a PNG, with its length and its CRC.
+std::string make_chunk(const std::string& name_and_content);
 
 /// Returns an SVG document: real text, a group for each mark with an id, title and desc.
 std::string to_svg(const canvas& c);
@@ -49,7 +55,7 @@ void check_output(const std::filesystem::path& file, bool force);
 /// Writes a picture in the format of the name; `dpi` is for PNG. Writes under a temporary name in the same
 /// folder, then renames: no incomplete file is left. Blocks on the file system. \throws error: bad_input
 /// for the extension, a folder that does not exist, a file that was read as input or, without `force`, one
-/// that is not a picture of tactor; runtime for failures of the file system.
+/// that is not a picture of tactor as save() wrote it; runtime for failures of the file system.
 void save(const canvas& c, const std::filesystem::path& file, unsigned dpi, bool force);
 
 } // namespace tactor::plot

@@ -7,7 +7,6 @@
 #include <new>
 #include <numbers>
 
-#include <boost/crc.hpp>
 #include <cairo-pdf.h>
 #include <cairo.h>
 #include <fmt/format.h>
@@ -150,22 +149,6 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned length) noex
     }
 }
 
-void add_big_endian(std::string& s, std::uint32_t v)
-{
-    for (int shift = 24; shift >= 0; shift -= 8)
-        s += static_cast<char>((v >> shift) & 0xFFU);
-}
-
-void add_chunk(std::string& to, const std::string& name_and_content)
-{
-    constexpr std::size_t name_bytes = 4;
-    add_big_endian(to, static_cast<std::uint32_t>(name_and_content.size() - name_bytes));
-    to += name_and_content;
-    boost::crc_32_type crc;
-    crc.process_bytes(name_and_content.data(), name_and_content.size());
-    add_big_endian(to, crc.checksum());
-}
-
 // Adds the size of a pixel and the mark in chunks after the header (8 + 25 bytes): Cairo writes neither.
 void add_resolution_and_mark(std::string& png, unsigned dpi)
 {
@@ -175,10 +158,7 @@ void add_resolution_and_mark(std::string& png, unsigned dpi)
     add_big_endian(resolution, per_metre);
     add_big_endian(resolution, per_metre);
     resolution += '\1';
-    std::string chunks;
-    add_chunk(chunks, resolution);
-    add_chunk(chunks, std::string(png_mark));
-    png.insert(after_header, chunks);
+    png.insert(after_header, make_chunk(resolution) + make_chunk(std::string(png_mark)));
 }
 
 // Adds the mark as a comment before "startxref", so that no reference moves.

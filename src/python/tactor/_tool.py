@@ -151,12 +151,12 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
     name : str, optional
         The title; default: the stroke's name.
     force : bool
-        Replace a file that tactor did not write.
+        Replace a file that tactor did not write, or that was changed since.
 
     Raises
     ------
     InputError
-        For another extension, a width out of range, a file that was read as input, or one that tactor did not write.
+        For another extension, a width out of range, a file that was read as input, or one that `force` would replace.
     """
     _need(view, str, "view")
     all_of_them = placed(plans)

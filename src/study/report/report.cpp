@@ -225,10 +225,15 @@ std::string between_text(const study_facts& f)
 
 void write_report(const fs::path& file, const std::string& text, bool force)
 {
-    detail::check_replaced(file, force, [](std::string_view begin, std::string_view) {
+    const auto is_ours = [](std::string_view begin, std::string_view) {
         return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
-    });
-    detail::write_file(file, text);
+    };
+    const auto note = [](std::string_view digits) {
+        return fmt::format("\n<!-- sha256 {}: by this line tactor knows if the text was changed -->\n",
+                           digits);
+    };
+    detail::check_replaced(file, force, is_ours, note);
+    detail::write_file(file, detail::with_hash(text, text.size(), note));
 }
 
 std::string escape_markdown(std::string_view text)

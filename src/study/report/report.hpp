@@ -84,9 +84,9 @@ study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
 /// about it.
 std::string methods_text(const study_facts& f, const dataset& d, const nlohmann::ordered_json& analysis);
 
-/// Writes it whole, or nothing. \throws error: bad_input for a folder that does not exist, a file
-/// that was read as input or, without `force`, a file that is no report of tactor; runtime for what the
-/// system refuses.
+/// Writes it whole, or nothing, and its SHA-256 in the last line. \throws error: bad_input for a folder that
+/// does not exist, a file that was read as input or, without `force`, one that is no report of tactor, or
+/// that somebody has changed; runtime for what the system refuses.
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
 /// Returns all facts by the names that methods.md has for them.
