@@ -404,6 +404,10 @@ class Refused(CalibrateTest):
         (self.dir / "me.json").unlink()
         self.bad(*same, says=["me.json: it is missing"])
 
+    def test_resuming_a_session_that_is_not_there_begins_none(self):
+        self.bad("--resume", says=("--resume: there is no log me.tsv", "leave --resume out: then a new session begins"))
+        self.assertFalse((self.dir / "me.tsv").exists())
+
     def test_two_sessions_on_one_log_are_refused(self):
         first = self.begun(*self.ARGS)
         first.stdout.readline()  # the question: the log is open

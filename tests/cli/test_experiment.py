@@ -384,7 +384,7 @@ class Simulated(ExperimentTest):
 
     def test_the_same_session_is_the_same_bytes(self):
         self.simulate(folder="one")
-        self.simulate("01", "--resume", folder="two")  # begins a session that is not there
+        self.simulate(folder="two")
         self.assertEqual(contents(self.dir / "one"), contents(self.dir / "two"))
         self.simulate(folder="three", spec="seed=2,sigma=1")
         self.assertNotEqual(contents(self.dir / "one"), contents(self.dir / "three"))
@@ -439,6 +439,24 @@ class Folder(ExperimentTest):
         file.write_text(text)
         self.small(SMALL.replace('name = "down"', 'name = "up"'))
         self.simulate("02", definition="small.toml", status=2)
+
+    def test_resuming_a_session_that_is_not_there_begins_none(self):
+        for code in ("P1", "P2"):
+            self.simulate(code, "--resume", status=2, says=(f"--resume: there is no sub-{code} in study", "leave --resume out: then a new session begins"))
+            self.assertEqual((self.dir / "study").exists(), code == "P2")
+            if code == "P1":
+                self.simulate("P1")
+                before = contents(self.dir / "study")
+        self.assertEqual(contents(self.dir / "study"), before)
+
+    def test_a_warning_names_codes_that_look_alike(self):
+        for code, others in (("01", []), ("C02", []), ("P01", ["01"]), ("1", ["01", "P01"]), ("11", []), ("P02", []), ("2", ["C02", "P02"]), ("Anna", [])):
+            said = self.simulate(code).stderr
+            self.assertEqual(sorted(re.findall(rf"warning: study: sub-(\w+) and sub-{code}: these codes look alike: is it one person\?", said)), others)
+        for command in ("analyze", "report"):
+            said = self.ok(command, "study").stderr
+            self.assertEqual(len(re.findall("look alike", said)), 5, said)
+        self.assertNotIn("look alike", self.ok("analyze", "study", "--participants", "01,C02,11").stderr)
 
     def test_a_changed_definition_is_reported(self):
         self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)

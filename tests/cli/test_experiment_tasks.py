@@ -105,6 +105,36 @@ class Tasks(ExperimentTest):
             now = contents(self.dir / "study")
             self.assertEqual({k: v for k, v in now.items() if k.endswith("_beh.tsv")}, {k: v for k, v in whole.items() if k.endswith("_beh.tsv")})
 
+    def test_values_and_answers_that_no_trial_can_have_are_refused(self):
+        self.hold(TASKS)
+        for run, changes in {"values": ({"value": "-30"}, {"value": "n/a"}, {"response": "3"}, {"trial": "141"}, {"response_time": "-0.1"}),
+                             "bayes": ({"value": "-8.5"}, {"response": "5000"}), "words": ({"value": "5"},), "same": ({"response": "0"},),
+                             "felt": ({"value": "-45"}, {"value": "n/a"}), "size": ({"response": "5000"}, {"intensity_estimate": "5000"}, {"value": "-25"}),
+                             "there": ({"response": "yes"},)}.items():
+            table = self.dir / f"study/sub-01/beh/sub-01_task-{run}_beh.tsv"
+            text = table.read_text(encoding="utf-8")
+            lines = text.splitlines()
+            columns = lines[0].split("\t")
+            line = next(i for i, told in enumerate(lines) if i > 2 and told.split("\t")[columns.index("method_1")] != "none")
+            for change in changes:
+                with self.subTest(run=run, **change):
+                    cells = lines[line].split("\t")
+                    for column, cell in change.items():
+                        self.assertNotEqual(cells[columns.index(column)], cell)
+                        cells[columns.index(column)] = cell
+                    table.write_text("\n".join([*lines[:line], "\t".join(cells), *lines[line + 1:]]) + "\n", encoding="utf-8")
+                    for command in ("analyze", "report"):
+                        self.refused(2, command, "study", says=(f"{table.relative_to(self.dir)}:{line + 1}: ",))
+            table.write_text(text, encoding="utf-8")
+        # A trial without a stimulus has no value; other programs round.
+        table = self.dir / "study/sub-01/beh/sub-01_task-felt_beh.tsv"
+        text = table.read_text(encoding="utf-8")
+        table.write_text(re.sub(r"(?m)^(.*\tnone\t.*\t)n/a(\tfalse)", r"\1-40\2", text, count=1), encoding="utf-8")
+        self.refused(2, "analyze", "study", says=("a trial without a stimulus has a value",))
+        table.write_text(text.replace("\t-40.0\t", "\t-39.99999999999999\t").replace("\t-40\t", "\t-39.99999999999999\t"), encoding="utf-8")
+        self.assertNotEqual(table.read_text(encoding="utf-8"), text)
+        self.ok("analyze", "study")
+
     def test_results_recover_what_was_simulated(self):
         for i in range(1, 7):
             self.hold(TASKS, f"{i:02}", spec=SIMULATE.format(i))

@@ -158,6 +158,14 @@ class Tables(Forms):
         table.write_text("participant_id\tage\n")
         self.simulate("03", definition="short.toml", status=2, says=("phenotype/about.tsv", "hand"))
 
+    def test_the_report_refuses_an_impossible_answer(self):
+        self.simulate("01", definition="short.toml")
+        table = self.dir / "study/phenotype/tired.tsv"
+        table.write_text("participant_id\tafter\tnow\nsub-01\tpairs\t4\n")
+        self.refused(2, "report", "study", says=('phenotype/tired.tsv:2: now is "4" (a whole number from 1 to 3)',))
+        table.write_text("participant_id\tafter\tnow\nsub-01\tpairs\tn/a\n")
+        self.ok("report", "study")
+
     def test_each_session_asks_anew_and_the_report_counts_people(self):
         self.edit("short.toml", "gap_s", "sessions = 2\ngap_s")
         for session in ("1", "2"):

@@ -114,11 +114,17 @@ TEST_CASE("a session killed before its first byte resumes, too")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
-    CHECK(run(f / "none.tsv", true).log == whole.log); // not even begun
     f.write("log.tsv", "");
     CHECK(run(f / "log.tsv", true).log == whole.log); // the log is made first
     fs::copy(f / "a.json", f / "beside.json");
     CHECK(run(f / "beside.tsv", true).log == whole.log);
+}
+
+TEST_CASE("a session that was never begun does not resume")
+{
+    const folder f;
+    has(refusal(f / "none.tsv", true), "there is no log");
+    CHECK_FALSE(fs::exists(f / "none.tsv"));
 }
 
 TEST_CASE("without answers a session begins anew, even with other options")

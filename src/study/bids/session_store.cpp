@@ -90,6 +90,11 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
                         fmt::format("it is missing, and {} has data",
                                     session_name(folder_.code(), folder_.session())),
                         "put it back, or choose another code");
+        if (resume)
+            throw error(error_kind::bad_input, "--resume",
+                        fmt::format("there is no {} in {}", session_name(folder_.code(), folder_.session()),
+                                    folder_.path().string()),
+                        "correct --participant, or leave --resume out: then a new session begins");
         return;
     }
     if (!resume)

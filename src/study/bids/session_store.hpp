@@ -28,7 +28,8 @@ class session_store {
 public:
     /// Prepares a new session, or with `resume` one that is there. `facts` go into session.json; those of a
     /// session that is there must be the same, except the ones that `may_differ` lists.
-    /// \throws error: bad_input if this session is there (and not `resume`), or it began
+    /// \throws error: bad_input if this session is there and not `resume`, or the other way round, or it
+    /// began
     ///         with other facts; runtime for what the system refuses.
     session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts, bool resume);
     ~session_store();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <ctime>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -280,6 +282,10 @@ void study_folder::refuse_others()
         if (s.text != definition_.text)
             otherwise.push_back(who);
     }
+    std::set<std::string> alike;
+    for (const auto& [code, session] : all)
+        if (code != code_ && are_alike(code, code_) && alike.insert(code).second)
+            warnings_.push_back(fmt::format("sub-{} and sub-{}: {}", code, code_, alike_codes));
     for (unsigned n = 1; n < definition_.session.value_or(1); ++n)
         if (std::ranges::count(all, std::pair(code_, session_number(n))) == 0)
             warnings_.push_back(fmt::format("{} is not here", session_name(code_, n)));

@@ -190,6 +190,9 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
     else if (begun)
         parse_settings(beginning, s);
     made_ = !begun && !is_on_disk(file_);
+    if (resume && made_)
+        throw error(error_kind::bad_input, "--resume", fmt::format("there is no log {}", file_.string()),
+                    "correct -o or --log, or leave --resume out: then a new session begins");
     open();
     try {
         lines_ = read_lines();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -131,15 +132,32 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
     return static_cast<std::size_t>(at - known.begin());
 }
 
-unsigned read_rating(const text_table& t, std::size_t row, const run_outline& run)
+// Reads an answer that stands in two columns.
+unsigned read_twice(const text_table& t, std::size_t row, std::string_view column, unsigned least,
+                    unsigned most)
 {
-    const auto response = t.whole(row, "response", run.lowest_rating(), run.scale);
-    const auto rating = t.whole(row, "rating", run.lowest_rating(), run.scale);
-    if (!response && !rating)
-        t.refuse(row, "there is no rating", "a trial that counts has one");
-    if (response && rating && *response != *rating)
-        t.refuse(row, fmt::format("response is {} and rating {}", *response, *rating), "they are the same");
-    return rating ? *rating : *response;
+    const auto response = t.whole(row, "response", least, most);
+    const auto own = t.whole(row, column, least, most);
+    if (!response && !own)
+        t.refuse(row, fmt::format("there is no {}", column), "a trial that counts has one");
+    if (response && own && *response != *own)
+        t.refuse(row, fmt::format("response is {} and {} {}", *response, column, *own), "they are the same");
+    return own ? *own : *response;
+}
+
+// Reads a value that the run has. Other programs round it: R to 15 digits.
+double read_value(const text_table& t, std::size_t row, const run_outline& run)
+{
+    const auto value = t.number(row, "value");
+    if (!value)
+        t.refuse(row, "there is no value", "the value of the comparison");
+    const auto is_same = [&value](double one) {
+        return std::abs(one - *value) <= 1e-12 * std::max(1.0, std::abs(one));
+    };
+    if (std::ranges::none_of(run.values, is_same))
+        t.refuse(row, fmt::format("value {} is none of the run's", t.need(row, "value")),
+                 fmt::format("one of {}", fmt::join(run.values, ", ")));
+    return *value;
 }
 
 // Reads the answer 1 or 2.
@@ -164,17 +182,12 @@ void read_measure(trial& r, const text_table& t, std::size_t row, const run_outl
     } else if (run.standard && !standard_first && t.need(row, "method_2") != standard_name) {
         t.refuse(row, "no stimulus is the standard", "one of each trial is");
     }
-    if (!run.vary.empty() && r.signal) {
-        const auto value = t.number(row, "value");
-        if (!value)
-            t.refuse(row, "there is no value", "the value of the comparison");
-        r.value = *value;
-    }
+    if (!run.vary.empty() && r.signal)
+        r.value = read_value(t, row, run);
+    else if (!run.vary.empty() && t.cell(row, "value"))
+        t.refuse(row, "a trial without a stimulus has a value", "n/a");
     if (run.task == task_kind::estimate) {
-        const auto number = t.whole(row, "intensity_estimate", 1, most_estimate);
-        if (!number)
-            t.refuse(row, "there is no estimate", "a trial that counts has one");
-        r.response = *number;
+        r.response = read_twice(t, row, "intensity_estimate", 1, most_estimate);
         return;
     }
     r.response = read_one_of_two(t, row);
@@ -186,13 +199,15 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     trial r;
     r.motion = find_place(t, row, "motion", run.motions);
     r.response_time_s = t.number(row, "response_time");
+    if (r.response_time_s.value_or(0.0) < 0.0)
+        t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "0 or more seconds");
     if (find_task(run.task).measures) {
         read_measure(r, t, row, run);
         return r;
     }
     r.method_1 = find_place(t, row, "method_1", run.methods);
     if (run.task == task_kind::rate) {
-        r.response = read_rating(t, row, run);
+        r.response = read_twice(t, row, "rating", run.lowest_rating(), run.scale);
     } else if (run.task == task_kind::identify) {
         r.response = static_cast<unsigned>(find_place(t, row, "response", run.motions));
     } else {
@@ -420,6 +435,23 @@ std::vector<session_number> list_sessions(const fs::path& folder, std::string_vi
     return {all.begin(), all.end()};
 }
 
+bool are_alike(std::string_view a, std::string_view b)
+{
+    // Takes the number at the end off, and returns it without leading zeros.
+    const auto take_number = [](std::string_view& code) {
+        const std::size_t at = code.find_last_not_of("0123456789") + 1; // npos + 1 is 0
+        std::string_view number = code.substr(at);
+        code = code.substr(0, at);
+        number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
+        return number;
+    };
+    const std::string_view number = take_number(a);
+    if (number != take_number(b))
+        return false;
+    const bool one_is_bare = !number.empty() && (a.empty() || b.empty());
+    return one_is_bare || in_small_letters(std::string(a)) == in_small_letters(std::string(b));
+}
+
 bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept
 {
     if (run.task == task_kind::detect)
@@ -470,7 +502,7 @@ run_data read_run(const text_table& t, const run_outline& run)
     run_data d;
     std::set<unsigned> seen;
     for (std::size_t i = 0; i < t.rows(); ++i) {
-        const auto place = t.whole(i, "trial", 1, 1000000);
+        const auto place = t.whole(i, "trial", 1, run.trials > 0 ? run.trials : 1000000);
         if (!place)
             t.refuse(i, "there is no trial", "its place in the sequence, from 1");
         const unsigned attempt = t.whole(i, "attempt", 1, 1000000).value_or(1);
@@ -510,6 +542,11 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
         r.add(code, homes.at(code));
     dataset d = r.finish();
     d.excluded = std::move(excluded);
+    for (std::size_t i = 0; i < d.participants.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            if (are_alike(d.participants[k], d.participants[i]))
+                d.warnings.push_back(
+                    fmt::format("sub-{} and sub-{}: {}", d.participants[k], d.participants[i], alike_codes));
     return d;
 }
 

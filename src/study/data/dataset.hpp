@@ -315,6 +315,12 @@ struct selection {
     std::map<std::string, std::string> without = {}; ///< the reason for each code; may be empty
 };
 
+/// Tests whether two codes may mean one person: 1 and 01, 01 and P01, p1 and P01; but not C01 and P01.
+bool are_alike(std::string_view a, std::string_view b);
+
+/// Warning about such codes.
+inline constexpr std::string_view alike_codes = "these codes look alike: is it one person?";
+
 /// Reads the codes in participants.tsv, without sub-. \throws error (bad_input) with file and line.
 std::vector<std::string> read_participants(const text_table& t);
 
@@ -325,8 +331,8 @@ run_data read_run(const text_table& t, const run_outline& run);
 /// \throws error (bad_input) with file and line for what is not as the head of this file says: a code that is
 ///         not known or in two folders, nobody left, a folder of somebody who is not in participants.tsv,
 ///         experiments that differ, real and simulated sessions together, sessions that the experiment does
-///         not have or of two groups, names that the experiment does not know, answers out of range, a trial
-///         that counts twice.
+///         not have or of two groups, names and values that the experiment does not know, answers that the
+///         task cannot give, a trial that counts twice.
 dataset read_dataset(const std::vector<std::filesystem::path>& folders, const selection& who);
 
 /// Returns a run as the participant's group has it, with the motions and methods of their trials.

@@ -95,8 +95,12 @@ std::size_t count_answers(const fs::path& folder, const questionnaire& q, const 
     std::size_t count = 0;
     for (std::size_t i = 0; i < t.rows(); ++i)
         if (t.need(i, "participant_id") == "sub-" + code &&
-            (!session || t.whole(i, "session", 1, 99) == session))
+            (!session || t.whole(i, "session", 1, 99) == session)) {
             ++count;
+            for (const questionnaire_item& item : q.items)
+                if (item.kind != item_kind::text && t.has(item.name))
+                    t.whole(i, item.name, item.lowest, item.greatest); // refuses what cannot be answered
+        }
     return count;
 }
 
