@@ -10,12 +10,18 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import unittest
 
 from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
 from harness import ROOT, TOOL, main, wav_bytes
+from studies import toml
+
+FORM = (toml("run", "about", task="questionnaire", when="before", title="About you") + toml("run.item", "hand", question="Hand?", kind="choice", choices=["left", "right"])
+        + toml("run.item", "years", question="Years?", kind="number", range=[0, 99])
+        + toml("run.item", "tired", question="Tired?", kind="scale", scale=9, labels=["no", "yes"]))
 
 
 class Definition(ExperimentTest):
@@ -457,6 +463,41 @@ class Folder(ExperimentTest):
             said = self.ok(command, "study").stderr
             self.assertEqual(len(re.findall("look alike", said)), 5, said)
         self.assertNotIn("look alike", self.ok("analyze", "study", "--participants", "01,C02,11").stderr)
+
+    def test_words_that_give_an_answer_its_meaning_make_another_experiment(self):
+        """Participants whose scale was turned round are not averaged with the others."""
+        said = SMALL.replace('name = "how good"\n', 'name = "how good"\nquestion = "How good?"\nlabels = ["bad", "good"]\n').replace(
+            'name = "which-one"\n', 'name = "which-one"\nchoices = ["the first", "the second"]\n') + FORM
+        self.assertEqual(said.count("labels"), 2)
+        self.simulate(definition=self.small(said))
+        for old, new, says in (
+                ('["bad", "good"]', '["good", "bad"]', 'run "how good", labels: ["bad", "good"], then ["good", "bad"]'),
+                ('["the first", "the second"]', '["the second", "the first"]', 'run "which-one", choices'),
+                ("How good?", "How bad?", 'run "how good", question: "How good?", then "How bad?"'),
+                ("scale = 7", "scale = 8", 'run "how good", scale: "1 to 7", then "1 to 8"'),
+                ('"left", "right"', '"right", "left"', 'run "about", item "hand", choices: ["left", "right"], then ["right", "left"]'),
+                ('["no", "yes"]', '["yes", "no"]', 'run "about", item "tired", labels'),
+                ("scale = 9", 'scale = "vas"', 'run "about", item "tired", scale: "1 to 9", then "0 to 100"'),
+                ("Tired?", "Awake?", 'run "about", item "tired", question: "Tired?", then "Awake?"'),
+                ("[0, 99]", "[1, 99]", 'run "about", item "years", range: "0 to 99", then "1 to 99"'),
+                ('"years"', '"months"', 'run "about", item: ["hand", "years", "tired"], then ["hand", "months", "tired"]'),
+                ('"before"', '"after"', 'run "about", when'),
+                ('name = "down"', 'name = "up"', 'run "which-one", motions: ["to the right", "down"], then ["to the right", "up"]'),
+                ('name = "what"', 'name = "which"', 'run: ["which-one", "how good", "what"], then ["which-one", "how good", "which"]')):
+            with self.subTest(old=old):
+                self.assertEqual(said.count(old), 1)
+                changed = self.small(said.replace(old, new))
+                self.simulate("02", definition=changed, status=2, says=(f"study: sub-01 had another experiment: {says}", "(each experiment needs a folder of its own)"))
+                shutil.rmtree(self.dir / "two", ignore_errors=True)
+                self.simulate("02", definition=changed, folder="two")
+                self.refused(2, "analyze", "study", "two", says=(f"sub-01 and sub-02: their experiments differ: {says}",))
+                self.ok("analyze", "study", "two", "--exclude", "02")
+        # Words besides, and a questionnaire more, do not.
+        for text in (said.replace('title = "A small one"', 'title = "One"'), said.replace("About you", "You"), said.replace(FORM, "")):
+            shutil.rmtree(self.dir / "two", ignore_errors=True)
+            self.simulate("02", definition=self.small(text), folder="two")
+            self.ok("analyze", "study", "two")
+        self.assertIn("sub-01 had another text of this definition", self.simulate("03", definition=self.small(text)).stderr)
 
     def test_a_changed_definition_is_reported(self):
         self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)

@@ -205,7 +205,8 @@ std::string answers_title(const study::run_outline& r)
 {
     if (r.task == task_kind::detect)
         return "felt (%)";
-    return r.standard ? "comparison chosen (%)" : fmt::format("answered \"{}\" (%)", r.second_word.text);
+    return r.standard ? "comparison chosen (%)"
+                      : fmt::format("answered \"{}\" (%)", r.choices.size() == 2 ? r.choices[1] : "");
 }
 
 plot::curve_axis make_answer_axis(const study::run_analysis& r)

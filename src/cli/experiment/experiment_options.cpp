@@ -53,7 +53,7 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
            {"file_name", r.outline.file_name},
            {"task", std::string(to_string(r.outline.task))}};
     j["attribute"] = files::or_null(r.attribute);
-    j["question"] = r.question;
+    j["question"] = r.outline.question;
     j["animation"] = r.animation;
     j["min_response_s"] = r.min_response_s;
     j["scale"] = nullptr;
@@ -188,7 +188,7 @@ void print_dry_run_json(const study::prepared_experiment& p)
     for (std::size_t i = 0; i < p.runs.size(); ++i)
         j["runs"].push_back(run_json(p, p.runs[i], times[i]));
     j["questionnaires"] = json::array();
-    for (const study::questionnaire& q : d.questionnaires) {
+    for (const study::questionnaire& q : d.outline.questionnaires) {
         json items = json::array();
         for (const study::questionnaire_item& item : q.items)
             items.push_back(item.name);
@@ -216,7 +216,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
             say(stdout,
                 "motion {} by method {}: weakened by {:.2f} dB, so that no tactor exceeds the level\n",
                 d.motions[s.motion].name, d.methods[s.method].name, -s.weakened_db);
-    for (const study::questionnaire& q : d.questionnaires)
+    for (const study::questionnaire& q : d.outline.questionnaires)
         say(stdout, "questionnaire {}: {}, {}\n", q.name, describe_time(q.when),
             counted(q.items.size(), "item"));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
@@ -230,7 +230,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         const study::run_definition& r = d.runs[s.run];
         say(stdout, "\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(), r.outline.name,
             to_string(r.outline.task), r.animation ? ", animation" : "", counted(s.trials.size(), "trial"),
-            time_text(times[i]), r.question);
+            time_text(times[i]), r.outline.question);
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7}\n", "trial", "motion", "method_1", "method_2", "s");
         for (const study::planned_trial& t : s.practice)
             row(t, "practice");

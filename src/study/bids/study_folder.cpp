@@ -131,9 +131,9 @@ std::string task_text(const run_definition& r, const experiment_definition& d, b
     ordered j{{"TaskName", r.outline.name}};
     const task_row& task = find_task(r.outline.task);
     j["TaskDescription"] = (simulated ? std::string(simulated_note) + " " : "") + std::string(task.trial);
-    j["Instructions"] = r.question;
-    if (!r.labels.empty())
-        j["Labels"] = r.labels;
+    j["Instructions"] = r.outline.question;
+    if (!r.outline.labels.empty())
+        j["Labels"] = r.outline.labels;
     const named_cells columns = make_cells({.group = d.group, .session = d.session}, {&r.outline});
     for (const trial_column& c : trial_columns)
         if (std::ranges::count(columns, c.name, &named_cells::value_type::first) != 0)
@@ -269,11 +269,9 @@ void study_folder::refuse_others()
                 error_kind::bad_input, folder_.string(),
                 fmt::format("{} is {}, and this session is {}", who, kind(s.simulated), kind(simulated_)),
                 one_kind);
-        if (s.experiment != definition_.outline)
+        if (const std::string found = find_difference(s.experiment, definition_.outline); !found.empty())
             throw error(error_kind::bad_input, folder_.string(),
-                        fmt::format("{} had another experiment: \"{}\" with other runs, motions, methods or "
-                                    "sessions",
-                                    who, s.experiment.name),
+                        fmt::format("{} had another experiment: {}", who, found),
                         "each experiment needs a folder of its own");
         if (code == code_ && session != definition_.session && s.group != definition_.group)
             throw error(error_kind::bad_input, "--group",
@@ -308,7 +306,7 @@ std::vector<fs::path> study_folder::list_files() const
     std::vector<fs::path> all;
     for (const run_definition& r : definition_.runs)
         all.push_back(folder_ / description_path(r.outline));
-    for (const questionnaire& q : definition_.questionnaires)
+    for (const questionnaire& q : definition_.outline.questionnaires)
         for (const char* extension : {".json", ".tsv"})
             all.push_back(folder_ / answers_path(q, extension));
     for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
@@ -329,13 +327,13 @@ void study_folder::describe() const
     put(folder_ / "participants.json", participants_text(definition_, simulated_));
     for (const run_definition& r : definition_.runs)
         put(folder_ / description_path(r.outline), task_text(r, definition_, simulated_));
-    if (!definition_.questionnaires.empty()) {
+    if (!definition_.outline.questionnaires.empty()) {
         make_folder(folder_ / "phenotype");
         // bids-validator 1 wants exactly one line of each participant. There are several of a questionnaire
         // between runs, and none after a session that was broken off.
         ignore("phenotype/*.tsv");
     }
-    for (const questionnaire& q : definition_.questionnaires)
+    for (const questionnaire& q : definition_.outline.questionnaires)
         put(folder_ / answers_path(q, ".json"), questionnaire_text(q, session(), simulated_));
 }
 
@@ -369,7 +367,7 @@ void study_folder::check_lists() const
     const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
-    for (const questionnaire& q : definition_.questionnaires) {
+    for (const questionnaire& q : definition_.outline.questionnaires) {
         const text_table answers = read_answers(folder_, q, session());
         for (const auto& [column, text] : make_cells(q, code_, session(), {}, {}))
             if (!answers.has(column))

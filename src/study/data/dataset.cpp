@@ -314,9 +314,8 @@ private:
         };
         if (s.simulated != set_.simulated)
             differs("one is simulated and one is not", "choose with {participants} or {exclude}");
-        if (s.experiment != set_.experiment)
-            differs("their experiments differ in runs, motions, methods or sessions",
-                    "choose with {participants} or {exclude}");
+        if (const std::string found = find_difference(set_.experiment, s.experiment); !found.empty())
+            differs("their experiments differ: " + found, "choose with {participants} or {exclude}");
         if (s.text != text_)
             set_.warnings.push_back(fmt::format(
                 "{} and {}: the texts of their experiments differ, though not in what is analysed", first_,

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "study/data/text_table.hpp"
+#include "study/experiment/questionnaire.hpp"
 
 namespace tactor::study {
 
@@ -95,13 +96,6 @@ constexpr std::string_view to_string(task_kind t) noexcept
     return find_task(t).name;
 }
 
-/// A text that may differ between sessions, as the words of another language do.
-struct loose_text {
-    std::string text = {};
-
-    friend bool operator==(const loose_text&, const loose_text&) noexcept { return true; }
-};
-
 struct run_outline {
     std::string name;
     std::string file_name; ///< the name's letters and digits, which name its files
@@ -116,7 +110,9 @@ struct run_outline {
     std::vector<double> values = {};       ///< of `vary`, ascending
     std::optional<double> standard = {};   ///< value of the other stimulus; none: there is no other
     bool catches = false;                  ///< detect: some trials have no stimulus
-    loose_text second_word = {};           ///< of two by which one stimulus is judged
+    std::string question = {};
+    std::vector<std::string> labels = {};  ///< of a scale: of each step, of both ends, or none
+    std::vector<std::string> choices = {}; ///< words of both answers; empty: the usual ones
 
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
     friend bool operator==(const run_outline&, const run_outline&) = default;
@@ -148,9 +144,14 @@ struct experiment_outline {
     std::vector<run_outline> runs = {};
     std::vector<group_outline> groups = {}; ///< empty: everybody has all runs
     unsigned sessions = 1;                  ///< of each participant
+    std::vector<questionnaire> questionnaires = {};
 
     friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
 };
+
+/// Returns the first difference that makes two outlines of two experiments, as `run "marks", labels: [..],
+/// then [..]`; empty if there is none. A questionnaire that only one has is no such difference.
+std::string find_difference(const experiment_outline& before, const experiment_outline& now);
 
 /// Returns the ratings of a run: "1 to 5", "0 to 100 on a visual analogue scale".
 std::string rating_range(const run_outline& run);

@@ -388,6 +388,8 @@ unsigned read_trials(const toml_table& t, const run_outline& o)
     return static_cast<unsigned>(all);
 }
 
+constexpr std::size_t most_texts = 1000; // a definition that is held has stricter bounds
+
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
 {
@@ -415,9 +417,11 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     o.motions = names_at(r.motions, d.motions);
     o.methods = names_at(r.methods, d.methods);
     read_variation(t, r);
-    if (find_task(o.task).varies && !o.standard)
-        if (std::vector<std::string> words = t.texts("choices", 2); words.size() == 2)
-            o.second_word.text = std::move(words[1]);
+    const std::string attribute = t.text("attribute").value_or("");
+    const std::size_t kind = attribute == "similarity" ? 0 : attribute == "uniformity" ? 1 : 2;
+    o.question = t.text("question").value_or(std::string(find_task(o.task).questions[kind]));
+    o.labels = t.texts("labels", most_texts);
+    o.choices = t.texts("choices", most_texts);
     o.trials = read_trials(t, o);
     check_cells(t, o);
     return r;
@@ -429,9 +433,8 @@ std::vector<std::string> read_choices(const toml_table& t, const run_outline& o,
     if (t.has("choices") &&
         (o.task == task_kind::rate || o.task == task_kind::identify || o.task == task_kind::estimate))
         t.fail("choices", fmt::format("choices is not of runs that {}", to_string(o.task)), "leave it out");
-    std::vector<std::string> choices = t.texts("choices", 2);
-    if (t.has("choices") && choices.size() != 2)
-        t.fail("choices", fmt::format("choices has {}", counted(choices.size(), "text")),
+    if (t.has("choices") && o.choices.size() != 2)
+        t.fail("choices", fmt::format("choices has {}", counted(o.choices.size(), "text")),
                "one for each of the two answers");
     if (!t.has("choices") && (o.task == task_kind::constant || o.task == task_kind::adaptive) && !o.standard)
         t.fail("vary", "a run without a standard judges by two words",
@@ -440,7 +443,7 @@ std::vector<std::string> read_choices(const toml_table& t, const run_outline& o,
         return {page["yes"], page["no"]};
     if (!t.has("choices") && o.task == task_kind::same_different)
         return {page["same"], page["different"]};
-    return choices;
+    return o.choices;
 }
 
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
@@ -465,26 +468,25 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     make_variants(t, r, d.methods, variants);
     if (t.has("attribute") || r.outline.task == task_kind::choose || r.outline.task == task_kind::rate)
         r.attribute = name_in(t, "attribute");
-    const std::size_t kind = r.attribute == "similarity" ? 0 : r.attribute == "uniformity" ? 1 : 2;
+    const bool is_known = r.attribute == "similarity" || r.attribute == "uniformity";
     r.simulate_as =
-        t.choice("simulate_as", {"similarity", "uniformity"}).value_or(kind < 2 ? r.attribute : "");
-    r.question = t.text("question").value_or(std::string(find_task(r.outline.task).questions[kind]));
-    if (r.question.empty())
+        t.choice("simulate_as", {"similarity", "uniformity"}).value_or(is_known ? r.attribute : "");
+    if (r.outline.question.empty())
         t.need(std::optional<std::string>{}, "question");
     r.min_response_s = t.number("min_response_s", {0.0, 10.0}).value_or(r.min_response_s);
     r.animation = t.boolean("animation").value_or(false);
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");
     r.practice = t.whole("practice", 0, most_trials).value_or(0);
-    r.labels = t.texts("labels", r.outline.visual ? 2 : r.outline.scale);
-    if (r.outline.visual && r.labels.size() != 2)
+    const std::vector<std::string>& labels = r.outline.labels;
+    if (r.outline.visual && labels.size() != 2)
         t.fail(t.has("labels") ? "labels" : "scale",
-               fmt::format("labels has {} for a visual analogue scale", counted(r.labels.size(), "text")),
+               fmt::format("labels has {} for a visual analogue scale", counted(labels.size(), "text")),
                "one for each end");
-    if (!r.labels.empty() && r.labels.size() != 2 && r.labels.size() != r.outline.scale)
+    if (!labels.empty() && labels.size() != 2 && labels.size() != r.outline.scale)
         t.fail(
             "labels",
-            fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
+            fmt::format("labels has {} for a scale of {}", counted(labels.size(), "text"), r.outline.scale),
             "one for each end, or one for each step");
     r.choices = read_choices(t, r.outline, d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
@@ -567,8 +569,8 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     std::vector<method_definition> variants;
     for (const toml_table& t : need_tables(root, "run")) {
         if (t.text("task") == "questionnaire") {
-            if (!e.outline_only)
-                d.questionnaires.push_back(read_questionnaire(t, d.questionnaires));
+            std::vector<questionnaire>& all = d.outline.questionnaires;
+            all.push_back(read_questionnaire(t, all));
             continue;
         }
         d.runs.push_back(e.outline_only ? read_run_outline(t, d) : read_run_definition(t, d, variants));

@@ -75,13 +75,11 @@ struct run_definition {
     run_outline outline;
     std::string attribute = {};   ///< what is asked about, in any words; may be empty for identify
     std::string simulate_as = {}; ///< similarity, uniformity; empty: nothing that an observer can judge
-    std::string question = {};
     bool animation = false;
-    unsigned practice = 0;        ///< trials before that do not count
-    double break_s = 0.0;         ///< after the run
-    double min_response_s = 0.15; ///< an earlier answer is marked early
-    std::vector<std::string> labels = {};
-    std::vector<std::string> choices = {}; ///< words of both answers; may be empty
+    unsigned practice = 0;                 ///< trials before that do not count
+    double break_s = 0.0;                  ///< after the run
+    double min_response_s = 0.15;          ///< an earlier answer is marked early
+    std::vector<std::string> choices = {}; ///< the outline's, or the usual ones of the page; may be empty
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
     std::map<std::size_t, method_variants> variants = {}; ///< by method
@@ -115,7 +113,6 @@ struct experiment_definition {
     std::vector<motion_definition> motions = {};
     std::vector<method_definition> methods = {};
     std::vector<run_definition> runs = {};
-    std::vector<questionnaire> questionnaires = {};
     std::map<std::string, std::string> group_arrays = {}; ///< by group, of those that have their own
     std::string group = {};          ///< group whose runs `runs` are; empty: those of everybody
     session_number session = {};     ///< session that is held

@@ -35,6 +35,8 @@ struct questionnaire_item {
     unsigned lowest = 1;                  ///< not of a text
     unsigned greatest = 1;
     bool visual = false; ///< scale: places on a line, without numbers
+
+    friend bool operator==(const questionnaire_item&, const questionnaire_item&) = default;
 };
 
 struct questionnaire {
@@ -43,6 +45,8 @@ struct questionnaire {
     std::string title = {};
     std::string text = {};
     std::vector<questionnaire_item> items = {};
+
+    friend bool operator==(const questionnaire&, const questionnaire&) = default;
 };
 
 /// Returns the greatest answer of `scale`, a number of steps or "vas", and sets `visual` for that; nothing

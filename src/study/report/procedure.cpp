@@ -149,7 +149,7 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
         {"asked", describe_task(o)},
         {"motions", join(o.motions)},
         {"attribute", attribute == not_recorded && find_task(o.task).measures ? json(false) : attribute},
-        {"question", fact([](const run_definition& r) { return r.question; })},
+        {"question", fact([](auto& r) { return r.outline.question; })},
         {"animation", join_texts(f,
                                  [run](const session_facts& s) {
                                      if (!s.design)
@@ -159,7 +159,7 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
                                  })},
         {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
         {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
-        {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
+        {"labels", fact([](auto& r) { return r.outline.labels.empty() ? "none" : join(r.outline.labels); })},
         {"choices",
          fact([](const run_definition& r) { return r.choices.empty() ? "none" : join(r.choices); })},
         {"procedure", o.task == task_kind::adaptive ? json(fact(describe_procedure)) : json(false)},
@@ -204,7 +204,7 @@ nlohmann::ordered_json list_questionnaires(const study_facts& f)
     std::vector<std::string> names;
     for (const session_facts& s : f.sessions)
         if (s.design)
-            for (const questionnaire& q : s.design->questionnaires)
+            for (const questionnaire& q : s.design->outline.questionnaires)
                 if (std::ranges::count(names, q.name) == 0)
                     names.push_back(q.name);
     json all = json::array();
@@ -214,7 +214,7 @@ nlohmann::ordered_json list_questionnaires(const study_facts& f)
         const std::string what = join_texts(f, [&](const session_facts& s) -> std::string {
             if (!s.design)
                 return {};
-            const std::vector<questionnaire>& own = s.design->questionnaires;
+            const std::vector<questionnaire>& own = s.design->outline.questionnaires;
             const auto q = std::ranges::find(own, name, &questionnaire::name);
             if (q == own.end())
                 return "not asked";

@@ -122,7 +122,7 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
     if (s.facts()["schema"].text() == own_schema)
         s.design = read_design(text, s.file + ": experiment.text");
     if (s.design)
-        for (const questionnaire& q : s.design->questionnaires)
+        for (const questionnaire& q : s.design->outline.questionnaires)
             s.answered.push_back(count_answers(folder, q, code, session));
     s.stimuli = read_stimuli(s, source / "plans");
     for (const run_outline& r : outline.runs)

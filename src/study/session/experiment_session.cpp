@@ -519,7 +519,7 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
                         r.break_s > 0.0});
     }
     std::vector<flow_form> forms;
-    const std::vector<questionnaire>& all = p.definition.questionnaires;
+    const std::vector<questionnaire>& all = p.definition.outline.questionnaires;
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t run = 0; run < (all[i].when == questionnaire_time::between ? runs.size() - 1 : 1);
              ++run)

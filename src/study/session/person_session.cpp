@@ -48,7 +48,7 @@ std::vector<std::string> label_choices(const run_definition& r)
 {
     return r.outline.task == task_kind::identify ? r.outline.motions
            : !r.choices.empty()                  ? r.choices
-                                                 : spread_labels(r.labels, choices_in(r));
+                                                 : spread_labels(r.outline.labels, choices_in(r));
 }
 
 // Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5
@@ -59,7 +59,7 @@ std::string choices_text(const experiment_definition& d, const run_definition& r
     const std::string between = d.page[is_range ? "to" : "or"];
     const bool named = r.outline.task == task_kind::identify;
     const std::vector<std::string> labels = label_choices(r);
-    const bool each = named || r.labels.size() == labels.size();
+    const bool each = named || r.outline.labels.size() == labels.size();
     std::string text;
     for (std::size_t i = 0; i < labels.size(); i += each ? 1 : labels.size() - 1) {
         text += i == 0 ? "" : each ? ", " : fmt::format(" {} ", between);
@@ -131,7 +131,7 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 page_screen question_screen(const prepared_experiment& p, const session_step& s)
 {
     const run_definition& r = p.run_at(s.run);
-    page_screen shown{.name = "question", .question = r.question, .where = find_progress(p, s)};
+    page_screen shown{.name = "question", .question = r.outline.question, .where = find_progress(p, s)};
     if (r.outline.task == task_kind::estimate) {
         shown.entry = entry_kind::number;
         shown.greatest = most_estimate;
@@ -267,10 +267,10 @@ void person_session::introduce(const session_step& s)
     const run_definition& r = p_.run_at(s.run);
     tables_.emplace(store_, r);
     const page_words& w = p_.definition.page;
-    session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(), r.question,
-                                    choices_text(p_.definition, r)));
+    session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
+                                    r.outline.question, choices_text(p_.definition, r)));
     on_page({.name = "introduce",
-             .question = r.question,
+             .question = r.outline.question,
              .choices = {w["begin"]},
              .keys = " ",
              .where = find_progress(p_, s)});
@@ -364,7 +364,7 @@ void person_session::rest(const session_step& s)
 // Writes nothing before all is answered: what was killed before is asked anew.
 void person_session::ask_questionnaire(const session_step& s)
 {
-    const questionnaire& q = p_.definition.questionnaires[s.form];
+    const questionnaire& q = p_.definition.outline.questionnaires[s.form];
     const std::vector<std::string> answers =
         study::ask_questionnaire(q, p_.definition.page, keys_, page_, [this](operator_key k) { obey(k); });
     begin_store();
@@ -537,7 +537,7 @@ person_session::timed_answer person_session::ask(const session_step& s, const gi
     const run_definition& r = p_.run_at(s.run);
     on_page(question_screen(p_, s));
     const std::string choices = choices_text(p_.definition, r);
-    session::show(fmt::format("{} {}: ", r.question, choices));
+    session::show(fmt::format("{} {}: ", r.outline.question, choices));
     const unsigned lowest = r.outline.lowest_rating();
     const bool is_typed = choices_in(r) > most_keys;
     typed_number typed;

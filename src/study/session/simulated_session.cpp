@@ -46,7 +46,7 @@ public:
             if (s.what == step_kind::rest)
                 now_ += frames(p_.run_at(s.run).break_s);
             if (s.what == step_kind::ask) {
-                const questionnaire& q = p_.definition.questionnaires[s.form];
+                const questionnaire& q = p_.definition.outline.questionnaires[s.form];
                 const std::string after = name_run_before(p_, q, s.run);
                 store_.append_answers(
                     q, after,

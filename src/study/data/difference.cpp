@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Comparison of two definitions: the trials, and the words that give an answer its meaning.
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "study/data/dataset.hpp"
+
+namespace tactor::study {
+namespace {
+
+template <class T>
+std::string shown(const T& v)
+{
+    if constexpr (std::is_same_v<T, std::optional<double>>)
+        return v ? fmt::format("{}", *v) : "none";
+    else if constexpr (std::is_same_v<T, std::string>)
+        return fmt::format("\"{}\"", v);
+    else
+        return fmt::format("{}", v);
+}
+
+template <class T>
+std::vector<std::string> list_names(const std::vector<T>& all)
+{
+    std::vector<std::string> names;
+    for (const T& one : all)
+        names.push_back(one.name);
+    return names;
+}
+
+// Keeps the first difference that it finds.
+class comparison {
+public:
+    template <class T>
+    void key(const std::string& of, std::string_view name, const T& before, const T& now)
+    {
+        if (!found_.empty() || before == now)
+            return;
+        constexpr std::size_t longest = 100;
+        found_ = of + std::string(name);
+        const std::string both = fmt::format(": {}, then {}", shown(before), shown(now));
+        if (both.size() <= longest)
+            found_ += both;
+    }
+
+    void runs(const std::string& of, const std::vector<run_outline>& before,
+              const std::vector<run_outline>& now)
+    {
+        key(of, "run", list_names(before), list_names(now));
+        for (std::size_t i = 0; found_.empty() && i < before.size(); ++i)
+            run(fmt::format("{}run \"{}\", ", of, now[i].name), before[i], now[i]);
+    }
+
+    void items(const questionnaire& before, const questionnaire& now)
+    {
+        const std::string of = fmt::format("run \"{}\", ", now.name);
+        key(of, "when", std::string(describe_time(before.when)), std::string(describe_time(now.when)));
+        key(of, "item", list_names(before.items), list_names(now.items));
+        for (std::size_t i = 0; found_.empty() && i < before.items.size(); ++i) {
+            const questionnaire_item& a = before.items[i];
+            const questionnaire_item& b = now.items[i];
+            const std::string item = fmt::format("{}item \"{}\", ", of, b.name);
+            key(item, "question", a.question, b.question);
+            key(item, "kind", static_cast<int>(a.kind), static_cast<int>(b.kind));
+            key(item, b.kind == item_kind::choice ? "choices" : "labels", a.labels, b.labels);
+            key(item, b.kind == item_kind::number ? "range" : "scale",
+                fmt::format("{} to {}", a.lowest, a.greatest), fmt::format("{} to {}", b.lowest, b.greatest));
+        }
+    }
+
+    const std::string& found() const noexcept { return found_; }
+
+private:
+    void run(const std::string& of, const run_outline& before, const run_outline& now)
+    {
+        key(of, "task", std::string(to_string(before.task)), std::string(to_string(now.task)));
+        key(of, "question", before.question, now.question);
+        key(of, "scale", rating_range(before), rating_range(now));
+        key(of, "labels", before.labels, now.labels);
+        key(of, "choices", before.choices, now.choices);
+        key(of, "motions", before.motions, now.motions);
+        key(of, "methods", before.methods, now.methods);
+        key(of, "trials", before.trials, now.trials);
+        key(of, "vary", before.vary, now.vary);
+        key(of, now.task == task_kind::adaptive ? "range" : "values", before.values, now.values);
+        key(of, "standard", before.standard, now.standard);
+        key(of, "catch", before.catches, now.catches);
+    }
+
+    std::string found_;
+};
+
+} // namespace
+
+std::string find_difference(const experiment_outline& before, const experiment_outline& now)
+{
+    comparison c;
+    c.key("", "name", before.name, now.name);
+    c.key("", "sessions", before.sessions, now.sessions);
+    c.runs("", before.runs, now.runs);
+    c.key("", "group", list_names(before.groups), list_names(now.groups));
+    for (std::size_t i = 0; c.found().empty() && i < before.groups.size(); ++i)
+        c.runs(fmt::format("group \"{}\", ", now.groups[i].name), before.groups[i].runs, now.groups[i].runs);
+    for (const questionnaire& q : now.questionnaires)
+        if (const auto was = std::ranges::find(before.questionnaires, q.name, &questionnaire::name);
+            was != before.questionnaires.end())
+            c.items(*was, q);
+    return c.found();
+}
+
+} // namespace tactor::study
