@@ -26,6 +26,10 @@ class Forms(PersonTest):
         super().setUp()
         self.write("short.toml", FORMS)
 
+    def begun(self):
+        """Returns the answers to a questionnaire that is not complete."""
+        return json.loads((self.dir / "study/sourcedata/sub-01/session.json").read_text()).get("answers")
+
     def told(self, name):
         return [list(row.values()) for row in read_table(self.dir / f"study/phenotype/{name}.tsv")]
 
@@ -36,10 +40,10 @@ class AtTheTerminal(Forms):
         t.walk()
         t.answer("About you\\s+Four questions.\\s+Age\\? 0 to 120: ", "121\n")
         t.answer("no answer: 0 to 120: ", "p3\x7f33\n")  # a pause comes
-        t.answer("Hand\\? 1 left, 2 right: ", "32")
-        t.answer("Remark\\? ", "rvpgq é\x7fë\x1b[Dx\n")
-        t.answer("Ease\\? 0 \\(ill\\) to 100 \\(well\\): ", "70\n")
         t.answer("A pause", "g")
+        t.answer("Hand\\? 1 left, 2 right, b Back: ", "32")
+        t.answer("Remark\\? Backspace Back: ", "rvpgq é\x7fë\x1b[Dx\n")
+        t.answer("Ease\\? 0 \\(ill\\) to 100 \\(well\\), b Back: ", "70\n")
         t.answer("Any key begins", " ")
         for _ in (1, 2):
             t.answer("Which one\\? 1 or 2: ", "1")
@@ -48,7 +52,7 @@ class AtTheTerminal(Forms):
         for _ in (1, 2):
             t.answer("How even\\?.*: ", "1")
         t.answer("Anything else\\? ", "\n")
-        t.answer("Again\\? 1 \\(never\\) to 5 \\(always\\): ", "5")
+        t.answer("Again\\? 1 \\(never\\) to 5 \\(always\\), b Back: ", "5")
         t.answer("Any key ends", " ")
         self.assertEqual(t.end(), 0, t.said())
         self.assertIn("rvpgq é\b \bëx", t.all)
@@ -64,18 +68,82 @@ class AtTheTerminal(Forms):
         self.assertEqual(self.told("end")[0][1], '"""quoted"" n/a"')  # or it would be read without its quotes
         self.assertIn("finished", self.ok(*self.args("--resume"), stdin="").stdout)
 
-    def test_ctrl_c_in_a_text_ends(self):
+    def test_ctrl_c_in_a_text_ends_and_the_session_goes_on_there(self):
         t = Terminal(self, self.args())
         t.walk()
         t.answer("Age\\?", "1\n")
         t.answer("Hand\\?", "1")
-        t.answer("Remark\\? ", "abc\x03")
+        t.answer("Remark\\? Backspace Back: ", "abc\x03")
+        self.assertEqual(t.end(), 130)
+        self.assertEqual(self.begun(), {"about": ["1", "1"]})
+        self.assertFalse((self.dir / "study/phenotype/about.tsv").exists())
+        # A code that is mistyped begins no other session.
+        self.refused(2, *[{"01": "1"}.get(a, a) for a in self.args("--resume")], says=("there is no sub-1 in study",))
+        said = self.ok(*self.args("--resume"), stdin="y\ny\n" + "words\n50\n" + "1\n1\n" + "3\n" + "1\n1\n" + "x\n1\n").stdout
+        self.assertEqual(self.told("about"), [["sub-01", "1", "1", "words", "50"]])
+        self.assertNotIn("Age?", said)
+        self.assertIsNone(self.begun())
+
+    def test_nothing_is_written_before_the_first_answer(self):
+        t = Terminal(self, self.args())
+        t.walk()
+        t.answer("Age\\?", "12\x03")
         self.assertEqual(t.end(), 130)
         self.assertFalse((self.dir / "study").exists())
 
+    def test_b_goes_one_item_back(self):
+        t = Terminal(self, self.args())
+        t.walk()
+        t.answer("Age\\? 0 to 120: ", "33\n")
+        t.answer("Hand\\? 1 left, 2 right, b Back: ", "b")
+        t.answer("Age\\? 0 to 120: ", "34\n")
+        t.answer("Hand\\?", "1")
+        t.answer("Remark\\? Backspace Back: ", "\x7f")
+        t.answer("Hand\\?", "2")
+        t.answer("Remark\\?", "b\x7fbb\n")  # letters are text, and Backspace deletes them
+        t.answer("Ease\\? 0 \\(ill\\) to 100 \\(well\\), b Back: ", "7b")
+        t.answer("Remark\\?", "c\n")
+        t.answer("Ease\\?", "70\n")
+        t.until("Any key begins")
+        self.assertEqual(self.told("about"), [["sub-01", "34", "2", "c", "70"]])
+        t.key("b")
+        t.answer("Ease\\?", "71\n")
+        t.until("Any key begins")
+        self.assertEqual(self.told("about"), [["sub-01", "34", "2", "c", "71"]])
+        t.key(" ")
+        for _ in (1, 2):
+            t.answer("Which one\\? 1 or 2: ", "b1")  # and nothing else
+        t.answer("Tired\\? 1 no, 2 a little, 3 very: ", "2")
+        t.answer("A break", "b")
+        t.answer("Tired\\?", "3")
+        t.answer("Any key begins", " ")
+        for _ in (1, 2):
+            t.answer("How even\\?.*: ", "1")
+        t.answer("Anything else\\? ", "x\n")
+        t.answer("Again\\? 1 \\(never\\) to 5 \\(always\\), b Back: ", "5")
+        t.answer("Any key ends", "b")
+        t.answer("Again\\?", "4")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertEqual(self.told("tired"), [["sub-01", "pairs", "3"]])
+        self.assertEqual(self.told("end"), [["sub-01", "x", "4"]])
+
+    def test_lines_go_back_too(self):
+        lines = AGREED + "33\nb\n34\n1\nb\nb\nc\n1\n" + "1\n1\n" + "2\n" + "1\n1\n" + "x\nb\ny\n4\n"
+        self.ok(*self.args(), stdin=lines)
+        self.assertEqual(self.told("about"), [["sub-01", "34", "1", "c", "1"]])
+        self.assertEqual(self.told("end"), [["sub-01", "y", "4"]])
+
+    def test_v_within_a_questionnaire_makes_no_trial_void(self):
+        lines = AGREED + "33\n1\nx\n0\n" + "1\n1\n" + "v\n3\n" + "1\n1\n" + "y\nv\n1\n"
+        said = self.ok(*self.args(), stdin=lines).stderr
+        self.assertEqual(said.count("within a questionnaire v makes no trial void; b goes one item back"), 2)
+        self.assertEqual([r["void"] for r in self.rows("01", "pairs")], ["false"] * 2)
+        self.assertEqual([r["void"] for r in self.rows("01", "marks")], ["false"] * 2)
+
 
 class OnThePage(Forms, PageTest):
-    def test_a_form_is_asked_anew_until_it_is_complete_and_then_no_more(self):
+    def test_a_form_goes_on_at_its_next_item_until_it_is_complete(self):
         s, p = self.start_both()
         p.answer("consent", 1)
         p.walk()
@@ -86,27 +154,43 @@ class OnThePage(Forms, PageTest):
         p.until("questionnaire")
         s.process.kill()
         s.end()
+        self.assertEqual(self.begun(), {"about": ["33", "1"]})
         self.assertFalse((self.dir / "study/phenotype/about.tsv").exists())
-        s, p = self.start_both()
-        p.answer("consent", 1)
+        s, p = self.start_both("--resume")
         p.walk()
         p.answer("questionnaire", 1)
-        asked = p.answer("questionnaire", 121)
-        self.assertEqual((asked["entry"], asked["progress"]["trial"], asked["progress"]["trials"]), ({"lowest": 0, "greatest": 120}, 1, 4))
+        for item, back in ((3, True), (2, True), (1, False)):
+            asked = p.until("questionnaire")
+            self.assertEqual((asked["progress"]["trial"], asked["progress"]["trials"], asked.get("back", False)), (item, 4, back))
+            p.say(ask=asked["ask"], back=True)
+        self.assertEqual(asked["entry"], {"lowest": 0, "greatest": 120})
+        self.assertEqual(p.until("questionnaire")["ask"], asked["ask"])  # there is nothing before it
+        p.say(ask=asked["ask"], answer=121)
         p.answer("questionnaire", 0)
         p.answer("questionnaire", 2)
-        s.key("p")
-        s.told("a pause comes")
         asked = p.until("questionnaire")
+        s.key("p")
+        s.told("a pause comes before the next question")
         self.assertEqual(asked["entry"], {"most": 2000})
         p.say(ask=asked["ask"], text="x" * 2001)
         self.assertEqual(p.until("questionnaire")["ask"], asked["ask"])
         p.say(ask=asked["ask"], text="two\nlines\tand\x07\n€")
-        self.assertEqual(len(p.answer("questionnaire", 101)["choices"]), 101)
         p.until("pause", asked=False)
+        s.key("g")
+        asked = p.until("questionnaire")
+        s.key("b")  # the experimenter, for the participant
+        asked = p.until("questionnaire")
+        p.say(ask=asked["ask"], text="one\nline€")
+        self.assertEqual(len(p.answer("questionnaire", 101)["choices"]), 101)
+        asked = p.until("introduce")
+        self.assertEqual(self.told("about"), [["sub-01", "0", "2", "one\\nline€", "100"]])
+        p.say(ask=asked["ask"], back=True)
+        p.answer("questionnaire", 100)
+        p.until("introduce")
         s.process.kill()  # the form is complete
         s.end()
-        self.assertEqual(self.told("about"), [["sub-01", "0", "2", "two\\nlines and\\n€", "100"]])
+        self.assertEqual(self.told("about"), [["sub-01", "0", "2", "one\\nline€", "99"]])
+        self.assertIsNone(self.begun())
         s, p = self.start_both("--resume")
         p.begin(agrees=False)
         for _ in (1, 2):

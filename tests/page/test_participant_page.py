@@ -313,6 +313,17 @@ class ParticipantPage(BrowserTest, PageTest):
         self.picture(p, "form-choice")
         p.value("document.querySelector('#answers button').dispatchEvent(new MouseEvent('click', {detail: 2}))")  # of a double click
         self.assertEqual(p.value("state.ask"), ask)
+        self.assertEqual(p.value("document.querySelector('#back').textContent"), "Back")
+        p.click("#back")
+        ask = place("textarea", ask)
+        p.key("KeyB", "b")  # is a letter there
+        self.assertEqual(p.value("state.ask"), ask)
+        p.click("#answers button")
+        ask = self.asked(p, "questionnaire", ask)
+        p.key("KeyB", "b")
+        ask = place("textarea", ask)
+        p.click("#answers button")
+        ask = self.asked(p, "questionnaire", ask)
         ask = self.key(p, "questionnaire", "2")
         ask = self.click(p, "introduce", 1, ask)
         self.click(p, "question", 1, ask)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Sessions with a person: their steps, the participant's page, and the keys of input devices (for a device
 // itself see tests/vm/guest/test_keypad.py).
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -94,7 +96,7 @@ TEST_CASE("questionnaires come before the first run, between runs before the bre
         return session_step{.what = step_kind::ask, .run = run, .form = form};
     };
     session_flow f({make_flow_run(1, 0, true), make_flow_run(1)}, false, 1,
-                   {{0, after}, {1, between}, {2, before, 0, true}, {3, before}});
+                   {{0, after}, {1, between}, {2, before, 0, 1, 1}, {3, before}});
     f.felt();
     CHECK(f.next() == ask(3)); // 2 was answered in an earlier session
     f.pause();
@@ -104,10 +106,12 @@ TEST_CASE("questionnaires come before the first run, between runs before the bre
     f.go_on();
     f.took(false);
     CHECK(f.next() == ask(1));
-    CHECK(f.void_last()); // the run goes on, and its questionnaire comes after it
+    CHECK_FALSE(f.void_last());
+    f.answered(ask(1));
+    CHECK(f.next().what == step_kind::rest);
+    CHECK(f.void_last()); // the run goes on
     CHECK(f.next() == trial_step(0, 1, 2));
     f.took(false);
-    f.answered(ask(1));
     CHECK(f.next().what == step_kind::rest);
     f.go_on();
     f.go_on();
@@ -119,6 +123,66 @@ TEST_CASE("questionnaires come before the first run, between runs before the bre
     run_queue done(1);
     done.take(false);
     CHECK(session_flow({{0, 0, done, false}}, false, 9, {{0, after}}).next() == ask(0));
+}
+
+TEST_CASE("each item of a questionnaire is a step, and one can go back until a trial was played")
+{
+    using enum questionnaire_time;
+    const auto ask = [](std::size_t form, std::size_t item) {
+        return session_step{.what = step_kind::ask, .form = form, .item = item};
+    };
+    session_flow f({make_flow_run(1)}, false, 0, {{0, before, 0, 3, 1}, {1, before, 0, 2}, {2, after, 0, 1}});
+    CHECK(f.next() == ask(0, 1)); // the first was answered before
+    CHECK(f.go_back());
+    CHECK_FALSE(f.go_back());
+    for (std::size_t item = 0; item < 3; ++item) {
+        CHECK(f.next() == ask(0, item));
+        f.answered(f.next());
+    }
+    f.answered(ask(1, 0));
+    for (const session_step& s : {ask(1, 0), ask(0, 2), ask(0, 1)}) {
+        CHECK(f.go_back());
+        CHECK(f.next() == s);
+    }
+    f.pause();
+    CHECK_FALSE(f.go_back());
+    f.go_on();
+    for (const session_step& s : {ask(0, 1), ask(0, 2), ask(1, 0), ask(1, 1)})
+        f.answered(s);
+    CHECK(f.next().what == step_kind::introduce);
+    CHECK(f.go_back());
+    CHECK(f.next() == ask(1, 1));
+    f.answered(ask(1, 1));
+    f.go_on();
+    CHECK_FALSE(f.go_back()); // a trial begins
+    f.took(false);
+    CHECK(f.next() == ask(2, 0));
+    CHECK_FALSE(f.go_back());
+    f.answered(ask(2, 0));
+    CHECK(f.next().what == step_kind::over);
+    CHECK(f.go_back());
+    CHECK(f.next() == ask(2, 0));
+}
+
+TEST_CASE("no trial is made void within a questionnaire")
+{
+    using enum questionnaire_time;
+    session_flow f({make_flow_run(1, 0, true), make_flow_run(1)}, false, 0, {{0, between, 0, 2}});
+    f.go_on();
+    f.took(false);
+    f.pause();
+    CHECK_FALSE(f.is_asking());
+    f.go_on();
+    for (int item = 0; item < 2; ++item) {
+        CHECK(f.is_asking());
+        CHECK_FALSE(f.void_last());
+        f.answered(f.next());
+        f.pause();
+        CHECK(f.is_asking() == (item == 0));
+        CHECK(f.void_last() == (item == 1));
+        f.go_on();
+    }
+    CHECK(f.next() == trial_step(0, 1, 2));
 }
 
 TEST_CASE("the last trial can be made void once, until the next run begins")
@@ -362,6 +426,34 @@ TEST_CASE("a text is entered up to its length, and without control characters")
     CHECK(tidy_text("\xc3") == std::nullopt);
 }
 
+TEST_CASE("a page and a keypad go back where the screen says so")
+{
+    page_dialogue d(json::object());
+    static_cast<void>(d.hear(1, hello, 0));
+    page_screen s{.name = "questionnaire", .entry = entry_kind::text, .back = true};
+    CHECK(only(d.show(s, 0), 1)["back"] == true);
+    CHECK(d.hear(1, R"({"ask":1,"back":true})", 0).answer == 'b');
+    CHECK_FALSE(d.hear(1, R"({"ask":1,"back":true})", 0).answer); // once
+    static_cast<void>(d.show(s, 0));
+    CHECK_FALSE(d.hear(1, R"({"ask":2,"back":false})", 0).understood);
+    CHECK(d.press('b', 0).answer == 'b');
+    s.back = false;
+    CHECK_FALSE(only(d.show(s, 0), 1).contains("back"));
+    const auto refused = d.hear(1, R"({"ask":3,"back":true})", 0);
+    CHECK_FALSE(refused.answer);
+    CHECK(only(refused.replies, 1)["ask"] == 3);
+    CHECK_FALSE(d.press('b', 0).answer);
+}
+
+TEST_CASE("a part of a character is a beginning of a text")
+{
+    typed_text text;
+    CHECK(text.is_empty());
+    text.take('\xe9'); // of U+9000, whose other bytes are the same
+    CHECK(text.text().empty());
+    CHECK_FALSE(text.is_empty());
+}
+
 TEST_CASE("a text is typed up to Enter, a character at a time")
 {
     const auto typed = [](const std::string& keys) {
@@ -486,6 +578,8 @@ TEST_CASE("a key of a terminal counts after 100 ms without it, so one that is he
     CHECK_FALSE(repeated('1', 2200));
     CHECK(repeated('1', 2400, true)); // read together: nobody knows when each came
     CHECK(repeated('1', 2400));
+    CHECK(keys.since_ns('1', 2500 * 1000000LL) == 100 * 1000000LL);
+    CHECK(keys.since_ns('2', 2500 * 1000000LL) == std::numeric_limits<std::int64_t>::max());
 }
 
 TEST_CASE("a number is typed up to Enter, and a keypad has 0 and Enter, too")
@@ -512,7 +606,7 @@ TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
     for (unsigned code = 0; code <= 0xFFFF; ++code)
         if (const auto c = find_answer(static_cast<std::uint16_t>(code)))
             ++of[*c];
-    std::map<char, unsigned> expected{{'+', 2}, {'-', 3}, {'>', 1}, {'<', 1}, {'a', 3}, {'n', 3}};
+    std::map<char, unsigned> expected{{'+', 2}, {'-', 3}, {'>', 1}, {'<', 1}, {'a', 3}, {'n', 3}, {'b', 3}};
     for (char digit = '1'; digit <= '9'; ++digit)
         expected[digit] = 4;
     CHECK(of == expected);
@@ -520,6 +614,7 @@ TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
     CHECK(find_answer(KEY_LEFT) == '<');
     CHECK(find_answer(KEY_ENTER) == 'a');
     CHECK(find_answer(KEY_0) == 'n');
+    CHECK(find_answer(KEY_BACKSPACE) == 'b');
 }
 
 TEST_CASE("missing keypads and other files are refused")

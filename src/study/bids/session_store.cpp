@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 using ordered = nlohmann::ordered_json;
 
 // Facts about when and with which device a session was held; all others must stay as they were.
-constexpr std::array<std::string_view, 8> may_differ{
-    "date", "versions", "device", "streams", "sound_server", "masker_sound_server", "walk", "consent"};
+constexpr std::array<std::string_view, 9> may_differ{"date",    "versions",     "device",
+                                                     "streams", "sound_server", "masker_sound_server",
+                                                     "walk",    "consent",      "answers"};
 
 // A card may have another name by now, but noise from a card must stay noise from a card.
 bool is_as_begun(const std::string& key, const ordered& began, const ordered& now)
@@ -58,6 +59,12 @@ std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
 {
     std::error_code ignored;
     return {fs::file_size(file, ignored), fs::last_write_time(file, ignored)};
+}
+
+// Returns the name of a questionnaire in session.json.
+std::string name_form(const questionnaire& q, const std::string& after)
+{
+    return after.empty() ? q.name : fmt::format("{} after {}", q.name, after);
 }
 
 // Reads the columns of a table that is there. Returns what its last line lacks before another one can follow;
@@ -144,7 +151,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
             write_whole(file, s.text);
     }
     if (!resumed_)
-        write_whole(source_ / "session.json", json_text(facts_));
+        write_facts();
     folder_.describe();
     for (const run_definition* r : runs_) {
         const fs::path file = folder_.path() / events_description(*r);
@@ -237,10 +244,42 @@ void session_store::append_event(const run_definition& r, const named_cells& cel
     keep([&] { write_line(event_table(r), cells); });
 }
 
-void session_store::append_answers(const questionnaire& q, const std::string& after,
-                                   const std::vector<std::string>& answers)
+// Returns the answers so far to a questionnaire that is not complete.
+std::vector<std::string> session_store::begun_answers(const std::string& form) const
 {
-    keep([&] { folder_.add_answers(q, after, answers); });
+    std::vector<std::string> all;
+    if (facts_.contains("answers") && facts_["answers"].is_object() && facts_["answers"].contains(form))
+        for (const ordered& one : facts_["answers"][form])
+            if (one.is_string())
+                all.push_back(one.get<std::string>());
+    return all;
+}
+
+std::size_t session_store::count_answers(const questionnaire& q, const std::string& after) const
+{
+    if (folder_.has_answers(q, after))
+        return q.items.size();
+    return std::min(begun_answers(name_form(q, after)).size(), q.items.size() - 1);
+}
+
+void session_store::keep_answer(const questionnaire& q, const std::string& after, std::size_t item,
+                                const std::string& answer)
+{
+    const std::string form = name_form(q, after);
+    keep([&] {
+        if (folder_.has_answers(q, after))
+            return folder_.change_answer(q, after, item, answer);
+        std::vector<std::string> all = begun_answers(form);
+        all.resize(item);
+        all.push_back(answer);
+        if (all.size() == q.items.size()) {
+            folder_.add_answers(q, after, all);
+            facts_.erase("answers"); // one questionnaire is asked at a time
+        } else {
+            facts_["answers"] = {{form, all}};
+        }
+        write_facts();
+    });
 }
 
 // Appends a line, or makes the table with it. Reads a table that has no line of this process, or that
@@ -281,6 +320,11 @@ std::optional<std::string> session_store::acq_time(const run_definition& r) cons
 void session_store::note(const std::string& key, const ordered& value)
 {
     facts_[key] = value;
+    write_facts();
+}
+
+void session_store::write_facts() const
+{
     write_whole(source_ / "session.json", json_text(facts_));
 }
 

@@ -4,6 +4,7 @@
 /// which is there before the next begins.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -72,10 +73,13 @@ public:
     void append_event(const run_definition& r, const named_cells& cells);
 
     const study_folder& folder() const noexcept { return folder_; }
-    /// Adds answers to a questionnaire; see study_folder. They are on the disk when this returns.
+    /// Returns how many items of a questionnaire have an answer; `after`: see study_folder::has_answers().
+    std::size_t count_answers(const questionnaire& q, const std::string& after) const;
+    /// Keeps the answer to an item, the next one or one before it: in session.json, and all of them in the
+    /// questionnaire's table once each has one. It is on the disk when this returns.
     /// \throws error (runtime) as append().
-    void append_answers(const questionnaire& q, const std::string& after,
-                        const std::vector<std::string>& answers);
+    void keep_answer(const questionnaire& q, const std::string& after, std::size_t item,
+                     const std::string& answer);
 
     /// Makes the run's last trial void, in a file written whole. \throws error (runtime).
     void make_last_void(const run_definition& r);
@@ -90,6 +94,8 @@ private:
     std::filesystem::path table(const run_definition& r) const;
     std::filesystem::path event_table(const run_definition& r) const;
     std::string scan_name(const run_definition& r) const;
+    std::vector<std::string> begun_answers(const std::string& form) const;
+    void write_facts() const;
     void reserve();
     void release() noexcept;
     template <class Write>

@@ -70,11 +70,11 @@ text_table read_or_begin(const fs::path& file, const char* header)
     return is_on_disk(file) ? text_table(file) : text_table(file, std::string(header));
 }
 
-// Returns the row with this cell, if any.
-std::optional<std::size_t> find_row(const text_table& t, std::string_view column, std::string_view text)
+// Returns the row with these cells, if any.
+std::optional<std::size_t> find_row(const text_table& t, const named_cells& cells)
 {
     for (std::size_t row = 0; row < t.rows(); ++row)
-        if (t.cell(row, column) == text)
+        if (std::ranges::all_of(cells, [&](const auto& c) { return t.cell(row, c.first) == c.second; }))
             return row;
     return {};
 }
@@ -359,7 +359,7 @@ void study_folder::check_lists() const
     const text_table people = read_or_begin(folder_ / "participants.tsv", new_participants(definition_));
     read_participants(people);
     const std::string& group = definition_.group;
-    if (const auto row = find_row(people, "participant_id", "sub-" + code_);
+    if (const auto row = find_row(people, {{"participant_id", "sub-" + code_}});
         row && !group.empty() && people.has("group"))
         if (const auto listed = people.cell(*row, "group"); listed && *listed != group)
             people.refuse(*row, fmt::format("sub-{} is of group \"{}\", not \"{}\"", code_, *listed, group),
@@ -379,12 +379,16 @@ void study_folder::check_lists() const
 
 bool study_folder::has_answers(const questionnaire& q, const std::string& after) const
 {
+    return find_row(read_answers(folder_, q, session()), find_key(q, code_, session(), after)).has_value();
+}
+
+void study_folder::change_answer(const questionnaire& q, const std::string& after, std::size_t item,
+                                 const std::string& answer) const
+{
     const text_table t = read_answers(folder_, q, session());
-    const named_cells key = find_key(q, code_, session(), after);
-    for (std::size_t row = 0; row < t.rows(); ++row)
-        if (std::ranges::all_of(key, [&](const auto& c) { return t.cell(row, c.first) == c.second; }))
-            return true;
-    return false;
+    if (const auto row = find_row(t, find_key(q, code_, session(), after)))
+        write_whole(folder_ / answers_path(q),
+                    t.with_cells(*row, {{q.items[item].name, on_one_line(answer)}}));
 }
 
 void study_folder::add_answers(const questionnaire& q, const std::string& after,
@@ -400,7 +404,7 @@ bool study_folder::add_participant()
     const fs::path file = folder_ / "participants.tsv";
     const text_table t = read_or_begin(file, new_participants(definition_));
     const std::string id = "sub-" + code_;
-    if (find_row(t, "participant_id", id))
+    if (find_row(t, {{"participant_id", id}}))
         return false;
     const std::string& group = definition_.group;
     write_whole(file, t.with_line({{"participant_id", id}, {"group", group.empty() ? "n/a" : group}}));
@@ -410,7 +414,7 @@ bool study_folder::add_participant()
 std::optional<std::string> study_folder::scan_time(const std::string& file_name) const
 {
     const text_table t = read_or_begin(scans(), new_scans);
-    const auto row = find_row(t, "filename", file_name);
+    const auto row = find_row(t, {{"filename", file_name}});
     if (!row)
         return {};
     return std::string(t.cell(*row, "acq_time").value_or("n/a"));
@@ -421,7 +425,7 @@ void study_folder::add_scan(const std::string& file_name, const std::string& acq
     const fs::path file = scans();
     const text_table t = read_or_begin(file, new_scans);
     const named_cells cells{{"filename", file_name}, {"acq_time", acq_time}};
-    const auto row = find_row(t, "filename", file_name);
+    const auto row = find_row(t, {{"filename", file_name}});
     write_whole(file, row ? t.with_cells(*row, cells) : t.with_line(cells));
 }
 

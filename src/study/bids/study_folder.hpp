@@ -76,9 +76,12 @@ public:
     /// run before it, empty unless it is asked between runs.
     bool has_answers(const questionnaire& q, const std::string& after) const;
 
-    /// Adds them, in the order of the items, in a file written whole. \throws error.
+    /// Adds them, in the order of the items, or changes one of those that are there, in a file written whole.
+    /// \throws error.
     void add_answers(const questionnaire& q, const std::string& after,
                      const std::vector<std::string>& answers) const;
+    void change_answer(const questionnaire& q, const std::string& after, std::size_t item,
+                       const std::string& answer) const;
 
     /// Writes into .bidsignore that programs which read BIDS ignore the files of cut_file().
     void ignore_cut_lines() const;

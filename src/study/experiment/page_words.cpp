@@ -24,7 +24,7 @@ constexpr std::array english{
     page_word{"walk", "Each place vibrates once, in turn."},
     page_word{"felt", "Did you feel it?"},
     page_word{"again", "Once more"},
-    page_word{"back", "The one before"},
+    page_word{"back", "Back"},
     page_word{"begin", "Begin"},
     page_word{"practice", "Practice"},
     page_word{"part", "Part"},

@@ -410,21 +410,48 @@ session_flow::session_flow(std::vector<flow_run> runs, bool consent, unsigned ta
                            std::vector<flow_form> forms)
     : runs_(std::move(runs)), ask_consent_(consent), tactors_(tactors), forms_(std::move(forms))
 {
+    for (std::size_t i = 0; i < forms_.size(); ++i)
+        if (!forms_[i].done())
+            answered_.insert(answered_.end(), forms_[i].answered, i);
     leave_done_run(false);
 }
 
 bool session_flow::is_due(const flow_form& f) const
 {
-    return !f.done &&
+    return !f.done() &&
            (f.when == questionnaire_time::before ||
             (f.when == questionnaire_time::between && runs_[f.run].trials.done()) || run_ == runs_.size());
 }
 
 void session_flow::answered(const session_step& s)
 {
-    for (flow_form& f : forms_)
-        if (f.form == s.form && f.run == s.run)
-            f.done = true;
+    for (std::size_t i = 0; i < forms_.size(); ++i)
+        if (forms_[i].form == s.form && forms_[i].run == s.run) {
+            ++forms_[i].answered;
+            answered_.push_back(i);
+        }
+}
+
+bool session_flow::can_go_back() const
+{
+    const step_kind now = next().what;
+    return !answered_.empty() && (now == step_kind::ask || now == step_kind::introduce ||
+                                  now == step_kind::rest || now == step_kind::over);
+}
+
+bool session_flow::go_back()
+{
+    if (!can_go_back())
+        return false;
+    --forms_[answered_.back()].answered;
+    answered_.pop_back();
+    return true;
+}
+
+bool session_flow::is_asking() const
+{
+    return next().what == step_kind::ask ||
+           std::ranges::any_of(forms_, [](const flow_form& f) { return f.answered > 0 && !f.done(); });
 }
 
 void session_flow::leave_done_run(bool rest)
@@ -454,7 +481,7 @@ session_step session_flow::next() const
     if (paused_)
         return {.what = step_kind::pause, .run = run_};
     if (asks)
-        return {.what = step_kind::ask, .run = form->run, .form = form->form};
+        return {.what = step_kind::ask, .run = form->run, .form = form->form, .item = form->answered};
     if (place_ == place::introduce)
         return {.what = step_kind::introduce, .run = run_};
     const flow_run& r = runs_[run_];
@@ -481,6 +508,7 @@ void session_flow::go_on()
 void session_flow::took(bool is_void)
 {
     flow_run& r = runs_[run_];
+    answered_.clear();
     void_in_row_ = is_void ? void_in_row_ + 1 : 0;
     paused_ = paused_ || void_in_row_ == most_void_in_row;
     if (r.practised < r.practice) {
@@ -495,7 +523,7 @@ void session_flow::took(bool is_void)
 
 bool session_flow::void_last()
 {
-    if (!has_last_ || !runs_[last_run_].trials.take_back())
+    if (is_asking() || !has_last_ || !runs_[last_run_].trials.take_back())
         return false;
     has_last_ = false;
     if (run_ != last_run_ || place_ == place::rest) {

@@ -143,7 +143,7 @@ enum class step_kind {
     trial,     ///< a trial is played and answered: took()
     rest,      ///< a break between runs: go_on()
     pause,     ///< the experimenter's: go_on()
-    ask,       ///< a questionnaire is asked: answered()
+    ask,       ///< an item of a questionnaire is asked: answered()
     over,      ///< all runs are through
 };
 
@@ -154,6 +154,7 @@ struct session_step {
     bool practice = false;    ///< the trial does not count
     pending_trial which = {}; ///< of practice the attempt is always 1
     std::size_t form = 0;     ///< to ask: place in the definition's questionnaires
+    std::size_t item = 0;     ///< place in the form
 
     friend bool operator==(const session_step&, const session_step&) = default;
 };
@@ -171,7 +172,10 @@ struct flow_form {
     std::size_t form = 0; ///< place in the definition's questionnaires
     questionnaire_time when = questionnaire_time::before;
     std::size_t run = 0; ///< between: place of the run before it
-    bool done = false;
+    std::size_t items = 1;
+    std::size_t answered = 0; ///< how many of them have an answer
+
+    bool done() const noexcept { return answered == items; }
 };
 
 /// Number of void trials in a row that makes a pause, so that somebody looks.
@@ -191,16 +195,22 @@ public:
     void go_on();
     /// Takes a trial that is over and on the disk.
     void took(bool is_void);
-    /// Takes a questionnaire whose answers are on the disk: that of step_kind::ask.
+    /// Takes an item whose answer is on the disk: that of step_kind::ask.
     void answered(const session_step& s);
+    /// Returns true if an item was answered since the last trial, and the next step waits for somebody.
+    bool can_go_back() const;
+    /// Asks the last such item again. Returns false if there is none.
+    bool go_back();
 
     /// Makes the last trial that counted void: it comes again at the end of its run, which is void_run()
     /// before this call. Returns false if none can be made void: there was none in this session, it is void
-    /// already, or the next run has begun.
+    /// already, the next run has begun, or a questionnaire is being asked.
     bool void_last();
     std::size_t void_run() const noexcept { return last_run_; }
     /// Puts a pause before the next trial.
     void pause() noexcept { paused_ = true; }
+    /// Returns true within a questionnaire.
+    bool is_asking() const;
 
 private:
     enum class place { introduce, trials, rest };
@@ -214,6 +224,7 @@ private:
     bool ask_consent_;
     unsigned tactors_;
     std::vector<flow_form> forms_;
+    std::vector<std::size_t> answered_ = {}; ///< forms of the items answered since the last trial, in order
     unsigned walked_ = 0;
     std::size_t run_ = 0;
     place place_ = place::introduce;

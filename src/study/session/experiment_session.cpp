@@ -523,8 +523,8 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t run = 0; run < (all[i].when == questionnaire_time::between ? runs.size() - 1 : 1);
              ++run)
-            forms.push_back(
-                {i, all[i].when, run, store.folder().has_answers(all[i], name_run_before(p, all[i], run))});
+            forms.push_back({i, all[i].when, run, all[i].items.size(),
+                             store.count_answers(all[i], name_run_before(p, all[i], run))});
     const bool consent = with_person && !p.definition.consent.empty() && !store.facts().contains("consent");
     const std::size_t walk = with_person ? p.where.tactors.tactors.size() : 0;
     return {std::move(runs), consent, static_cast<unsigned>(walk), std::move(forms)};

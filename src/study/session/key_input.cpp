@@ -52,14 +52,22 @@ struct key {
     char answer;
 };
 
-constexpr key others[] = {{KEY_KP1, '1'}, {KEY_KP2, '2'},    {KEY_KP3, '3'},     {KEY_KP4, '4'},
-                          {KEY_KP5, '5'}, {KEY_KP6, '6'},    {KEY_KP7, '7'},     {KEY_KP8, '8'},
-                          {KEY_KP9, '9'}, {KEY_KPPLUS, '+'}, {KEY_KPMINUS, '-'}, {KEY_MINUS, '-'},
-                          {KEY_UP, '+'},  {KEY_DOWN, '-'},   {KEY_RIGHT, '>'},   {KEY_LEFT, '<'},
-                          {KEY_A, 'a'},   {KEY_ENTER, 'a'},  {KEY_KPENTER, 'a'}, {KEY_N, 'n'},
-                          {KEY_0, 'n'},   {KEY_KP0, 'n'}};
+constexpr key others[] = {
+    {KEY_KP1, '1'},     {KEY_KP2, '2'},   {KEY_KP3, '3'},   {KEY_KP4, '4'},       {KEY_KP5, '5'},
+    {KEY_KP6, '6'},     {KEY_KP7, '7'},   {KEY_KP8, '8'},   {KEY_KP9, '9'},       {KEY_KPPLUS, '+'},
+    {KEY_KPMINUS, '-'}, {KEY_MINUS, '-'}, {KEY_UP, '+'},    {KEY_DOWN, '-'},      {KEY_RIGHT, '>'},
+    {KEY_LEFT, '<'},    {KEY_A, 'a'},     {KEY_ENTER, 'a'}, {KEY_KPENTER, 'a'},   {KEY_N, 'n'},
+    {KEY_0, 'n'},       {KEY_KP0, 'n'},   {KEY_B, 'b'},     {KEY_BACKSPACE, 'b'}, {KEY_KPDOT, 'b'}};
 
 constexpr std::uint16_t digit_keys = 9;
+
+// A key that answered a question and comes again sooner, or is still held, begins no number and no text.
+constexpr std::int64_t first_key_ns = 1'000'000'000;
+
+constexpr bool is_backspace(std::string_view key) noexcept
+{
+    return key == "\x7f" || key == "\b";
+}
 
 session_key make_key(std::string text, bool is_key)
 {
@@ -68,7 +76,7 @@ session_key make_key(std::string text, bool is_key)
         k.entered = k.text;
         std::erase_if(k.text, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
     }
-    constexpr std::string_view commands = "rvpgq"; // in the order of operator_key
+    constexpr std::string_view commands = "rvpgqb"; // in the order of operator_key
     if (const std::size_t at = commands.find(k.text); k.text.size() == 1 && at != commands.npos)
         k.command = static_cast<operator_key>(at);
     k.answer = detail::number_in<unsigned>(k.text);
@@ -259,7 +267,7 @@ void session_keys::drop_pressed()
 void session_keys::drop_keys()
 {
     drop_pressed();
-    while (terminal_ && poll())
+    while (terminal_ && page_ == nullptr && poll())
         ;
 }
 
@@ -270,13 +278,17 @@ std::optional<session_key> session_keys::poll(bool repeated)
     if (const auto key = pressed()) {
         session_key k = make_key(std::string(1, *key), true);
         k.from_keypad = true;
+        k.since_ns = guard_.since_ns(*key, k.at_ns);
+        guard_.is_repeated(*key, k.at_ns, false);
         return k;
     }
     while (auto line = typed()) {
-        const bool is_held =
-            terminal_ && guard_.is_repeated(line->front(), read_ns_, text_.starts_with(*line));
+        const char key = line->empty() ? '\n' : line->front();
+        const std::int64_t since_ns = guard_.since_ns(key, read_ns_);
+        const bool is_held = terminal_ && guard_.is_repeated(key, read_ns_, text_.starts_with(*line));
         session_key k = make_key(*std::move(line), terminal_);
         k.is_held = is_held;
+        k.since_ns = since_ns;
         if (!is_held || repeated || k.command)
             return k;
         if (!std::exchange(warned_, true))
@@ -295,8 +307,10 @@ std::optional<session_key> session_keys::poll_page()
     const auto a = page_->poll();
     if (!a)
         return {};
-    return session_key{
-        .text = std::string(1, a->key), .answer = a->number, .entered = a->text, .at_ns = a->at_ns};
+    session_key k{.text = std::string(1, a->key), .answer = a->number, .entered = a->text, .at_ns = a->at_ns};
+    if (a->key == 'b')
+        k.command = operator_key::back;
+    return k;
 }
 
 session_key session_keys::wait(const std::string& subject, bool repeated)
@@ -317,12 +331,20 @@ session_key session_keys::wait_for_number(typed_number& number)
     const std::string& digits = number.digits();
     for (;;) {
         session_key k = wait("the session", true);
-        if (k.command || !k.is_key)
+        const bool erases = k.from_keypad && k.command && !digits.empty(); // its one command is b
+        if (!k.is_key || (k.command && !erases))
             return k;
+        if (digits.empty() && k.since_ns < first_key_ns)
+            continue;
         const std::size_t before = digits.size();
         const char key = k.text.front();
         // A keypad's Enter is a, and its 0 is n, as in an adjustment.
-        k.answer = number.take(!k.from_keypad ? key : key == 'a' ? '\n' : key == 'n' ? '0' : key);
+        k.answer = number.take(!k.from_keypad ? key
+                               : key == 'a'   ? '\n'
+                               : key == 'n'   ? '0'
+                               : erases       ? '\b'
+                                              : key);
+        k.command.reset();
         if (k.answer)
             return k;
         echo(digits, before);
@@ -333,13 +355,18 @@ session_key session_keys::wait_for_text(typed_text& text)
 {
     for (;;) {
         session_key k = wait("the session", true);
+        if (page_ != nullptr || (k.from_keypad && k.command))
+            return k;
         if (k.from_keypad)
             continue;
-        if (page_ != nullptr)
-            return k;
         k.command.reset();
-        if (k.is_held && k.text == "\n" && text.text().empty())
-            continue; // Enter of the question before
+        const bool is_first = k.is_key && text.is_empty();
+        if (is_first && k.since_ns < first_key_ns)
+            continue;
+        if (is_first && is_backspace(k.text)) {
+            k.command = operator_key::back;
+            return k;
+        }
         const std::size_t before = text.text().size();
         if (k.is_key && !text.take(k.text.front())) {
             echo(text.text(), before);

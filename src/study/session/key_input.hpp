@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <list>
 #include <optional>
 #include <string>
@@ -20,8 +21,8 @@
 namespace tactor::study {
 
 /// Returns the answer of an input device's key (a code of linux/input-event-codes.h) as a terminal's key: 1
-/// to 9 for digits, a keypad, a button box or a joystick; + - > < or the arrows; a or Enter, n or 0. Returns
-/// nothing for other keys.
+/// to 9 for digits, a keypad, a button box or a joystick; + - > < or the arrows; a or Enter, n or 0, b or
+/// Backspace or a keypad's dot. Returns nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
 /// Greatest number of answers that have a key each.
@@ -49,6 +50,8 @@ public:
     bool take(char byte);
     /// Returns the characters that are complete.
     const std::string& text() const noexcept { return text_; }
+    /// Returns true if not even a part of a character is there.
+    bool is_empty() const noexcept { return text_.empty() && begun_.empty() && escape_ == '\0'; }
 
 private:
     std::string text_ = {};
@@ -60,11 +63,16 @@ private:
 /// without a clock.
 class repeat_guard {
 public:
+    /// Returns the time since the same key was last taken; the greatest if another one was.
+    std::int64_t since_ns(char key, std::int64_t at_ns) const noexcept
+    {
+        return key == last_ ? at_ns - last_ns_ : std::numeric_limits<std::int64_t>::max();
+    }
     /// Takes a key that was read at a time; `again`: the same key was read with it, right behind it. Returns
     /// true if it is repeated: a terminal repeats a held key 10 to 60 times a second.
     bool is_repeated(char key, std::int64_t at_ns, bool again) noexcept
     {
-        const bool repeated = again || (key == last_ && at_ns - last_ns_ < quiet_ns);
+        const bool repeated = again || since_ns(key, at_ns) < quiet_ns;
         last_ = key;
         last_ns_ = at_ns;
         return repeated;
@@ -108,6 +116,7 @@ enum class operator_key {
     pause,     ///< p: pauses before the next trial
     go_on,     ///< g: ends a pause or a break
     quit,      ///< q: as Ctrl-C
+    back,      ///< b: asks the item before again; the participant's key, too
 };
 
 /// A key, or a line of standard input that is no terminal.
@@ -118,6 +127,7 @@ struct session_key {
     std::optional<std::string> entered = {}; ///< a line with its blanks; a text from the page
     bool is_key = false;                     ///< of a terminal or a keypad: a number may have more digits
     bool is_held = false;                    ///< a terminal repeats it
+    std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< see repeat_guard
     bool from_keypad = false;
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };
@@ -151,17 +161,18 @@ public:
     /// can come; `subject` names what then has no answer.
     session_key wait(const std::string& subject = "the session", bool repeated = false);
     /// Waits for a number, or for a command. Shows the digits as keys type them; lines and the page give the
-    /// whole number. Throws as wait().
+    /// whole number. The key that was pressed for the question before types no first digit. Throws as wait().
     session_key wait_for_number(typed_number& number);
     /// Waits for `entered`, a tidy text; if the key has none, the participant's text was refused. Waits for
-    /// the experimenter's commands, too, if there is a page: else what somebody types is text. Shows the text
-    /// as keys type it. Throws as wait().
+    /// the experimenter's commands, too, if there is a page: else what somebody types is text, and Backspace
+    /// before it is the command `back`. Shows the text as keys type it. The key that was pressed for the
+    /// question before is not its first. Throws as wait().
     session_key wait_for_text(typed_text& text);
     /// Returns true if nothing more can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
     /// Drops keys that were pressed on a keypad up to now.
     void drop_pressed();
-    /// Drops the keys that were pressed up to now; lines stay.
+    /// Drops the keys that were pressed up to now; lines stay, and the experimenter's keys beside a page.
     void drop_keys();
 
 private:

@@ -84,6 +84,8 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["entry"] = {{"most", most_text_characters}};
     if (screen_.entry == entry_kind::number)
         j["entry"] = {{"lowest", screen_.lowest}, {"greatest", screen_.greatest}};
+    if (screen_.back)
+        j["back"] = true;
     if (screen_.where)
         j["progress"] = {{"run", screen_.where->run},
                          {"runs", screen_.where->runs},
@@ -126,6 +128,12 @@ page_dialogue::heard page_dialogue::take(std::size_t choice)
             .number = static_cast<unsigned>(choice) + (screen_.visual ? 0U : 1U)};
 }
 
+page_dialogue::heard page_dialogue::go_back()
+{
+    open_ = false;
+    return {.answer = 'b'};
+}
+
 page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, std::int64_t now_ns)
 {
     const ordered received = ordered::parse(text, nullptr, false);
@@ -143,11 +151,15 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
     const auto text_entered = received.find("text");
     const bool is_text = text_entered != received.end() && text_entered->is_string();
     const std::optional<std::uint64_t> number = whole_number(received, "answer");
-    if (!is_text && !number)
+    const auto back = received.find("back");
+    const bool is_back = back != received.end() && *back == true;
+    if (!is_text && !number && !is_back)
         return {.understood = false};
     if (theirs_ != from)
         return h; // the page knows that another one took its place
     if (open_ && whole_number(received, "ask") == asked_) {
+        if (is_back && screen_.back)
+            return go_back();
         if (number > 0U && number <= screen_.choices.size())
             return take(*number - 1);
         const bool is_number = screen_.entry == entry_kind::number && number && *number >= screen_.lowest &&
@@ -170,9 +182,10 @@ page_dialogue::heard page_dialogue::press(char key, std::int64_t now_ns)
     std::size_t choice = screen_.keys.find(key);
     if (choice == std::string::npos && key >= '1' && key <= '9')
         choice = static_cast<std::size_t>(key - '1');
-    if (!theirs_ || !open_ || choice >= screen_.keys.size())
+    const bool is_choice = choice < screen_.keys.size();
+    if (!theirs_ || !open_ || !(is_choice || (screen_.back && key == 'b')))
         return {};
-    heard h = take(choice);
+    heard h = is_choice ? take(choice) : go_back();
     h.replies.push_back({*theirs_, state(now_ns)});
     return h;
 }

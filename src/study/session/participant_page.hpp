@@ -60,6 +60,7 @@ struct page_screen {
     entry_kind entry = entry_kind::none; ///< in place of choices
     unsigned lowest = 1;                 ///< of a number that is entered
     unsigned greatest = 1;
+    bool back = false;                             ///< the participant may go to the question before: key b
     std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
     unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
     unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
@@ -93,7 +94,7 @@ public:
         std::optional<std::string> text = {}; ///< that was entered, tidy
     };
     /// Takes a message. A page that says {"hello":true} is the participant's from then on;
-    /// {"ask":N,"answer":CHOICE or number} and {"ask":N,"text":TEXT} answer.
+    /// {"ask":N,"answer":CHOICE or number} and {"ask":N,"text":TEXT} answer, {"ask":N,"back":true} goes back.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
 
     /// Takes a key of a keypad for the page: that of a choice, or its number.
@@ -107,6 +108,8 @@ private:
     std::string state(std::int64_t now_ns) const;
     /// Closes the question with a choice, from 0.
     heard take(std::size_t choice);
+    /// Closes the question with the key b.
+    heard go_back();
 
     nlohmann::ordered_json facts_;
     page_screen screen_ = {};

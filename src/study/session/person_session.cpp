@@ -16,7 +16,6 @@
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/session/experiment_session.hpp"
-#include "study/session/questionnaire_session.hpp"
 
 namespace tactor::study {
 namespace {
@@ -26,62 +25,18 @@ using json = nlohmann::ordered_json;
 // Points of a path on the page: nobody sees the straight lines between them.
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
-constexpr double picture_points = 60.0;
+
+// A second press of the key that answered the question before, if it comes sooner, answers nothing.
+constexpr std::int64_t second_press_ns = 300'000'000;
 
 // Name, in messages, of the person who ends a session with q.
 constexpr std::string_view experimenter = "the experimenter (q)";
-
-std::vector<point> sample_way(const stroke& target, const array& a, double parts)
-{
-    const trajectory& m = target.motion;
-    const layout faces(a);
-    std::vector<point> way;
-    for (double i = 0.0; i <= parts; ++i) {
-        const point p = m.position(m.duration_s() * i / parts);
-        way.push_back(faces.contains(p) ? p : faces.nearest(p));
-    }
-    return way;
-}
-
-// Lists the texts of the answers, empty if a number is enough.
-std::vector<std::string> label_choices(const run_definition& r)
-{
-    return r.outline.task == task_kind::identify ? r.outline.motions
-           : !r.choices.empty()                  ? r.choices
-                                                 : spread_labels(r.outline.labels, choices_in(r));
-}
-
-// Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5
-// (exactly)", "1 east, 2 west".
-std::string choices_text(const experiment_definition& d, const run_definition& r)
-{
-    const bool is_range = r.outline.task == task_kind::rate || r.outline.task == task_kind::estimate;
-    const std::string between = d.page[is_range ? "to" : "or"];
-    const bool named = r.outline.task == task_kind::identify;
-    const std::vector<std::string> labels = label_choices(r);
-    const bool each = named || r.outline.labels.size() == labels.size();
-    std::string text;
-    for (std::size_t i = 0; i < labels.size(); i += each ? 1 : labels.size() - 1) {
-        text += i == 0 ? "" : each ? ", " : fmt::format(" {} ", between);
-        text += fmt::format("{}", i + r.outline.lowest_rating());
-        if (!labels[i].empty())
-            text += fmt::format(fmt::runtime(named ? " {}" : " ({})"), labels[i]);
-    }
-    return text;
-}
 
 // Tests whether an answer names one of two stimuli.
 bool asks_which(const run_definition& r)
 {
     const task_kind task = r.outline.task;
     return task == task_kind::choose || (r.outline.standard && task != task_kind::estimate);
-}
-
-page_progress find_progress(const prepared_experiment& p, const session_step& s)
-{
-    const run_sequence& run = p.runs[s.run];
-    return {s.run + 1, p.runs.size(), s.practice, s.what == step_kind::trial ? s.which.trial : 0,
-            s.practice ? run.practice.size() : run.trials.size()};
 }
 
 page_screen idle_screen(const prepared_experiment& p, std::string_view key)
@@ -128,35 +83,7 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
     return shown;
 }
 
-page_screen question_screen(const prepared_experiment& p, const session_step& s)
-{
-    const run_definition& r = p.run_at(s.run);
-    page_screen shown{.name = "question", .question = r.outline.question, .where = find_progress(p, s)};
-    if (r.outline.task == task_kind::estimate) {
-        shown.entry = entry_kind::number;
-        shown.greatest = most_estimate;
-        return shown;
-    }
-    shown.choices = label_choices(r);
-    if (shown.choices.size() <= most_keys)
-        shown.keys = std::string("123456789").substr(0, shown.choices.size());
-    shown.visual = r.outline.visual;
-    if (r.outline.task == task_kind::identify)
-        for (const std::size_t m : r.motions)
-            shown.pictures.push_back(
-                sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
-    return shown;
-}
-
 } // namespace
-
-unsigned choices_in(const run_definition& r)
-{
-    return r.outline.task == task_kind::rate       ? r.outline.scale - r.outline.lowest_rating() + 1
-           : r.outline.task == task_kind::identify ? static_cast<unsigned>(r.motions.size())
-           : r.outline.task == task_kind::estimate ? most_estimate
-                                                   : 2;
-}
 
 person_session::person_session(const prepared_experiment& p, session_store& store, stage& s,
                                const answering& with, target_display display, session_devices devices,
@@ -220,7 +147,7 @@ void person_session::step(const session_step& s)
     case step_kind::pause:
         return pause();
     case step_kind::ask:
-        return ask_questionnaire(s);
+        return ask_item(s);
     case step_kind::over:
         return;
     }
@@ -273,6 +200,7 @@ void person_session::introduce(const session_step& s)
              .question = r.outline.question,
              .choices = {w["begin"]},
              .keys = " ",
+             .back = flow_.can_go_back(),
              .where = find_progress(p_, s)});
     if (keys_.come_early()) {
         session::show(page_ != nullptr ? "The participant begins, or g.\n" : w["any_key_begins"] + "\n");
@@ -289,7 +217,8 @@ void person_session::wait_for_any_key()
     const session_step now = flow_.next();
     for (;;) {
         const session_key k = keys_.wait();
-        if (!k.command || *k.command == operator_key::go_on || *k.command == operator_key::repeat)
+        if (!k.command || *k.command == operator_key::go_on || *k.command == operator_key::repeat ||
+            (*k.command == operator_key::back && !flow_.can_go_back()))
             return;
         obey(*k.command);
         if (flow_.next() != now && flow_.next().what != step_kind::pause)
@@ -332,9 +261,12 @@ void person_session::obey(operator_key k)
         throw stage::interruption{SIGINT, experimenter};
     if (k == operator_key::void_last)
         return void_last();
+    if (k == operator_key::back)
+        flow_.go_back();
     if (k == operator_key::pause) {
+        session::say(stderr, "tactor: a pause comes before the next {}\n",
+                     flow_.is_asking() ? "question" : "trial");
         flow_.pause();
-        session::say(stderr, "tactor: a pause comes before the next trial\n");
     }
 }
 
@@ -361,14 +293,40 @@ void person_session::rest(const session_step& s)
         flow_.go_on();
 }
 
-// Writes nothing before all is answered: what was killed before is asked anew.
-void person_session::ask_questionnaire(const session_step& s)
+// Shows title and text of a questionnaire, and lets the participant begin it at the page.
+void person_session::introduce(const questionnaire& q)
+{
+    session::show("\n");
+    for (const std::string& text : {q.title, q.text})
+        if (!text.empty())
+            session::show_lines(text);
+    if (page_ == nullptr || (q.title.empty() && q.text.empty()))
+        return;
+    on_page({.name = "questionnaire",
+             .text = q.text,
+             .question = q.title,
+             .choices = {p_.definition.page["begin"]},
+             .keys = " ",
+             .back = flow_.can_go_back()});
+    session::show("The participant begins, or g.\n");
+    wait_for_any_key();
+}
+
+void person_session::ask_item(const session_step& s)
 {
     const questionnaire& q = p_.definition.outline.questionnaires[s.form];
-    const std::vector<std::string> answers =
-        study::ask_questionnaire(q, p_.definition.page, keys_, page_, [this](operator_key k) { obey(k); });
+    if (introduced_.emplace(s.form, s.run).second)
+        introduce(q);
+    if (flow_.next() != s)
+        return;
+    keys_.drop_keys();
+    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early(); // b is a text then
+    const auto a =
+        ask(ask_about_item(q, s.item, p_.definition.page, flow_.can_go_back() && !is_line, page_ != nullptr));
+    if (!a)
+        return;
     begin_store();
-    store_.append_answers(q, name_run_before(p_, q, s.run), answers);
+    store_.keep_answer(q, name_run_before(p_, q, s.run), s.item, a->text);
     flow_.answered(s);
 }
 
@@ -509,14 +467,14 @@ void person_session::trial(const session_step& s)
         row.frame_2 = *g.first_frame + p_.stimuli.second(t);
     std::string flaw = g.flaw;
     if (flaw.empty()) {
-        const timed_answer a = ask(s, g);
-        if (!a.number) {
+        const auto a = ask(ask_about_trial(p_, s));
+        if (!a) {
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
             codes_.send(code_event::answer, s, t);
-            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[*a.number - 1]) : *a.number,
-                         a.time_s);
+            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a->number - 1]) : a->number,
+                         std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
         }
     }
     row.is_void = !flaw.empty();
@@ -532,36 +490,61 @@ void person_session::trial(const session_step& s)
     find_device();
 }
 
-person_session::timed_answer person_session::ask(const session_step& s, const given_stimulus& g)
+// Waits for an answer; returns none if the experimenter has changed the next step.
+std::optional<person_session::given_answer> person_session::ask(const question& q)
 {
-    const run_definition& r = p_.run_at(s.run);
-    on_page(question_screen(p_, s));
-    const std::string choices = choices_text(p_.definition, r);
-    session::show(fmt::format("{} {}: ", r.outline.question, choices));
-    const unsigned lowest = r.outline.lowest_rating();
-    const bool is_typed = choices_in(r) > most_keys;
-    typed_number typed;
+    const session_step now = flow_.next();
+    on_page(q.screen);
+    const std::string possible = q.possible.empty() ? "" : q.possible + ": ";
+    session::show(fmt::format("{} {}", q.screen.question, possible));
+    typed_text text;
+    typed_number number(fmt::formatted_size("{}", q.screen.greatest));
     for (;;) {
-        const session_key k = is_typed ? keys_.wait_for_number(typed) : keys_.wait();
-        const bool is_shown = is_typed && k.is_key;
-        const double time_s = std::max(0.0, static_cast<double>(k.at_ns - g.ended_ns) * 1e-9);
-        if (k.command == operator_key::repeat)
-            return {};
-        if (k.command)
+        const session_key k = q.is_text()    ? keys_.wait_for_text(text)
+                              : q.is_typed() ? keys_.wait_for_number(number)
+                                             : keys_.wait();
+        const bool is_shown = q.is_typed() && k.is_key;
+        const bool is_answer =
+            q.is_text() ? k.entered.has_value()
+                        : k.answer && *k.answer >= q.screen.lowest && *k.answer <= q.screen.greatest;
+        if (k.command) {
+            if (*k.command == operator_key::repeat && now.what == step_kind::trial)
+                return {};
             obey(*k.command);
-        else if (k.answer && *k.answer >= lowest && *k.answer < lowest + choices_in(r)) {
-            session::show(is_shown ? "\n" : fmt::format("{}\n", *k.answer));
-            return {*k.answer, time_s};
-        } else if (is_typed || !keys_.come_early())
+            if (flow_.next() != now && flow_.next().what != step_kind::pause) {
+                session::show("\n");
+                return {};
+            }
+        } else if (is_answer && is_second_press(k)) {
+            on_page(q.screen); // which the press has answered
+        } else if (is_answer) {
+            answered_ = k;
+            if (q.is_text())
+                answered_.answer.reset();
+            given_answer a{k.answer.value_or(0), q.is_text() ? *k.entered : fmt::format("{}", *k.answer),
+                           k.at_ns};
+            session::show(is_shown ? "\n" : a.text + "\n");
+            return a;
+        } else if (q.is_typed() || !keys_.come_early()) {
             session::show(
-                fmt::format("{}{}: {} ", is_shown ? "\n" : "", p_.definition.page["no_answer"], choices));
+                fmt::format("{}{}: {}", is_shown ? "\n" : "", p_.definition.page["no_answer"], possible));
+        }
     }
+}
+
+// Lines are no presses.
+bool person_session::is_second_press(const session_key& k) const
+{
+    return (k.is_key || page_ != nullptr) && k.answer && k.answer == answered_.answer &&
+           k.at_ns - answered_.at_ns < second_press_ns;
 }
 
 void person_session::void_last()
 {
     if (!flow_.void_last()) {
-        session::say(stderr, "tactor: there is no trial before this one that can be made void\n");
+        session::say(stderr, "tactor: {}\n",
+                     flow_.is_asking() ? "within a questionnaire v makes no trial void; b goes one item back"
+                                       : "there is no trial before this one that can be made void");
         return;
     }
     const run_definition& r = p_.run_at(flow_.void_run());

@@ -3,10 +3,14 @@
 /// A session with somebody at a terminal or before a page: takes the steps of a session_flow on the stage.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +23,7 @@
 #include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
+#include "study/session/questions.hpp"
 #include "study/session/stage.hpp"
 #include "study/session/sync_codes.hpp"
 
@@ -58,15 +63,17 @@ private:
     void begin_store();
     void introduce(const session_step& s);
     void trial(const session_step& s);
-    void ask_questionnaire(const session_step& s);
+    void introduce(const questionnaire& q);
+    void ask_item(const session_step& s);
     void rest(const session_step& s);
     void pause();
     /// Returns false if the last trial was made void, so that the session goes on.
     bool end();
 
-    struct timed_answer {
-        std::optional<unsigned> number = {}; ///< none: the experimenter repeats the trial
-        double time_s = 0.0;
+    struct given_answer {
+        unsigned number = 0; ///< not of a text
+        std::string text;
+        std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
     };
     /// Returns a watcher that asks for a moment's patience when it is first called.
     std::function<bool(double)> waiting();
@@ -75,7 +82,8 @@ private:
     given_stimulus give(const session_step& s, const planned_trial& t);
     /// Returns a watcher that shows which of two stimuli plays at a frame, and what came before.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
-    timed_answer ask(const session_step& s, const given_stimulus& g);
+    std::optional<given_answer> ask(const question& q);
+    bool is_second_press(const session_key& k) const;
 
     /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);
@@ -103,13 +111,12 @@ private:
     std::optional<unsigned> doubted_ = {};    ///< tactor whose first No offered it again
     std::optional<session_step> voided_ = {}; ///< trial that the experimenter made void: its code is to come
     unsigned stream_ = 0;
-    std::string agreed_at_ = {}; ///< time of the yes; empty: not asked
-    bool begun_ = false;         ///< of the store
-    bool repeat_ = false;        ///< wanted while the stimulus plays
+    std::string agreed_at_ = {};                                    ///< time of the yes; empty: not asked
+    bool begun_ = false;                                            ///< of the store
+    session_key answered_ = {};                                     ///< answer before
+    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< questionnaires, and the runs before
+    bool repeat_ = false;                                           ///< wanted while the stimulus plays
     bool quit_ = false;
 };
-
-/// Returns how many answers there are in a run.
-unsigned choices_in(const run_definition& r);
 
 } // namespace tactor::study

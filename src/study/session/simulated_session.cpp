@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "session/process.hpp"
+#include "study/random/random.hpp"
 #include "study/session/experiment_session.hpp"
-#include "study/session/questionnaire_session.hpp"
 #include "study/session/sync_codes.hpp"
 
 namespace tactor::study {
@@ -48,11 +48,7 @@ public:
             if (s.what == step_kind::ask) {
                 const questionnaire& q = p_.definition.outline.questionnaires[s.form];
                 const std::string after = name_run_before(p_, q, s.run);
-                store_.append_answers(
-                    q, after,
-                    draw_answers(q, fmt::format("{}/{}/{}",
-                                                session_seed(simulation_.seed, p_.definition, p_.participant),
-                                                q.name, after)));
+                store_.keep_answer(q, after, s.item, draw_answer(q, s.item, after));
                 flow_.answered(s);
                 continue;
             }
@@ -75,6 +71,20 @@ private:
     std::uint64_t frames(double seconds) const
     {
         return static_cast<std::uint64_t>(std::llround(seconds * p_.render.rate));
+    }
+
+    // Draws each number of an item as likely as the others; a text is "simulated".
+    std::string draw_answer(const questionnaire& q, std::size_t place, const std::string& after) const
+    {
+        random_numbers r(fmt::format(
+            "{}/{}/{}", session_seed(simulation_.seed, p_.definition, p_.participant), q.name, after));
+        std::string answer;
+        for (std::size_t i = 0; i <= place; ++i) // a draw for each number before it
+            if (const questionnaire_item& item = q.items[i]; item.kind == item_kind::text)
+                answer = "simulated";
+            else
+                answer = fmt::format("{}", item.lowest + r.below(item.greatest - item.lowest + 1));
+        return answer;
     }
 
     std::int64_t utc_ns(std::uint64_t frame) const

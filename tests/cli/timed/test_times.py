@@ -6,7 +6,8 @@ import unittest
 
 import test_calibrate
 import test_experiment_person
-from experiments import noise_pieces, read_table
+import test_questionnaire
+from experiments import Terminal, noise_pieces, read_table
 from harness import SANITIZED, ToolTest, main
 from serving import LONG, ServeTest
 
@@ -47,6 +48,33 @@ class Sessions(test_experiment_person.PersonTest):
     def test_noise_while_its_level_is_checked(self):
         self.ok("experiment", self.noisy(), "--check-noise", "-D", "null", "--masker", "raw:noise.raw", stdin="s\ns\nn\nx\nn\nq\n")
         self.assertGreaterEqual(sum(noise_pieces(self.dir / "noise.raw")), 40)
+
+
+class Questionnaires(test_questionnaire.Forms):
+    def test_a_key_of_the_item_before_types_nothing(self):
+        t = Terminal(self, self.args())
+        t.walk()
+        t.answer("Age\\? 0 to 120: ", "33\n")
+        t.answer("Hand\\?", "1")
+        t.answer("Remark\\?", "11")  # pressed twice, and held
+        t.answer("", "x1\n")
+        t.answer("Ease\\?", "\n\n70\n")
+        t.answer("Any key begins", " ")
+        for _ in (1, 2):
+            t.answer("Which one\\? 1 or 2: ", "2")
+        t.answer("Tired\\? 1 no, 2 a little, 3 very: ", "2")
+        t.answer("", "3")
+        t.answer("Any key begins", " ")
+        for _ in (1, 2):
+            t.answer("How even\\?.*: ", "1")
+        t.answer("Anything else\\? ", "1")
+        t.answer("", "\n")
+        t.answer("Again\\?", "5")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertEqual(self.told("about"), [["sub-01", "33", "1", "x1", "70"]])
+        self.assertEqual(self.told("tired"), [["sub-01", "pairs", "3"]])
+        self.assertEqual(self.told("end"), [["sub-01", "n/a", "5"]])
 
 
 class Served(ServeTest):

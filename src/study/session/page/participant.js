@@ -2,6 +2,7 @@
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {draw_target, move_target} from "./motion.js";
 import {show_answers, enable_answers, mark_answer, show_stimuli} from "./answers.js";
+import {make_key_guard} from "./key_guard.js";
 
 const RETRY_MS = 500;
 const LAST = ["over", "elsewhere"]; // screens after which nothing comes
@@ -32,6 +33,7 @@ function greet(facts) {
   by_id("offline").lastElementChild.textContent = words.offline;
   show_only_if(by_id("offline"), false);
   by_id("full").lastElementChild.textContent = words.full_screen;
+  by_id("back").textContent = words.back;
   show_only_if(by_id("full"), document.fullscreenEnabled);
 }
 
@@ -50,6 +52,7 @@ function show(s) {
   show_stimuli(s.stimuli ?? 0, s.playing ?? 0, s.names);
   show_answers(s, tactors, words.confirm, answer);
   enable_answers(state.ask > 0);
+  show_only_if(by_id("back"), s.back);
   show_only_if(by_id("field"), s.path);
   show_only_if(by_id("rest"), s.screen === "rest");
   if (s.path) draw_target(tactors, s.path);
@@ -89,25 +92,33 @@ function show_left(left_s, lasts_s) {
 }
 
 function answer(choice) {
-  if (!state.ask || choice > state.choices?.length || socket.readyState !== WebSocket.OPEN) return;
-  socket.send(JSON.stringify({ask: state.ask, [typeof choice === "string" ? "text" : "answer"]: choice}));
-  state.ask = 0; // the next message shows whether the answer arrived
-  enable_answers(false);
+  if (choice > state.choices?.length || !send({[typeof choice === "string" ? "text" : "answer"]: choice})) return;
   mark_answer(choice);
 }
+function send(reply) {
+  if (!state.ask || socket.readyState !== WebSocket.OPEN) return false;
+  socket.send(JSON.stringify({ask: state.ask, ...reply}));
+  state.ask = 0; // the next message shows whether the answer arrived
+  enable_answers(false);
+  return true;
+}
+const go_back = () => state.back && send({back: true});
+const guard = make_key_guard();
 // A double click answers once: at its second click the next screen may be there. Questions about stimuli come later.
 addEventListener("click", e => { if (e.detail > 1 && state.screen !== "question") e.stopPropagation(); }, true);
 addEventListener("keydown", e => {
-  const presses = e.key === " " || e.key === "Enter";
+  const presses = e.key === " " || e.key === "Enter", types = e.target.matches?.("textarea, input:not([type=range])");
+  if (guard(e.key, performance.now()) && types && !e.target.value) return e.preventDefault(); // it answered the question before
   if (e.repeat && presses) e.preventDefault(); // a key that is held answers once
   if (e.repeat || e.ctrlKey || e.altKey || e.metaKey) return;
   if (/^[1-9]$/.test(e.key) && state.choices?.length < 10) answer(Number(e.key)); // of more, digits do not tell 1 from 10
-  else if (presses && state.choices?.length === 1 && e.target !== by_id("full")) {
+  else if (presses && state.choices?.length === 1 && !["full", "back"].includes(e.target.id)) {
     e.preventDefault(); // or the button's own click would follow
     answer(1);
-  }
+  } else if (e.key === "b" && !types) go_back();
 });
 
+by_id("back").addEventListener("click", go_back);
 by_id("full").addEventListener("click", () => {
   const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
   done.catch(() => {});

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Questions to somebody at a terminal or before a page: of trials, and of the items of questionnaires.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tactor/array.hpp>
+#include <tactor/path.hpp>
+#include <tactor/stroke.hpp>
+
+#include "study/experiment/page_words.hpp"
+#include "study/experiment/questionnaire.hpp"
+#include "study/experiment/trials.hpp"
+#include "study/session/experiment_session.hpp"
+#include "study/session/participant_page.hpp"
+
+namespace tactor::study {
+
+/// A question with its answers: numbers from the screen's lowest to its greatest, or a text.
+struct question {
+    page_screen screen;   ///< the terminal shows its `question`
+    std::string possible; ///< the answers, for the terminal: "1 or 2"; may be empty
+
+    bool is_text() const noexcept { return screen.entry == entry_kind::text; }
+    /// Returns true if an answer takes several keys, and Enter.
+    bool is_typed() const noexcept;
+};
+
+/// Returns how many answers there are in a run.
+unsigned choices_in(const run_definition& r);
+
+/// Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5
+/// (exactly)", "1 east, 2 west".
+std::string choices_text(const experiment_definition& d, const run_definition& r);
+
+/// Returns the place of a step in the session.
+page_progress find_progress(const prepared_experiment& p, const session_step& s);
+
+/// Returns a target's places on the array at equal parts of its time.
+std::vector<point> sample_way(const stroke& target, const array& a, double parts);
+
+/// Returns the question of a trial.
+question ask_about_trial(const prepared_experiment& p, const session_step& s);
+
+/// Returns the question of an item. `back`: somebody can go to the item before, by key b; at a terminal
+/// alone, where b is a letter of a text, by Backspace.
+question ask_about_item(const questionnaire& q, std::size_t item, const page_words& w, bool back,
+                        bool on_page);
+
+} // namespace tactor::study
