@@ -114,7 +114,7 @@ struct setup {
     std::optional<calibration_origin> calibration = {};
     /// [defaults]: each name once; values of an included file come first.
     std::vector<written_value> defaults = {};
-    /// [serve]: in the order of the file.
+    /// [serve]: in the order of the file; values of an included file come first.
     std::vector<written_value> serve = {};
 };
 

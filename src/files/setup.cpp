@@ -15,6 +15,7 @@
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
 #include "core/words.hpp"
+#include "files/setup_layers.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
@@ -191,8 +192,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
     t.actuator = read_actuator(entry).value_or(t.actuator);
 }
 
-// Reads entries without a grid: each is a tactor and says where it is.
-void append_tactors(const std::vector<toml_table>& entries, array& a)
+// Reads entries without a grid: each is a tactor and says where it is. `max_dbfs`: limit of those that say none.
+void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, array& a)
 {
     for (const toml_table& e : entries) {
         e.only({"x_mm", "y_mm", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
@@ -206,6 +207,7 @@ void append_tactors(const std::vector<toml_table>& entries, array& a)
         tactor_spec t;
         t.position = {e.need(e.number("x_mm", anywhere), "x_mm"), e.need(e.number("y_mm", anywhere), "y_mm")};
         t.channel = i;
+        t.max_dbfs = max_dbfs;
         read_tactor(e, t);
         a.tactors.push_back(std::move(t));
     }
@@ -443,28 +445,27 @@ void read_limits(const toml_table& t, located_setup& out)
     l.power_dbfs = t.number("power_dbfs", bounds_of::power_dbfs);
     l.max_drive_s = t.number("max_drive_s", bounds_of::drive_s);
     l.window_s = t.number("window_s", bounds_of::drive_s);
-    out.contents.limits = l;
+    out.contents.limits = join_limits(out.contents.limits, l);
 }
 
 // Reads [defaults] as it is written.
 void read_defaults(const toml_table& t, located_setup& out)
 {
-    for (const toml_table::said_key& e : t.entries()) {
-        std::erase_if(out.contents.defaults, [&e](const written_value& d) { return d.name == e.key; });
-        out.contents.defaults.push_back(read_value(t, e, *e.value, false));
-    }
+    for (const toml_table::said_key& e : t.entries())
+        add_default(out.contents.defaults, read_value(t, e, *e.value, false));
 }
 
 // Reads [serve] as it is written.
 void read_serve(const toml_table& t, located_setup& out)
 {
-    out.contents.serve.clear();
+    std::vector<written_value> all;
     for (const toml_table::said_key& e : t.entries())
         if (const toml::array* list = e.value->as_array())
             for (const toml::node& n : *list)
-                out.contents.serve.push_back(read_value(t, e, n, true));
+                all.push_back(read_value(t, e, n, true));
         else
-            out.contents.serve.push_back(read_value(t, e, *e.value, false));
+            all.push_back(read_value(t, e, *e.value, false));
+    join_serve(out.contents.serve, all);
 }
 
 calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const toml_table*>& entries)
@@ -520,19 +521,22 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
     if (table.has("tactor"))
         table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
     table.only({"name", "site", "up", "place", "turn", "body", "grid", "preset", "file", "actuator", "mirror",
-                "rotate_deg", "displacement_um_at_0dbfs"});
+                "rotate_deg", "displacement_um_at_0dbfs", "max_dbfs"});
     const std::vector<toml_table> entries = root.tables("tactor");
 
     std::string_view base;
     if (table.has("grid") || table.has("preset") || table.has("file"))
         base = table.one_of({"grid", "preset", "file"});
     array a;
+    const double max_dbfs = table.number("max_dbfs", limit_db).value_or(0.0);
     if (base.empty()) {
         if (entries.empty())
             table.fail("[array] has no tactors", "add grid, preset or file, or [[tactor]] entries");
-        append_tactors(entries, a);
+        append_tactors(entries, max_dbfs, a);
     } else {
         a = read_base(table, base, source, out);
+        for (tactor_spec& t : a.tactors)
+            t.max_dbfs = std::min(t.max_dbfs, max_dbfs);
         adjust_tactors(entries, base, a);
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files/setup_text.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -129,14 +131,46 @@ void add_lines(lines& out, const setup& u)
     out.add("void", c.made_void);
 }
 
-void add_tactor(lines& out, const tactor_spec& t)
+std::string value_text(const written_value& d)
+{
+    if (const auto* text = std::get_if<std::string>(&d.said))
+        return toml_string(*text);
+    if (const bool* flag = std::get_if<bool>(&d.said))
+        return fmt::format("{}", *flag);
+    return fmt::format("{}", std::get<double>(d.said));
+}
+
+void add_serve(lines& out, const std::vector<written_value>& serve)
+{
+    if (!serve.empty())
+        out.begin_table("[serve]");
+    for (auto d = serve.begin(); d != serve.end();) {
+        std::string text = value_text(*d);
+        const auto first = d++;
+        for (; first->in_list && d != serve.end() && d->in_list && d->name == first->name; ++d)
+            text += ", " + value_text(*d);
+        out.add_value(first->name, first->in_list ? "[" + text + "]" : text);
+    }
+}
+
+// Returns the limit that all tactors share.
+std::optional<double> shared_limit(const array& a)
+{
+    const double first = a.tactors.empty() ? 0.0 : a.tactors.front().max_dbfs;
+    const bool same = std::all_of(a.tactors.begin(), a.tactors.end(),
+                                  [first](const tactor_spec& t) { return t.max_dbfs == first; });
+    return same && first != 0.0 ? std::optional(first) : std::nullopt;
+}
+
+// `shared_dbfs`: limit that [array] says.
+void add_tactor(lines& out, const tactor_spec& t, double shared_dbfs)
 {
     out.begin_table("[[tactor]]");
     out.add("x_mm", t.position.x_mm);
     out.add("y_mm", t.position.y_mm);
     out.add("channel", t.channel);
     out.add_unusual("gain_db", t.gain_db, 0.0);
-    out.add_unusual("max_dbfs", t.max_dbfs, 0.0);
+    out.add_unusual("max_dbfs", t.max_dbfs, shared_dbfs);
     if (t.thresholds.empty())
         out.add("threshold_dbfs", t.threshold_dbfs);
     out.add_rows("threshold_dbfs", t.thresholds,
@@ -296,8 +330,10 @@ std::string array_text(const array& a)
         out.add_value("place", fmt::format("[{}, {}]", a.place->x_mm, a.place->y_mm));
     out.add("turn", a.turn_deg);
     out.add("body", a.body_mm);
+    const std::optional<double> limit_dbfs = shared_limit(a);
+    out.add("max_dbfs", limit_dbfs);
     for (const tactor_spec& t : a.tactors)
-        add_tactor(out, t);
+        add_tactor(out, t, limit_dbfs.value_or(0.0));
     return "[array]\n" + out.take();
 }
 
@@ -311,15 +347,11 @@ std::string besides_text(const setup& besides)
         out.add("max_drive_s", l->max_drive_s);
         out.add("window_s", l->window_s);
     }
+    add_serve(out, besides.serve);
     if (!besides.defaults.empty())
         out.begin_table("[defaults]");
     for (const written_value& d : besides.defaults)
-        if (const auto* text = std::get_if<std::string>(&d.said))
-            out.add(d.name, *text);
-        else if (const bool* flag = std::get_if<bool>(&d.said))
-            out.add(d.name, *flag);
-        else
-            out.add(d.name, std::get<double>(d.said));
+        out.add_value(d.name, value_text(d));
     return output_text(besides.output) + out.take();
 }
 

@@ -6,7 +6,7 @@ import re
 import signal
 import tomllib
 
-from harness import GRID, ToolTest, main
+from harness import GRID, ROOT, ToolTest, main
 from terminal import Terminal
 
 
@@ -79,6 +79,77 @@ class Check(ToolTest):
         self.assertEqual((self.dir / "there.toml").read_text(), "")
 
 
+# Every table, and keys of each, with values that are no defaults.
+EVERY_TABLE = """[array]
+name = "desk"
+site = "left palm"
+up = "fingers"
+grid = { rows = 1, columns = 2, pitch_mm = 20 }
+rotate_deg = 180
+place = [1, -56]
+turn = 15
+body = 180
+max_dbfs = -6
+actuator = "piezo"
+displacement_um_at_0dbfs = 35
+[[tactor]]
+tactor = 0
+threshold_dbfs = [[100, -24.5], [250, -40.0]]
+rise_ms = 5
+polarity = -1
+gain_db = -2
+[[tactor]]
+tactor = 1
+max_dbfs = -3
+[output]
+pcm = "null"
+rate = 96000
+channels = 5
+period_frames = 192
+periods = 4
+[amplifier]
+line = { chip = "gpiochip0", offset = 17 }
+active_low = true
+settle_ms = 25
+[sync]
+out = { chip = "gpiochip0", offset = 13, pulse_ms = 4 }
+channel = 4
+in = { name = "GPIO6", edge = "falling", debounce_ms = 2.5, pull = "up" }
+code = { channel = 3, bit_ms = 1, pulse_ms = 6, lsl = true }
+[sync.codes]
+stimulus = 40
+answer = 50
+void = 60
+[limits]
+max_drive_s = 2
+window_s = 20
+power_dbfs = 0
+[serve]
+max_level_dbfs = -40
+http = 4003
+tcp = "127.0.0.1:4001"
+token_file = "token"
+allow_hosts = ["pi.lan", "studio.lan:4003"]
+osc_peers = ["192.168.1.7"]
+max_clients = 12
+[defaults]
+level-dbfs = -30
+snap = true
+algorithm = "tactile-brush"
+[calibration]
+participant = "P01"
+method = "staircase"
+carrier_hz = 250
+interval_s = 0.5
+simulated = false
+[[calibration.tactor]]
+tactor = 0
+threshold_dbfs = -40
+sd_db = 1.5
+trials = 40
+"""
+
+
 class Walk(ToolTest):
     def setUp(self):
         super().setUp()
@@ -134,6 +205,48 @@ class Walk(ToolTest):
         self.assertIn("each at most 3 s", self.ok("check", "--array", "out/felt.toml").stdout)
         felt = tomllib.loads((self.dir / "out/felt.toml").read_text())
         self.assertEqual((felt["sync"], felt["defaults"]), ({"channel": 4}, {"level_dbfs": -40}))
+
+    def test_all_that_a_file_says_is_in_the_new_one(self):
+        """Each table is compared as a TOML reader reads both files: nothing of the old one is missing."""
+        old = self.write("old.toml", EVERY_TABLE)
+        self.write("serve.toml", "[serve]\nosc = 4004\n[output]\nrate = 44100\n")
+        for args, more in ((("--array", "old.toml", "--config", "serve.toml"), {}), (("--config", "old.toml"), {}),
+                           (("--config", "serve.toml"), {"serve": {"osc": 4004}, "output": {"rate": 44100}})):
+            self.walk(range(2) if not more else range(9), "-D", "null", "--no-gpio", "--level-dbfs", "-40", "-o", "new.toml", array=args)
+            said, new = more or tomllib.loads(old.read_text()), tomllib.loads((self.dir / "new.toml").read_text())
+            self.assertEqual({name: new.get(name) for name in said if name not in ("array", "tactor")},
+                             {name: table for name, table in said.items() if name not in ("array", "tactor")})
+            if not more:
+                self.assertEqual(new["array"], {"name": "desk", "site": "left palm", "up": "fingers", "place": [1, -56], "turn": 15, "body": 180})
+                tactor = {"x_mm": 0, "y_mm": 0, "channel": 0, "max_dbfs": -6, "actuator": "piezo", "displacement_um_at_0dbfs": 35}
+                # Turned by 180 degrees, tactor 0 is on the right.
+                self.assertEqual(new["tactor"], [tactor | {"x_mm": 20, "threshold_dbfs": [[100, -24.5], [250, -40.0]], "rise_ms": 5, "polarity": -1, "gain_db": -2},
+                                                 tactor | {"channel": 1, "max_dbfs": -3}])
+            self.ok("check", "--config", "new.toml", "-D", "null", "--no-gpio")
+            (self.dir / "new.toml").unlink()
+
+    def test_a_walk_can_limit_every_tactor_and_so_does_its_file(self):
+        self.write("a.toml", GRID.replace("gain_db = -3.0", "max_dbfs = -30"))
+        self.walk([0, 1], "--max-dbfs", "-12.5", "--level-dbfs", "-40", "-o", "felt.toml")
+        tactors = tomllib.loads((self.dir / "felt.toml").read_text())["tactor"]
+        self.assertEqual([t["max_dbfs"] for t in tactors], [-12.5, -30])
+        self.assertIn("above its limit of -41 dBFS", self.walk([0, 1], "--max-dbfs", "-41", "--level-dbfs", "-40", status=2).stderr)
+        self.refused(2, "check", "--max-dbfs", "-12")
+        self.refused(2, "check", "--walk", "--max-dbfs", "1")
+        # What the guide shows is the head of a file that a walk has written, with one line more.
+        self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "-o", "palm.toml", array=())
+        for guide in ("start.md", "study.md"):
+            shown = re.search(r"(?m)^    \[array\]\n    .*\n    max_dbfs = (-\d+) .*\n", (ROOT / "man/guide" / guide).read_text(encoding="utf-8"))
+            block, limit = shown[0].replace("    ", "", 1).replace("\n    ", "\n"), int(shown[1])
+            head = "".join(block.splitlines(keepends=True)[:2])
+            felt = (self.dir / "palm.toml").read_text()
+            self.assertIn(head, felt)
+            self.write("limited.toml", felt.replace(head, block, 1))
+            self.refused(2, "render", "park2016-3", "--array", "limited.toml", "--level-dbfs", limit + 1, "-o", "x.wav",
+                         says=[f"above its limit of {limit} dBFS"])
+        self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "--max-dbfs", "-12", "-o", "all.toml", array=())
+        said = tomllib.loads((self.dir / "all.toml").read_text())
+        self.assertEqual(said["array"]["max_dbfs"], -12)
 
     def test_answers_without_a_map_make_no_file(self):
         for answers, says in (([1, 1], ["tactor 0 (channel 0) and tactor 1 (channel 1)", "at one place, 1"]),

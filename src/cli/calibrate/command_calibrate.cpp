@@ -349,7 +349,7 @@ void print_ceilings(const study::calibration_settings& c)
     if (const auto unlimited = tactors.find(0.0); unlimited != tactors.end())
         say(stderr,
             "tactor: warning: no max_dbfs below 0 limits {}: the level may go to full scale (set max_dbfs in "
-            "[[tactor]] of the array file)\n",
+            "[array] or [[tactor]] of the array file)\n",
             name_tactors(unlimited->second));
 }
 

@@ -134,6 +134,7 @@ struct check_options {
     bool walk = false;
     bool no_questions = false; ///< a walk only names each tactor
     std::string output = {};   ///< empty: none
+    std::optional<double> max_dbfs = {}; ///< limit of all tactors, for the walk and the file
 
     bool json() const { return format == "json"; }
 };

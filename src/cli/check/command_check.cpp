@@ -14,6 +14,7 @@
 #include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
+#include "core/bounds.hpp"
 #include "core/members.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
@@ -221,10 +222,19 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     return all;
 }
 
-// Writes an array file with these channels and all else that the file in use says. It needs no other file.
-void write_channels(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
+// Returns the file that the array is from. An array that no file says is that of a configuration without one.
+setup read_array_source(const settings& s, const environment& e)
 {
-    const setup besides = e.array_file.empty() ? setup{} : load_setup(e.array_file);
+    if (!e.array_file.empty())
+        return load_setup(e.array_file);
+    return s.array_name || e.config_name.empty() ? setup{} : load_setup(e.config_name);
+}
+
+// Writes an array file with these channels and all else that the file in use says. It needs no other file.
+void write_channels(const std::string& name, const settings& s, const environment& e,
+                    const std::vector<unsigned>& channels)
+{
+    const setup besides = read_array_source(s, e);
     array felt = e.tactors;
     for (std::size_t i = 0; i < channels.size(); ++i)
         felt.tactors[i].channel = channels[i];
@@ -234,13 +244,14 @@ void write_channels(const std::string& name, const environment& e, const std::ve
     study::write_new_output(name, text);
 }
 
-void conclude(const check_options& o, const environment& e, const session::walk_verdict& v)
+void conclude(const settings& s, const check_options& o, const environment& e,
+              const session::walk_verdict& v)
 {
     if (!v.problems.empty())
         throw error(error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
                     "look after wires and amplifier channels, then walk again; no map is written");
     if (!o.output.empty())
-        write_channels(o.output, e, v.channels);
+        write_channels(o.output, s, e, v.channels);
     if (o.json())
         return;
     say(stdout, "{}\n",
@@ -266,14 +277,17 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
     const session::walk_verdict v = session::judge(e.tactors, w.felt);
     if (o.json())
         fmt::print("{}", check_json(all, walk_outcome{e.tactors, w.felt, v}));
-    conclude(o, e, v);
+    conclude(s, o, e, v);
     return status_ok;
 }
 
 void check_usage(const settings& s, const check_options& o)
 {
-    if (!o.walk && (o.no_questions || !o.output.empty()))
-        refuse_option(o.no_questions ? "--auto" : "--output", "only a walk has it", "add --walk");
+    if (!o.walk && (o.no_questions || !o.output.empty() || o.max_dbfs))
+        refuse_option(o.no_questions       ? "--auto"
+                      : !o.output.empty() ? "--output"
+                                           : "--max-dbfs",
+                      "only a walk has it", "add --walk");
     if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
         refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing is played",
                       "add --walk");
@@ -292,6 +306,8 @@ int check(settings& s, const check_options& o)
     std::optional<environment> e;
     try {
         e = session::read_environment(s);
+        for (tactor_spec& t : e->tactors.tactors)
+            t.max_dbfs = std::min(t.max_dbfs, o.max_dbfs.value_or(t.max_dbfs));
         all = check_all(s, *e);
     } catch (const error& x) {
         all = {failure("array", x)};
@@ -381,9 +397,13 @@ int run_check(command_line& line)
     c.add_option("-o,--output", o.output,
                  "with --walk: array file to write, with the channels as they were felt")
         ->type_name("FILE.toml");
+    add_text(c, "--max-dbfs", "DB", "with --walk: highest peak of every tactor, then and in the file",
+             [&o](const std::string& t) {
+                 o.max_dbfs = options::parse_number("--max-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
+             });
     add_format_option(c, o.format, {"text", "json"}, "how to print it (default text)");
     c.footer("tactor check -D hw:CARD=Tactor\n"
-             "tactor check --array palm-2x4 --walk -o palm-felt.toml --level-dbfs -40 -D hw:CARD=Tactor\n"
+             "tactor check --walk -o felt.toml --level-dbfs -40 --max-dbfs -12 -D hw:CARD=Tactor\n"
              "tactor check --format json");
     line.parse();
     return check(s, o);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Tables that two files say: an array file and the file that names it, or the configuration.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <tactor/setup.hpp>
+
+namespace tactor::detail {
+
+/// Returns the limits of both files: of two of a kind the lower power, the shorter drive and the longer
+/// window. A time that a file leaves out beside another is the default there.
+std::optional<limit_settings> join_limits(const std::optional<limit_settings>& a,
+                                          const std::optional<limit_settings>& b);
+
+/// Adds a value of [defaults], which replaces an earlier one of its name.
+void add_default(std::vector<written_value>& all, written_value v);
+
+/// Adds [serve] of a later file. Its values replace earlier ones of their names; of two values of a key max_...
+/// the lower stays.
+void join_serve(std::vector<written_value>& all, const std::vector<written_value>& later);
+
+} // namespace tactor::detail
