@@ -95,7 +95,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
     for (const std::string_view k : known) {
         if (k.size() > longest)
             continue;
-        const std::size_t e = same_stem(name, k) ? 1 : edits(name, k);
+        const std::size_t e = std::min<std::size_t>(edits(name, k), same_stem(name, k) ? 1 : longest);
         // A one-letter name is one edit away from every other.
         if (e < best_edits && e < std::max(name.size(), k.size())) {
             best = k;

@@ -194,6 +194,8 @@ serve_settings read_serve(const std::vector<written_value>& said)
         take(s, k, d);
         if (k.name == "kept_clients")
             kept = &d;
+        if (k.name == "max_level_dbfs")
+            s.max_level_at = d.at;
     }
     serve_limits& l = s.limits;
     if (kept == nullptr)

@@ -38,6 +38,7 @@ struct serve_settings {
     std::vector<std::string> allow_hosts = {};
     std::vector<std::string> osc_peers = {};
     std::optional<double> max_level_dbfs = {};
+    source_place max_level_at = {}; ///< of that, in its file
     std::optional<double> idle_stop_s = {};
     serve_limits limits = {};
 };

@@ -17,6 +17,7 @@
 
 #include <unistd.h>
 
+#include "files/setup_text.hpp"
 #include "python/binding.hpp"
 #include "session/device.hpp"
 #include "session/device_stream.hpp"
@@ -81,13 +82,24 @@ private:
     bool closed_ = false;
 };
 
-// Returns the configuration that applies, with this array; null: with the configuration's. Fills in rate and
-// format from [defaults] where `s` has none.
+bool is_built_in(const array& a)
+{
+    return session::is_preset(array_presets(), a.name) &&
+           detail::array_text(a) == detail::array_text(preset_array(a.name));
+}
+
+// Returns the configuration that applies, with this array; null: with the configuration's. A preset is the
+// configuration's array where that has its places. Fills in rate and format from [defaults] where `s` has
+// none.
 session::environment read_environment(session::settings& s, const array* a)
 {
     session::environment e = session::read_environment(s);
     if (a == nullptr)
         return e;
+    if (!s.array_name && is_built_in(*a)) {
+        e.tactors = session::use_preset(*a, e);
+        return e;
+    }
     // A channel count belongs to its map.
     if (!std::ranges::equal(e.tactors.tactors, a->tactors, {}, &tactor_spec::channel, &tactor_spec::channel))
         e.config.output.channels.reset();
@@ -120,7 +132,11 @@ public:
         o.require_realtime = s.stream.require_realtime;
         o.keep_drive_time = keep;
         o.log = device.log;
-        open_->stream = std::make_unique<player>(session::open_device(device, a), a, o, open_->lines.lend());
+        open_->stream = std::make_unique<player>(session::open_device(device, e.tactors), e.tactors, o,
+                                                 open_->lines.lend());
+        if (detail::array_text(e.tactors) != detail::array_text(a))
+            configured_ = e.tactors;
+        doubt_ = e.array_doubt;
         open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
         setup_ = open_->stream->setup();
     }
@@ -140,6 +156,10 @@ public:
     player_handle& operator=(const player_handle&) = delete;
 
     const stream_setup& setup() const noexcept { return setup_; }
+    /// Returns the configuration's array where it is played on in place of a preset.
+    const std::optional<array>& configured() const noexcept { return configured_; }
+    /// Returns a warning about the array; else an empty text.
+    const std::string& doubt() const noexcept { return doubt_; }
     event_queue& events() noexcept { return *events_; }
     bool forked() const noexcept { return ::getpid() != owner_; }
     void refuse_child() const
@@ -227,6 +247,8 @@ private:
 
     pid_t owner_ = ::getpid();
     stream_setup setup_;
+    std::optional<array> configured_;
+    std::string doubt_;
     std::shared_ptr<event_queue> events_ = std::make_shared<event_queue>();
     std::unique_ptr<open_state> open_ = std::make_unique<open_state>();
 };
@@ -440,6 +462,13 @@ void bind_player(py::module_& m)
         .def("ended", &player_handle::ended, free_call())
         .def("close", &player_handle::close, free_call())
         .def("refuse_child", &player_handle::refuse_child)
+        .def_property_readonly("configured",
+                               [](const player_handle& h) -> std::optional<array_handle> {
+                                   return h.configured()
+                                              ? std::optional<array_handle>(std::in_place, *h.configured())
+                                              : std::nullopt;
+                               })
+        .def_property_readonly("doubt", &player_handle::doubt)
         .def_property_readonly("closed", &player_handle::closed)
         .def_property_readonly("forked", &player_handle::forked)
         .def("stats", &stats_dict)

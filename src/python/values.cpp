@@ -21,6 +21,7 @@
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
+#include "options/serve.hpp"
 #include "options/settle.hpp"
 #include "python/binding.hpp"
 
@@ -235,6 +236,7 @@ std::string read_text(const std::string& file)
 setup checked(setup s)
 {
     static_cast<void>(options::read_defaults(s));
+    static_cast<void>(options::read_serve(s.serve));
     return s;
 }
 

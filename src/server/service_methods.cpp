@@ -185,6 +185,7 @@ reply_json service::status_now()
             {"clients", clients_.size()},
             {"who", who},
             {"strokes", strokes},
+            {"max_level_dbfs", options_.plans.max_level_dbfs},
             {"limits", limits_json()}};
 }
 

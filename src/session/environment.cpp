@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "files/setup_layers.hpp"
 #include "files/text_file.hpp"
 #include "options/settle.hpp"
 #include "rt/system_files.hpp"
@@ -23,6 +24,8 @@ namespace tactor::session {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* usual_array = "palm-3x3";
 
 std::string find_config(const settings& s)
 {
@@ -44,7 +47,8 @@ std::string find_config(const settings& s)
     return {};
 }
 
-// Takes output, amplifier and sync from an array file, because they belong to its array.
+// Adds what an array file says. Output, amplifier and sync are the file's where it has them, because they
+// belong to its array; of two ceilings the lower holds.
 void use_array_file(setup& config, const setup& file)
 {
     config.array = file.array;
@@ -65,7 +69,12 @@ void use_array_file(setup& config, const setup& file)
     prefer(config.output.periods, file.output.periods);
     prefer(config.amplifier, file.amplifier);
     prefer(config.sync, file.sync);
-    prefer(config.limits, file.limits);
+    config.limits = detail::join_limits(config.limits, file.limits);
+    static_cast<void>(options::read_serve(config.serve)); // an error of the one is not hidden by the other
+    static_cast<void>(options::read_serve(file.serve));
+    detail::join_serve(config.serve, file.serve);
+    for (const written_value& d : file.defaults)
+        detail::add_default(config.defaults, d);
 }
 
 // Reads standard input, once. The first character shows if it is a plan.
@@ -131,35 +140,47 @@ array named_array(const std::string& name)
     }
 }
 
-array find_array(settings& s, environment& e, const files::plan_file* planned)
+// Returns true for arrays with tactors at the same places, whatever their numbers.
+bool same_places(const array& a, const array& b)
 {
-    setup& config = e.config;
-    if (!s.array_name) {
-        e.array_file = config.array ? e.config_name : "";
-        if (config.array)
-            return *config.array;
-        if (planned == nullptr)
-            return preset_array("palm-3x3");
-        e.plan_channels = planned->render.channels;
-        return planned->tactors; // with the settings that its array file had when the plan was made
-    }
-    if (is_preset(array_presets(), *s.array_name)) {
-        config.output.channels.reset();
-        config.calibration.reset();
-        return preset_array(*s.array_name);
-    }
+    return a.tactors.size() == b.tactors.size() &&
+           std::all_of(a.tactors.begin(), a.tactors.end(), [&b](const tactor_spec& t) {
+               return std::any_of(b.tactors.begin(), b.tactors.end(), [&t](const tactor_spec& other) {
+                   return distance_mm(t.position, other.position) <= same_place_mm;
+               });
+           });
+}
+
+// Returns true for the name of an array, not of a file.
+bool names_preset(const std::string& name)
+{
     std::error_code unknown; // such as for a name that no file can have
-    if (!fs::exists(*s.array_name, unknown) && s.array_name->find_first_of("./") == std::string::npos)
-        return named_array(*s.array_name);
-    check_readable(*s.array_name);
-    const setup file = load_setup(*s.array_name);
+    return is_preset(array_presets(), name) ||
+           (!fs::exists(name, unknown) && name.find_first_of("./") == std::string::npos);
+}
+
+// Reads the array file of --array.
+void read_array_file(const std::string& name, environment& e)
+{
+    check_readable(name);
+    const setup file = load_setup(name);
     if (!file.array)
-        throw error(error_kind::bad_input, *s.array_name, "says no [array]", "see tactor.toml(5)");
-    options::apply_defaults(s, file);
-    static_cast<void>(options::read_serve(file.serve)); // checked, though it does not count here
-    use_array_file(config, file);
-    e.array_file = *s.array_name;
-    return *file.array;
+        throw error(error_kind::bad_input, name, "says no [array]", "see tactor.toml(5)");
+    use_array_file(e.config, file);
+    e.array_file = name;
+}
+
+// Returns the array of --array NAME, the configuration's, the plan's, or palm-3x3.
+array find_array(const settings& s, environment& e, const files::plan_file* planned)
+{
+    if (s.array_name && names_preset(*s.array_name))
+        return use_preset(named_array(*s.array_name), e);
+    if (e.config.array)
+        return *e.config.array;
+    if (planned == nullptr)
+        return preset_array(usual_array);
+    e.plan_channels = planned->render.channels;
+    return planned->tactors; // with the settings that its array file had when the plan was made
 }
 
 // A configuration's marker channel may meet another file's array.
@@ -193,6 +214,24 @@ double farthest(const plan& p, double hz)
 
 } // namespace
 
+array use_preset(array preset, environment& e)
+{
+    setup& config = e.config;
+    array configured = config.array ? *config.array : preset_array(usual_array);
+    if (same_places(configured, preset)) {
+        e.array_file = config.array ? e.config_name : "";
+        return configured;
+    }
+    if (config.array)
+        e.array_doubt = fmt::format("{}: the array of {} has other places: its limits, gains and channels do not "
+                                    "hold here",
+                                    preset.name, e.config_name);
+    e.array_file.clear();
+    config.output.channels.reset();
+    config.calibration.reset();
+    return preset;
+}
+
 bool is_preset(const std::vector<std::string>& presets, const std::string& name)
 {
     return std::find(presets.begin(), presets.end(), name) != presets.end();
@@ -205,16 +244,39 @@ environment read_environment(settings& s)
     if (!e.config_name.empty()) {
         check_readable(e.config_name);
         e.config = load_setup(e.config_name);
-        options::apply_defaults(s, e.config);
-        e.serve = options::read_serve(e.config.serve);
+        e.array_file = e.config.array ? e.config_name : "";
     }
+    if (s.array_name && !names_preset(*s.array_name))
+        read_array_file(*s.array_name, e);
+    options::apply_defaults(s, e.config);
+    e.serve = options::read_serve(e.config.serve);
     const files::plan_file* const planned = read_plans(s, e);
     e.tactors = find_array(s, e, planned);
     if (planned != nullptr)
         use_plan_sound(*planned, s);
     options::settle(s);
     check_sync_channel(e);
+    if (!e.array_doubt.empty())
+        say(stderr, "tactor: warning: {}\n", e.array_doubt);
     return e;
+}
+
+ceiling find_ceiling(const environment& e)
+{
+    if (const auto& said = e.serve.max_level_dbfs)
+        return {*said, fmt::format("max_level_dbfs, {}", e.serve.max_level_at.text())};
+    settings usual;
+    usual.place = options::on_play;
+    options::apply_defaults(usual, e.config);
+    const auto at = usual.in_file.find(options::index(*options::find("level_dbfs")));
+    if (at == usual.in_file.end())
+        return {usual.render.level_dbfs, "no file says max_level_dbfs under [serve]"};
+    return {usual.render.level_dbfs, fmt::format("level-dbfs under [defaults], {}", at->second.text())};
+}
+
+std::string ceiling_text(const ceiling& c)
+{
+    return fmt::format("{} dBFS ({})", plain_number(c.dbfs, 4), c.from);
 }
 
 render_options settle_render(const settings& s, const environment& e)

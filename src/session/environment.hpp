@@ -27,13 +27,14 @@ struct settings : options::wishes {
     std::vector<std::string> strokes = {}; ///< STROKE arguments
 };
 
-/// The configuration that applies, and the array file's own [output], [amplifier] and [sync] over it.
+/// The configuration that applies, with what the file of --array says.
 struct environment {
     setup config;
-    options::serve_settings serve; ///< the configuration's [serve]
+    options::serve_settings serve; ///< [serve] of both
     std::string config_name;       ///< file it came from; empty: none
     array tactors;
-    std::string array_file; ///< that the array came from; empty: it is a preset of its name
+    std::string array_file;  ///< that the array came from; empty: it is a preset of its name
+    std::string array_doubt; ///< warning about a preset in place of the configuration's array; else empty
     std::optional<unsigned> plan_channels = {};         ///< of the plan that the array came from
     std::map<std::string, files::plan_file> plans = {}; ///< STROKE arguments that are planned already
     std::vector<stroke> standard_input = {};            ///< strokes of the STROKE "-", unless it is a plan
@@ -41,9 +42,25 @@ struct environment {
 
 /// Reads the configuration (--config, $TACTOR_CONFIG, the user's, the system's: the first that exists),
 /// fills options that nobody gave from its [defaults], reads the STROKEs that are plans and standard input
-/// where "-" is one, and finds the array: --array, the configuration's, the first plan's, or palm-3x3.
-/// \throws error.
+/// where "-" is one, and finds the array: --array, the configuration's, the first plan's, or palm-3x3. Says
+/// environment::array_doubt on standard error. \throws error.
 environment read_environment(settings& s);
+
+/// Returns the configuration's array if it has a preset's places. Else returns the preset, and notes
+/// environment::array_doubt if there is another array.
+array use_preset(array preset, environment& e);
+
+/// Highest level of a service's clients.
+struct ceiling {
+    double dbfs = 0.0;
+    std::string from = {}; ///< key and place in the file that says so
+};
+
+/// Returns the ceiling that the files say: max_level_dbfs, else the level of [defaults], else the usual one.
+ceiling find_ceiling(const environment& e);
+
+/// Returns "-40 dBFS (max_level_dbfs, tactor.toml:4:18)".
+std::string ceiling_text(const ceiling& c);
 
 /// Returns true if `name` is one of these.
 bool is_preset(const std::vector<std::string>& presets, const std::string& name);

@@ -32,7 +32,7 @@ std::string refusal(const std::string& text)
 TEST_CASE("the shipped experiment is the paper's")
 {
     const experiment_definition d = load_definition("park2016");
-    CHECK(d.array == "palm-3x3");
+    CHECK_FALSE(d.array); // the configuration's holds
     CHECK(!d.level_dbfs);
     CHECK(d.sl_db == 7.0);
     CHECK(d.gap_s == 1.0);

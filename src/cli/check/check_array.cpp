@@ -289,6 +289,8 @@ std::vector<finding> check_array(const settings& s, const environment& e)
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
     all.push_back(check_limits(session::settle_limits(s.stream, e), e.tactors.tactors.size()));
+    all.push_back(fine("service", "clients of tactor serve get at most " +
+                                      session::ceiling_text(session::find_ceiling(e))));
     return all;
 }
 

@@ -71,6 +71,39 @@ options::serve_settings settle_serve(const options::serve_settings& o, options::
     return s;
 }
 
+// Returns the ceiling of the files, or the lower one of --max-level-dbfs.
+session::ceiling settle_ceiling(const environment& e, std::optional<double> asked_dbfs)
+{
+    const session::ceiling said = session::find_ceiling(e);
+    if (!asked_dbfs)
+        return said;
+    const bool is_said = e.serve.max_level_dbfs || said.from.starts_with("level-dbfs");
+    if (is_said && *asked_dbfs > said.dbfs)
+        refuse_option("--max-level-dbfs",
+                      fmt::format("{} dBFS is above the owner's {} ({})", plain_number(*asked_dbfs, 4),
+                                  plain_number(said.dbfs, 4), said.from),
+                      "give that or less, or change the file");
+    return {*asked_dbfs, "--max-level-dbfs"};
+}
+
+// Refuses options that would lift a limit that the files say.
+void check_limits(const session::stream_options& asked, const environment& e)
+{
+    const limit_settings said = e.config.limits.value_or(limit_settings{});
+    const auto refuse = [](const char* option, double value, double limit, const char* unit, const char* how) {
+        refuse_option(option,
+                      fmt::format("{} {} lifts the limit of {} {} under [limits]", plain_number(value, 4), unit,
+                                  plain_number(limit, 4), unit),
+                      fmt::format("give that or {}, or change the file", how));
+    };
+    if (said.power_dbfs && asked.power_dbfs.value_or(*said.power_dbfs) > *said.power_dbfs)
+        refuse("--power-dbfs", *asked.power_dbfs, *said.power_dbfs, "dB", "less");
+    if (said.max_drive_s && asked.max_drive_s.value_or(*said.max_drive_s) > *said.max_drive_s)
+        refuse("--max-drive-s", *asked.max_drive_s, *said.max_drive_s, "s", "less");
+    if (said.window_s && asked.drive_window_s.value_or(*said.window_s) < *said.window_s)
+        refuse("--drive-window-s", *asked.drive_window_s, *said.window_s, "s", "more");
+}
+
 server::endpoint_options settle_endpoints(const options::serve_settings& s)
 {
     if (s.socket && s.socket->empty())
@@ -141,14 +174,14 @@ array limit_levels(array a, double max_level_dbfs)
     return a;
 }
 
-server::planning make_planning(const settings& s, const environment& e, const options::serve_settings& serve,
+server::planning make_planning(const settings& s, const environment& e, double ceiling_dbfs,
                                const server::service_limits& limits)
 {
     server::planning p;
     p.owner = static_cast<const options::wishes&>(s);
     p.owner.intensity_max.reset(); // each client says how its own numbers count
     p.owner.render = session::settle_render(s, e);
-    p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
+    p.max_level_dbfs = ceiling_dbfs;
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
     p.tactors = limit_levels(e.tactors, p.max_level_dbfs);
     p.max_stroke_s = limits.max_stroke_s;
@@ -190,7 +223,7 @@ void warn_of_access(const server::endpoints& at, const std::string& token)
     }
 }
 
-void print_endpoints(const server::endpoints& at, const std::string& format)
+void print_endpoints(const server::endpoints& at, const session::ceiling& highest, const std::string& format)
 {
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
     if (format == "json") {
@@ -198,7 +231,8 @@ void print_endpoints(const server::endpoints& at, const std::string& format)
                                          {"socket", or_null(at.socket_path)},
                                          {"tcp", or_null(at.tcp_address)},
                                          {"osc", or_null(at.osc_address)},
-                                         {"http", or_null(http)}};
+                                         {"http", or_null(http)},
+                                         {"max_level_dbfs", highest.dbfs}};
         fmt::print("{}\n", net::json_line(all));
     } else {
         for (const auto& [kind, address] : {std::pair("socket ", &at.socket_path),
@@ -207,6 +241,7 @@ void print_endpoints(const server::endpoints& at, const std::string& format)
                                             {"", &http}})
             if (!address->empty())
                 say(stdout, "listening: {}{}\n", kind, *address);
+        say(stdout, "ceiling: {}\n", session::ceiling_text(highest));
     }
     if (std::fflush(stdout) == 0)
         return;
@@ -239,6 +274,8 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
     const options::serve_settings serve = settle_serve(o, e.serve);
+    const session::ceiling highest = settle_ceiling(e, o.max_level_dbfs);
+    check_limits(play, e);
     const server::endpoint_options where = settle_endpoints(serve);
     session::interrupt stop;
 
@@ -257,7 +294,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
          {std::pair("turn", e.tactors.turn_deg), std::pair("body", e.tactors.body_mm)})
         if (value)
             service.array[key] = *value;
-    service.plans = make_planning(s, e, serve, service.limits);
+    service.plans = make_planning(s, e, highest.dbfs, service.limits);
     service.array_name = e.array_file.empty() ? e.tactors.name : e.array_file;
     if (service.plans.owner.render.marker_channel) // which no option of the tool says
         service.config_name = e.config_name;
@@ -288,7 +325,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     };
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), stop.descriptor(),
-                  [&] { print_endpoints(at, format); });
+                  [&] { print_endpoints(at, highest, format); });
     stop.was_the_last();
     return status_ok;
 }
@@ -312,11 +349,17 @@ int run_serve(command_line& line)
              [&o](const std::string& t) {
                  o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
              });
+    add_text(c, "--max-level-dbfs", "DB",
+             "highest level of a client's strokes, and of their sum (default: the files', else -12)",
+             [&o](const std::string& t) {
+                 o.max_level_dbfs =
+                     options::parse_number("--max-level-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
+             });
     settings& s = add_options(line, options::on_serve);
     add_format_option(c, format, {"text", "json"},
                       "format of the lines that say where it listens (default text)");
     c.footer("tactor serve --http 4003 -D null\n"
-             "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
+             "tactor serve --http 4003 --max-level-dbfs -40 -D hw:CARD=Tactor\n"
              "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
     line.parse();
     return serve(s, o, format);

@@ -250,6 +250,8 @@ void print_status(const net::json& s)
     say(stdout, "uptime     {}\n", seconds_text(stream.value("uptime_s", 0.0)));
     say(stdout, "real time  {}\n", stream.value("realtime", false) ? "yes" : "no");
     say(stdout, "amplifier  {}\n", s.value("amplifier", ""));
+    if (s.contains("max_level_dbfs"))
+        say(stdout, "ceiling    {} dBFS\n", plain_number(s.value("max_level_dbfs", 0.0), 4));
     say(stdout, "clients    {}\n", s.value("clients", 0));
     for (const net::json& c : s.value("who", net::json::array())) {
         const std::string name = c.value("name", "");

@@ -108,7 +108,7 @@ class Array(_Value):
 
     _core: _t.Any
     _file: str | None
-    _besides: str  # [output], [amplifier], [sync], [limits] and [defaults] of its file, as TOML
+    _besides: str  # [output], [amplifier], [sync], [limits], [serve] and [defaults] of its file, as TOML
     _origin: str  # [calibration], the same way
     _setup: _t.Any  # these tables, once they are needed
     _tactors: tuple[Tactor, ...]
@@ -290,7 +290,7 @@ class Array(_Value):
     def replace(self, *, name: str | None = None, tactors: _t.Iterable[Tactor] | None = None, channels: _t.Iterable[int] | None = None,
                 gains: _EachTactor = None, max_dbfs: _EachTactor = None, thresholds: _Thresholds = None,
                 polarities: _t.Iterable[int] | None = None) -> Array:
-        """Returns the array with the given changes; the [output], [amplifier], [sync], [limits] and [defaults] of its file stay.
+        """Returns the array with the given changes; the other tables of its file stay.
 
         Parameters
         ----------

@@ -14,6 +14,7 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import encoded, _need, _number, _Unique, _whole
 from tactor._errors import InputError
+from tactor._plan import Plan
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
@@ -56,7 +57,8 @@ class Player(_Unique):
         device : str
             An ALSA name as `tactor play -D` takes it: "hw:CARD=Tactor", "null", "file:...".
         array : Array
-            Gives each channel's limit; one from a file brings what that says of amplifier, lines and limits.
+            Gives each channel's limit; one from a file brings what that says of amplifier, lines and limits. A preset is the
+            configuration's array where that has its places: `array` is then that one.
         config : path-like, optional
             Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
         log : callable, optional
@@ -92,7 +94,6 @@ class Player(_Unique):
         given = dict(locals())
         for name in ("self", "device", "array", "config", "log", "keep_drive_time"):
             del given[name]
-        self._array: Array = array
         _need(array, Array, "array")
         _need(device, str, "device")
         encoded(device, "device")
@@ -105,9 +106,11 @@ class Player(_Unique):
         files = None if config is None else encoded(config, "config"), None if array._file is None else encoded(array._file)
         core = _tactor.Player(array._core, device, given, *files, log is not None, keep_drive_time)
         self._setup: dict[str, _t.Any] = core.setup()
-        doubt = _tactor.find_drive_doubt(device) if keep_drive_time else ""
-        if doubt:
-            warnings.warn(doubt, stacklevel=2)
+        self._given: Array = array
+        self._array: Array = array if core.configured is None else Array._wrap(core.configured)
+        for doubt in (core.doubt, _tactor.find_drive_doubt(device) if keep_drive_time else ""):
+            if doubt:
+                warnings.warn(doubt, stacklevel=2)
         self._held = _Held(log)
         self._shared = _Shared(core, self._held)
         _open.add(self)
@@ -184,6 +187,9 @@ class Player(_Unique):
             at_s = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:
             at_s = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
+        if self._array is not self._given and score._array == self._given:
+            plans = [(start, Plan._wrap(p._core.moved(self._array._core), self._array, p._recorded)) for start, p in score._plans]
+            score = Score(self._array, plans, **score._options)
         if score.channels < self.channels and score.rate == self.rate:
             options: dict[str, _t.Any] = {**score._options, "channels": self.channels}
             score = Score(score._array, score._plans, **options)
