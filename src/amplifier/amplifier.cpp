@@ -68,7 +68,7 @@ void sequence::count_xrun(std::int64_t now) noexcept
         xruns_ = 0;
     }
     ++xruns_;
-    if (xruns_ >= options_.most_xruns || now < muted_until_) {
+    if (xruns_ >= options_.most_xruns) {
         muted_until_ = now + options_.calm_ns;
         first_xrun_ = now; // the next xrun mutes again
         prove();
