@@ -4,6 +4,7 @@
 #include "cli/check/check.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
 #include <doctest/doctest.h>
@@ -362,6 +363,9 @@ TEST_CASE("groups and devices are read")
     REQUIRE(f.sound.size() == 1);
     CHECK(f.sound[0].path == (r.path() / "dev/snd/pcmC1D0p").string());
     CHECK(f.sound[0].may_open);
+    r.write("dev/gpiochip1/x"); // access(2) allows to read and write it, and no open() does
+    REQUIRE(read(r).gpio.size() == 2);
+    CHECK_FALSE(read(r).gpio[1].may_open);
     CHECK_FALSE(f.sound[0].group.empty());
     CHECK(f.gpio.size() == 1);
 }
@@ -379,6 +383,9 @@ TEST_CASE("a device that may not be opened names the group to join, or the missi
     f.joined = {"audio"};
     CHECK(has(judged(f, "sound rights").cure, "log out and in again"));
     CHECK(judged(f, "sound rights").cure.find("usermod") == std::string::npos);
+
+    f.groups = {"ann", "audio"}; // a container keeps the device away
+    CHECK(has(judged(f, "sound rights").cure, "DeviceAllow="));
 
     f.gpio[0] = {"/dev/gpiochip0", "root", false};
     CHECK(judged(f, "GPIO rights").how == level::error);
@@ -402,6 +409,11 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     CHECK(judged(f, "real time", n).how == level::error);
     CHECK(judged(f, "memory", n).kind == error_kind::not_available);
     f.rights = {.priority = 99, .lockable_bytes = {}};
+    f.priority_error = EPERM; // in a container, whatever the limits say
+    CHECK(judged(f, "real time", n).how == level::error);
+    CHECK(has(judged(f, "real time", n).found,
+              "no real-time priority, though the limits allow it: Operation not permitted"));
+    f.priority_error = 0;
     CHECK(judged(f, "real time", n).how == level::ok);
     CHECK(judged(f, "memory", n).how == level::ok);
 }

@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 from experiments import DESK, SHORT, SMALL, ExperimentTest, Terminal
-from harness import PATIENCE_S, TOOL, main
+from harness import ALSA_CONFIG, FELT_CONFIG, PATIENCE_S, TOOL, main
 from serving import Server
 
 PAGE = 4096  # a tmpfs gives space in pages
@@ -131,6 +131,34 @@ class FullDisk(ExperimentTest):
             self.refused(1, "render", "park2016-2", "-o", f"disk/{name}")
         disk.read_only(False)
         self.assertEqual(disk.files(), kept)
+
+    def test_drive_time_that_cannot_be_kept_is_said_at_play_and_found_by_check(self):
+        self.write("alsa.conf", ALSA_CONFIG + FELT_CONFIG)
+        disk = Disk(self)
+        disk.path.chmod(0o700)
+        self.env["XDG_RUNTIME_DIR"] = str(disk.path)
+        play = ("play", "park2016-1", "-D", "felt")
+        self.assertEqual(self.ok(*play).stderr, "")
+        kept = disk.files()
+        (disk.path / "tactor/drive-time-felt").unlink()
+        for fail, mend, why in ((disk.fill, disk.make_room, NO_SPACE), (disk.fill_names, disk.make_room, NO_SPACE),
+                                (disk.read_only, lambda: disk.read_only(False), "Read-only file system")):
+            with self.subTest(why=why):
+                fail()
+                file = disk.path / "tactor/drive-time-felt"
+                self.assertEqual(self.ok(*play).stderr,
+                                 f"tactor: warning: {file} cannot be written: {why}: the next run will not know for how long the array was driven\n")
+                self.assertRegex(self.ok("check", "-D", "felt").stdout, rf"(?m)^warning +drive time +[^\0]*{why.split()[0]}")
+                mend()
+                self.assertEqual(disk.files(), {})
+        self.assertEqual(self.ok(*play).stderr, "")
+        self.assertEqual(disk.files().keys(), kept.keys())
+        # Counts what is there, though it cannot be written.
+        file = disk.path / "tactor/drive-time-felt"
+        file.write_text(re.sub(r"(?m)^level .*", "level 5.0", file.read_text()))
+        disk.read_only()
+        self.assertRegex(self.ok(*play).stdout + self.ok(*play).stderr, "cannot be written: Read-only file system")
+        self.assertRegex(self.ok("check", "-D", "felt").stdout, r"(?m)^warning +drive time ")
 
     def test_calibrate_loses_no_answer(self):
         args = ("calibrate", "--participant", "P07", "-o", "disk/me.toml", "--simulate", "threshold=-45,spread=2",

@@ -96,6 +96,7 @@ struct system_facts {
     std::vector<std::string> groups = {}; ///< groups in force
     std::vector<std::string> joined = {}; ///< groups of the user, in force or not
     realtime_rights rights = {};
+    int priority_error = 0;                 ///< errno of a try to get that of the audio thread
     std::uint64_t memory_bytes = 0;         ///< memory that play would lock
     std::vector<device_node> sound = {};    ///< playback devices
     std::vector<device_node> gpio = {};     ///< chips

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 
+#include <fcntl.h>
 #include <grp.h>
 #include <pwd.h>
 #include <sys/stat.h>
@@ -15,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "cli/devices.hpp"
+#include "core/owned.hpp"
 #include "core/split.hpp"
 #include "rt/thread.hpp"
 #include "session/process.hpp"
@@ -65,6 +68,14 @@ std::vector<std::string> own_groups()
     return names;
 }
 
+// Tries to open a device: access(2) does not know of a container's rules for devices. One that another
+// program plays on may be opened.
+bool may_open(const fs::path& file)
+{
+    const detail::owned_fd device(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+    return device || errno == EBUSY || errno == EAGAIN;
+}
+
 // Returns the devices of a folder whose names begin and end so.
 std::vector<device_node> nodes(const fs::path& folder, std::string_view begin, std::string_view end = "")
 {
@@ -73,7 +84,7 @@ std::vector<device_node> nodes(const fs::path& folder, std::string_view begin, s
         struct stat s {};
         const std::string name = f.filename().string();
         if (name.starts_with(begin) && name.ends_with(end) && ::stat(f.c_str(), &s) == 0)
-            all.push_back({f.string(), group_name(s.st_gid), ::access(f.c_str(), R_OK | W_OK) == 0});
+            all.push_back({f.string(), group_name(s.st_gid), may_open(f)});
     }
     return all;
 }
@@ -119,6 +130,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
 // Returns the hint for becoming a member. A group that was joined since the login needs a new login.
 std::string how_to_join(const system_facts& f, const std::string& group)
 {
+    if (f.root || contains(f.groups, group))
+        return "the group may open it, so a container or a unit keeps it away: name it in docker run "
+               "--device, "
+               "or in DeviceAllow=";
     if (group == "root")
         return "the device is root's alone: install the udev rules (tactor-raspberry-pi(7) says how), or run "
                "as root";
@@ -158,6 +173,13 @@ const int asked_priority = player_options{}.priority;
 
 finding check_priority(const system_facts& f, const system_needs& n)
 {
+    if (f.rights.priority >= asked_priority && f.priority_error != 0)
+        return insist(
+            warning("real time",
+                    fmt::format("no real-time priority, though the limits allow it: {}",
+                                std::error_code(f.priority_error, std::generic_category()).message()),
+                    "let the container or the service use SCHED_FIFO"),
+            n.require_realtime);
     if (f.rights.priority >= asked_priority)
         return fine("real time",
                     fmt::format("SCHED_FIFO up to {}, {} is asked for", f.rights.priority, asked_priority));
@@ -263,6 +285,8 @@ system_facts read_system(const fs::path& root, const std::string& user)
     f.groups = own_groups();
     f.joined = find_groups(user, root / "etc/group");
     f.rights = probe_realtime_rights();
+    f.priority_error =
+        rt::thread({.name = "tactor-check", .fifo = true, .priority = asked_priority}, [] {}).fifo_error();
     f.memory_bytes = session::memory_to_lock();
     f.sound = nodes(root / "dev/snd", "pcmC", "p");
     f.gpio = nodes(root / "dev", "gpiochip");

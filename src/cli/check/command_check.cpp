@@ -107,10 +107,11 @@ std::string note_text(const std::vector<session::device_note>& notes)
 }
 
 finding check_open(const alsa_options& device, const session::stream_options& o, const environment& e,
-                   bool named)
+                   bool named, std::string& kept_as)
 {
     const std::string server = session::settle_server(device.pcm);
     const stream_setup made = session::open_device(device, e.tactors)->setup();
+    kept_as = made.device;
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return refuse_lost_tactor(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
@@ -150,8 +151,9 @@ finding check_line(const char* check, const gpio_line_name& name, line_finder fi
 }
 
 // Opens and closes the device, unless it writes a file; plays nothing. `named`: false for the default device.
+// `kept_as`: gets stream_setup::device once it is open.
 finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
-                     bool named)
+                     bool named, std::string& kept_as)
 {
     if (read_route(device.pcm).writes) {
         const stream_setup there{.name = device.pcm, .wiring = read_wiring(device.pcm, device.channels)};
@@ -164,7 +166,7 @@ finding check_device(const alsa_options& device, const session::stream_options& 
             "play opens it: is it meant?");
     }
     try {
-        return check_open(device, o, e, named);
+        return check_open(device, o, e, named, kept_as);
     } catch (const error& failed) {
         return failure("device", failed);
     }
@@ -194,13 +196,13 @@ alsa_options device_for(const settings& s, const environment& e)
     return session::device_options(s, s.stream, e, r.channels, r.rate);
 }
 
-finding check_drive_time(const std::string& pcm)
+finding check_drive_time(const std::string& device)
 {
-    const std::string why = drive_time_fault(pcm);
+    const std::string why = drive_time_fault(device);
     return why.empty() ? fine("drive time", "counts on from run to run")
-                       : warning("drive time", why + ": each run begins with 0",
-                                 "log in as a user of this machine, or set XDG_RUNTIME_DIR to a folder of "
-                                 "that user alone");
+                       : warning("drive time", why + ": no run knows what others drive",
+                                 "let XDG_RUNTIME_DIR name a folder of your own in which there is space, as "
+                                 "a login sets it, and remove a file there that cannot be read");
 }
 
 std::vector<finding> check_all(const settings& s, const environment& e)
@@ -209,9 +211,10 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     alsa_options device;
     try {
         device = device_for(s, e);
-        all.push_back(check_device(device, s.stream, e, session::names_device(s, e)));
-        if (session::is_felt(device.pcm))
-            all.push_back(check_drive_time(device.pcm));
+        std::string kept_as = device.pcm; // where it cannot be opened now
+        all.push_back(check_device(device, s.stream, e, session::names_device(s, e), kept_as));
+        if (session::is_felt(device.pcm) && !kept_as.empty())
+            all.push_back(check_drive_time(kept_as));
     } catch (const error& x) {
         all.push_back(failure("device", x));
     }
