@@ -282,10 +282,10 @@ struct player_options {
     int priority = 65;
     /// Limits on the power of all tactors and on the drive time of each, whatever the scores request.
     drive_limits limits = {};
-    /// The drive time of each channel counts on from earlier players on the same device
-    /// (stream_setup::device), also those of other processes of this user, so that neither a new player nor a
-    /// new process gives a tactor its used drive time back. See drive_time_fault(). False: it begins with 0,
-    /// and is not kept.
+    /// The drive time of each channel counts together with that of all players on the same device
+    /// (stream_setup::device), earlier ones and those that play now, also of other processes of this user. So
+    /// neither a new player nor a second process gives a tactor its used drive time back. See
+    /// player::drive_time_doubt(). False: it begins with 0, and is not kept.
     bool keep_drive_time = true;
     /// Receives messages about the stream's start and end, xruns and recovery, mutes of the amplifier, and
     /// limits that acted.
@@ -356,10 +356,11 @@ struct player_lines {
 /// channels of the device, or clipped on the way (stream_wiring::most_gain).
 [[nodiscard]] TACTOR_API std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w);
 
-/// Returns the reason why other processes do not know of the drive time that players here add to a device;
-/// empty: they do. It is kept in a file of the folder `tactor` in the runtime folder (RUNTIME_DIRECTORY, else
-/// XDG_RUNTIME_DIR), which must be this user's alone. Without one, players of this process still know of each
-/// other. Blocks shortly. Any thread that reads the environment.
+/// Returns the reason why other processes do not know of the drive time that players here add to a device
+/// (stream_setup::device); empty: they do. It is kept in a file of the folder `tactor` in the runtime folder
+/// (RUNTIME_DIRECTORY, else XDG_RUNTIME_DIR), which must be this user's alone. Finds out by writing what the
+/// file says already. Without a file, players of this process still know of each other. Blocks for 0.2 s at
+/// most. Any thread that reads the environment.
 [[nodiscard]] TACTOR_API std::string drive_time_fault(std::string_view device);
 
 /// Owns the sink, the audio thread and the control thread. Any thread but the audio thread may call its
@@ -469,6 +470,11 @@ public:
     /// Returns the drive time that earlier players and other programs had left on the device when the stream
     /// began, s, by channel; see drive_limits::max_drive_s. Empty without player_options::keep_drive_time.
     [[nodiscard]] std::vector<double> drive_levels_s() const;
+    /// Returns why the drive time of this player does not count as it should; empty: it does. Without a file
+    /// that can be written, the next run does not know of it. A file that cannot be read as a whole, or that
+    /// another program keeps locked for 0.2 s, counts as if each tactor had been driven for as long as it
+    /// may. The first reason stays. player_options::log gets it, too.
+    [[nodiscard]] std::string drive_time_doubt() const;
     [[nodiscard]] player_stats stats() const;
 
 private:

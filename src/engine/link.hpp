@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <tactor/player.hpp>
 
@@ -155,6 +156,35 @@ private:
     std::atomic<bool> changed_{false};
 };
 
+/// Levels of drive time, s, to which others have driven channels. The control side sets them; the audio
+/// thread takes each once.
+class level_requests {
+public:
+    /// Sets the number of channels. Call it before the audio thread starts.
+    void resize(std::size_t channels) { by_channel_ = std::vector<std::atomic<double>>(channels); }
+    void set(std::size_t channel, double level_s) noexcept
+    {
+        if (channel >= by_channel_.size())
+            return;
+        by_channel_[channel].store(level_s, std::memory_order_relaxed);
+        changed_.store(true, std::memory_order_release);
+    }
+    /// Calls `raise` with each channel and level that was set since the last call.
+    template <typename Raise>
+    void take(Raise raise) noexcept
+    {
+        if (!changed_.load(std::memory_order_relaxed) || !changed_.exchange(false, std::memory_order_acquire))
+            return;
+        for (std::size_t i = 0; i < by_channel_.size(); ++i)
+            if (const double l = by_channel_[i].exchange(0.0, std::memory_order_relaxed); l > 0.0)
+                raise(i, l);
+    }
+
+private:
+    std::vector<std::atomic<double>> by_channel_;
+    std::atomic<bool> changed_{false};
+};
+
 struct link {
     explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
 
@@ -180,6 +210,7 @@ struct link {
     counters count;
     /// Frames in which each channel was driven so far; empty where drive time is not counted.
     std::vector<std::atomic<std::uint64_t>> driven;
+    level_requests raised;           ///< what other programs and players drive on the same device
     std::atomic<bool> sounds{false}; ///< drives wait or sound
     amplifier_link amplifier;
 };

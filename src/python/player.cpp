@@ -197,6 +197,12 @@ public:
         return use(&end_reason, [this] { return open_->last_end; });
     }
 
+    /// Returns player::drive_time_doubt(); once it is closed, nothing. \throws error in a forked process.
+    std::string drive_time_doubt() const
+    {
+        return use([](player& p) { return p.drive_time_doubt(); }, [] { return std::string(); });
+    }
+
     /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
     /// process.
     bool cancel(stroke_id id) const
@@ -442,7 +448,6 @@ void bind_live(py::module_& m)
 void bind_player(py::module_& m)
 {
     m.def("devices", &devices);
-    m.def("find_drive_doubt", &session::find_drive_doubt);
     py::class_<player_handle, std::shared_ptr<player_handle>>(m, "Player")
         .def(py::init(&open))
         .def("next", &next_event)
@@ -473,6 +478,7 @@ void bind_player(py::module_& m)
         .def_property_readonly("forked", &player_handle::forked)
         .def("stats", &stats_dict)
         .def("setup", &setup_dict)
+        .def("drive_time_doubt", &player_handle::drive_time_doubt)
         .def("position", &position_dict);
     bind_live(m);
 }

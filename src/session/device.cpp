@@ -233,14 +233,6 @@ std::string find_fit(alsa_options o, const array& a)
     return {};
 }
 
-std::string find_drive_doubt(const std::string& device)
-{
-    const std::string why = device.empty() ? std::string() : drive_time_fault(device);
-    return why.empty() || !is_felt(device)
-               ? std::string()
-               : fmt::format("{}: the next run will not know for how long the array was driven", why);
-}
-
 std::unique_ptr<sink> open_device(const alsa_options& o, const array& a)
 {
     try {

@@ -47,10 +47,6 @@ double latency_ms(const stream_setup& s);
 /// or, if `a` needs fewer, the channel that a marker or a plan adds to it. Empty: none.
 std::string find_fit(alsa_options o, const array& a);
 
-/// Returns a sentence if drive time on a device that may be felt does not count on in the next run; else
-/// nothing. Blocks shortly.
-std::string find_drive_doubt(const std::string& device);
-
 /// Opens like open_alsa() for this array; if the PCM has too few channels, the hint says what fits.
 std::unique_ptr<sink> open_device(const alsa_options& o, const array& a);
 

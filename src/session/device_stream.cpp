@@ -343,6 +343,11 @@ std::optional<device_stream::time> device_stream::step(time now)
 {
     if (outcome_ != nullptr && outcome_->done)
         settle();
+    if (player_ != nullptr && !drive_time_doubted_)
+        if (const std::string doubt = player_->drive_time_doubt(); !doubt.empty()) {
+            drive_time_doubted_ = true;
+            say(stderr, "tactor: warning: {}\n", doubt);
+        }
     if (player_ != nullptr)
         if (const auto end = player_->ended())
             ended(end->reason == reason_kind::none ? "the stream was stopped" : end->why);
@@ -398,9 +403,6 @@ void device_stream::open()
                 parts_.ended(number, r);
             news_.signal();
         });
-        if (!std::exchange(drive_time_looked_at_, true))
-            if (const std::string doubt = find_drive_doubt(p->setup().device); !doubt.empty())
-                say(stderr, "tactor: warning: {}\n", doubt);
         outcome_->player = std::move(p);
     } catch (const std::exception& e) {
         outcome_->failure = std::current_exception();

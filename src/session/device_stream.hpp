@@ -223,8 +223,8 @@ private:
     std::uint64_t number_ = 0;
     std::exception_ptr failure_;
     stream_setup setup_;
-    player_stats before_;               ///< of the players before this one
-    bool drive_time_looked_at_ = false; ///< of the work
+    player_stats before_;             ///< of the players before this one
+    bool drive_time_doubted_ = false; ///< said already
 };
 
 } // namespace tactor::session

@@ -235,8 +235,15 @@ void drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t t
 
 void drive_guard::close(cell& c) const noexcept
 {
-    c.closed_at = c.at;
-    add(c, fade_);
+    // While it fades in its gain is low already, so less of the fade is left.
+    const std::int64_t done = std::clamp<std::int64_t>(c.opens_at + fade_ - c.at, 0, fade_);
+    c.closed_at = c.at - done;
+    add(c, fade_ - done);
+    open_later(c);
+}
+
+void drive_guard::open_later(cell& c) const noexcept
+{
     const double over = c.level - 0.5 * limit_;
     c.opens_at =
         c.at + std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(over / leak_ - rounding)), 0);
@@ -291,10 +298,27 @@ void drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, do
     }
 }
 
-void drive_guard::resume(std::span<const double> levels_s) noexcept
+void drive_guard::raise(std::size_t channel, std::uint64_t clock, double level_s) noexcept
 {
-    for (std::size_t i = 0; i < std::min(cells_.size(), levels_s.size()); ++i)
-        cells_[i].level = std::clamp(levels_s[i] * rate_, 0.0, limit_);
+    if (channel >= cells_.size())
+        return;
+    cell& c = cells_[channel];
+    const auto now = static_cast<std::int64_t>(clock);
+    const bool rests = c.at < now;
+    const bool closed = c.closed_at <= now && now < c.opens_at;
+    rest(c, now);
+    const double level = std::min(level_s * rate_, limit_);
+    if (!(level > c.level))
+        return;
+    c.level = level;
+    if (closed) {
+        open_later(c);
+    } else if (level > limit_ - 1.0 && rests) { // it is silent, so nothing fades out
+        c.closed_at = now - fade_;
+        open_later(c);
+    } else if (level > limit_ - 1.0) {
+        close(c);
+    }
 }
 
 } // namespace tactor::synth

@@ -135,13 +135,14 @@ public:
 
     /// Returns the frames in which a channel was driven so far; 0 while the guard is off.
     std::uint64_t driven(std::size_t channel) const noexcept { return on() ? cells_[channel].driven : 0; }
-    /// Begins with these levels, s, at frame 0. Call it only before the first drive.
-    void resume(std::span<const double> levels_s) noexcept;
+    /// Raises a channel to a level, s, that others have driven it to. A level at the limit closes the channel
+    /// from the block on that begins with frame `clock`.
+    void raise(std::size_t channel, std::uint64_t clock, double level_s) noexcept;
 
 private:
     struct cell {
-        double level = 0.0;  ///< frames, at frame `at`
-        std::int64_t at = 0; ///< frame up to which drives are counted
+        double level = 0.0;   ///< frames, at frame `at`
+        std::int64_t at = -1; ///< frame up to which drives are counted
         std::uint64_t driven = 0;
         std::int64_t closed_at = 0;
         std::int64_t opens_at = 0;
@@ -151,6 +152,7 @@ private:
     void rest(cell& c, std::int64_t until) const noexcept;
     static void add(cell& c, std::int64_t frames) noexcept;
     void close(cell& c) const noexcept;
+    void open_later(cell& c) const noexcept;
     double gain(const cell& c, std::int64_t at) const noexcept;
 
     double rate_;

@@ -89,6 +89,13 @@ pcm.eight {
 }
 """
 
+# Adds a PCM that may be felt, though no card is there.
+FELT_CONFIG = f'''
+pcm_type.felt {{ lib "{os.environ.get("TACTOR_FELT_PCM", "")}" }}
+pcm.felt {{ type felt }}
+pcm.felt2 {{ type felt }}
+'''
+
 # An array file of a user: with comments, an unusual setting and a device that is always there.
 GRID = """# the array on my desk
 [array]

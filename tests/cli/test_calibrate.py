@@ -9,7 +9,7 @@ import signal
 import tomllib
 
 from experiments import noise_pieces
-from harness import PATIENCE_S, ToolTest, main
+from harness import ALSA_CONFIG, FELT_CONFIG, PATIENCE_S, ToolTest, main
 from pages import Session
 from terminal import Terminal
 
@@ -237,9 +237,10 @@ class Person(CalibrateTest):
     def test_a_trial_waits_for_what_was_driven_before(self):
         (self.dir / "run").mkdir(mode=0o700)
         self.env["XDG_RUNTIME_DIR"] = str(self.dir / "run")
+        self.write("alsa.conf", ALSA_CONFIG + FELT_CONFIG)
         self.write("a.toml", TWO + "[limits]\nmax_drive_s = 2\nwindow_s = 20\n")
-        self.ok("play", "--path", "M 20 0", "--duration", "1.9", "--algorithm", "continuous", "-D", "null", "--array", "a.toml", "--level-dbfs", "-20")
-        shown = self.refused(1, *replaced(self.ARGS, "--array", "a.toml", "--interval", 0.5), stdin="1\n").stdout
+        self.ok("play", "--path", "M 20 0", "--duration", "1.9", "--algorithm", "continuous", "-D", "felt", "--array", "a.toml", "--level-dbfs", "-20")
+        shown = self.refused(1, *replaced(self.ARGS, "--array", "a.toml", "-D", "felt", "--interval", 0.5), stdin="1\n").stdout
         self.assertIn("a pause of ", shown.split("trial 1")[0])
         self.assertNotIn("a limit changed it", shown)
 

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import time
 
-from harness import ALSA_CONFIG, GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
+from harness import ALSA_CONFIG, FELT_CONFIG, GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
 from serving import Server
 
 # The fade of 10 ms is in one period: it is written whole, even where the machine stands still beyond the wait for it.
@@ -279,32 +279,42 @@ class KeptDrive(ToolTest):
 
     def setUp(self):
         super().setUp()
+        self.write("alsa.conf", ALSA_CONFIG + FELT_CONFIG)
         self.runtime = self.dir / "run"
         self.runtime.mkdir(mode=0o700)
         self.env["XDG_RUNTIME_DIR"] = str(self.runtime)
 
-    def cuts(self, device="null", seconds=0.3, **more):
-        r = self.ok("play", *self.STILL, "--duration", seconds, *self.LIMITS, "--format", "json", "-D", device, **more)
-        return json.loads(r.stdout)["counters"]["drives_cut"]
+    def play(self, device="felt", seconds=0.3, **more):
+        return self.ok("play", *self.STILL, "--duration", seconds, *self.LIMITS, "--format", "json", "-D", device, **more)
+
+    def cuts(self, *args, **more):
+        return json.loads(self.play(*args, **more).stdout)["counters"]["drives_cut"]
 
     def kept(self):
         return sorted(self.runtime.rglob("drive-time-*"))
 
     def test_runs_of_a_user_on_a_device_count_together(self):
-        self.write("alsa.conf", ALSA_CONFIG + "pcm.other { type null }\n")
         self.ok("render", "park2016-1", "-o", "x.wav")
-        self.ok("play", "--live", "-", "-D", "null")
         self.refused(3, "play", *self.STILL, "-D", "nowhere")
-        self.refused(2, "play", *self.STILL, "--max-drive-s", "0", "-D", "null")
-        self.assertEqual(self.kept(), [])  # nothing was driven
+        self.refused(2, "play", *self.STILL, "--max-drive-s", "0", "-D", "felt")
+        self.assertEqual(self.kept(), [])  # nothing was opened
         self.assertEqual(self.cuts(), 0)
-        self.assertEqual([(f.name, f.parent.stat().st_mode & 0o777) for f in self.kept()], [("drive-time-null", 0o700)])
+        self.assertEqual([(f.name, f.parent.stat().st_mode & 0o777) for f in self.kept()], [("drive-time-felt", 0o700)])
         self.assertEqual(self.cuts(env={"XDG_RUNTIME_DIR": str(self.dir)}), 0)  # another user
-        self.assertEqual((self.cuts(), self.cuts("other")), (1, 0))
+        self.assertEqual((self.cuts(), self.cuts("felt2")), (1, 0))
+
+    def test_the_null_device_and_what_plays_on_it_keep_none(self):
+        self.write("alsa.conf", ALSA_CONFIG + 'pcm.other { type plug slave.pcm { type null } }\n')
+        for device in ("null", "other", "eight", f"raw:{self.dir}/x.raw"):
+            array = ("--array", "palm-2x4") if device == "eight" else ()
+            runs = [
+                self.ok("play", *self.STILL, "--duration", 0.4, *self.LIMITS, "--format", "json", "-D", device, *array) for _ in range(2)]
+            self.assertEqual([json.loads(r.stdout)["counters"]["drives_cut"] for r in runs], [0, 0], device)
+        self.assertEqual(self.kept(), [])
 
     def test_a_service_counts_earlier_runs_and_is_counted_also_when_it_reopens_the_device(self):
         config = "[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n"
-        s = Server(self, "--idle-stop", "0.1", config=config, env={"XDG_RUNTIME_DIR": str(self.runtime)})
+        s = Server(self, "--idle-stop", "0.1", config=config, env={"XDG_RUNTIME_DIR": str(self.runtime)}, device=("-D", "felt"))
         client = s.client()
         self.ok("play", *self.STILL, "--duration", "0.1", "--socket", s.where["socket"])
         self.until(lambda: client.ok("status")["stream"]["state"] == "idle", s.process)
@@ -312,6 +322,28 @@ class KeptDrive(ToolTest):
         self.ok("play", *self.STILL, "--duration", "0.2", "--socket", s.where["socket"])
         self.assertEqual(s.terminate()[0], 0)
         self.assertEqual(self.cuts(seconds=0.1), 1)
+
+    def test_a_run_beside_a_service_counts_together_with_it(self):
+        config = "[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n"
+        s = Server(self, config=config, env={"XDG_RUNTIME_DIR": str(self.runtime)}, device=("-D", "felt"))
+        client = s.client()
+        self.ok("play", *self.STILL, "--duration", "0.1", "--socket", s.where["socket"])  # its stream runs from now on
+        self.assertEqual(self.cuts(seconds=0.39), 0)
+        self.run_tool("play", *self.STILL, "--duration", "0.3", "--socket", s.where["socket"])
+        self.assertEqual(client.ok("status")["counters"]["drives_cut"], 1)
+        self.assertEqual(s.terminate()[0], 0)
+
+    def test_a_file_that_is_cut_counts_as_the_limit_and_is_said_once(self):
+        self.assertEqual(self.cuts(seconds=0.05), 0)
+        file = self.runtime / "tactor/drive-time-felt"
+        file.write_bytes(file.read_bytes()[:-5])
+        check = self.ok("check", "-D", "felt").stdout
+        self.assertRegex(check, r"(?m)^warning +drive time ")
+        r = self.play(seconds=0.05)
+        self.assertEqual(r.stderr, f"tactor: warning: {file} cannot be read as a whole: each tactor counts as driven for as long as it may be\n")
+        self.assertEqual(json.loads(r.stdout)["counters"]["drives_cut"], 1)
+        self.assertEqual(self.play(seconds=0.05).stderr, "")
+        self.assertRegex(self.ok("check", "-D", "felt").stdout, r"(?m)^ok +drive time ")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from harness import TOOL, ToolTest, main
+from harness import ALSA_CONFIG, FELT_CONFIG, TOOL, ToolTest, main
 
 # Calls for the stream: waiting, the timer and the eventfds, samples to the file, the clock, and a check of the page faults once
 # a second and of the time without a pause 50 times. The clock is a system call only where the vDSO has none.
@@ -69,8 +69,9 @@ class DriveTime(ToolTest):
     def test_drive_time_that_is_kept_waits_for_no_disk(self):
         runtime = self.dir / "run"
         runtime.mkdir(mode=0o700)
+        self.write("alsa.conf", ALSA_CONFIG + FELT_CONFIG)
         trace = self.dir / "trace"
-        subprocess.run(["strace", "-f", "-e", "trace=pwrite64,fsync,fdatasync", "-o", trace, TOOL, "play", "park2016-1", "-D", "null"],
+        subprocess.run(["strace", "-f", "-e", "trace=pwrite64,fsync,fdatasync", "-o", trace, TOOL, "play", "park2016-1", "-D", "felt"],
                        cwd=self.dir, env=self.env | {"XDG_RUNTIME_DIR": str(runtime)}, check=True, capture_output=True)
         self.assertIn("pwrite64(", trace.read_text())
         self.assertNotIn("sync(", trace.read_text())

@@ -415,6 +415,7 @@ call_table player_calls(player_things& t)
         {"player::ended", [&t] { return t.anew.open->ended(); }, plain, stopped},
         {"player::stats", [&p] { return p.stats(); }},
         {"player::drive_levels_s", [&p] { return p.drive_levels_s(); }},
+        {"player::drive_time_doubt", [&p] { return p.drive_time_doubt(); }},
         {"live_stroke::to", [&t] { return t.live->to(20.0, 20.0); }, plain, begun},
         {"lost_tactor", [shared] { return lost_tactor(palm(), shared); }},
         {"wiring_warnings", [quiet] { return wiring_warnings(palm(), quiet); }},

@@ -308,7 +308,8 @@ TEST_CASE("the next mixer begins with the levels that it is given, at another ra
         constexpr unsigned other = 48000;
         drive_limits l{.max_drive_s = 0.5, .window_s = 1.0};
         synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, synth::make_guards(l, other));
-        m.resume(levels_s);
+        for (std::size_t c = 0; c < levels_s.size(); ++c)
+            m.raise(c, levels_s[c]);
         synth::drive_event e = make_event(0, other, 250.0 / other, {0.5, 0.5, 0});
         m.add(e);
         e.drive[0].channel = 1;
@@ -329,9 +330,41 @@ TEST_CASE("the next mixer begins with the levels that it is given, at another ra
     CHECK(cut_s({}) == near(0.5));
     CHECK(cut_s({0.4}) == near(0.1));
     CHECK(cut_s({0.4, 0.0, 7.0}) == near(0.1));
-    CHECK(cut_s({0.5}) == near(0.0));
-    CHECK(cut_s({3600.0}) == near(0.0)); // of a higher limit
+    CHECK(cut_s({0.5}) == 0.0);    // it is closed from the first frame on
+    CHECK(cut_s({3600.0}) == 0.0); // of a higher limit
     CHECK(cut_s({-1.0}) == near(0.5));
+}
+
+TEST_CASE("a channel that others drive is closed at the limit without a step, and opens at half of it")
+{
+    // 0.5 s of each second: who is closed at t with a level of 0.5 s, and a fade, opens 0.27 s later.
+    const auto opens_s = [](double start_s, double end_s, std::vector<std::pair<double, double>> raised) {
+        synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, limit_time(0.5, 1.0));
+        m.add(voice(start_s, end_s - start_s, 0.5));
+        std::vector<float> x(std::size_t{2} * rate);
+        std::size_t done = 0;
+        for (const auto& [at_s, level_s] : raised) {
+            const std::size_t to = static_cast<std::size_t>(std::llround(at_s * rate));
+            m.process(to - done, reinterpret_cast<std::byte*>(&x[done]));
+            m.raise(0, level_s);
+            done = to;
+        }
+        m.process(x.size() - done, reinterpret_cast<std::byte*>(&x[done]));
+        double step = 0.0;
+        for (std::size_t k = 1; k < x.size(); ++k)
+            step = std::max(step, std::abs(double{x[k]} - double{x[k - 1]}));
+        CHECK(step < 0.11); // 0.5 * 2 pi / 32 of the carrier, and the onset
+        const auto closed = static_cast<std::size_t>(std::llround((raised.front().first + 0.03) * rate));
+        const auto again = std::find_if(x.begin() + static_cast<std::ptrdiff_t>(closed), x.end(),
+                                        [](float v) { return std::abs(v) > 0.01F; });
+        CHECK(std::all_of(x.begin() + static_cast<std::ptrdiff_t>(closed) - rate / 100, again,
+                          [](float v) { return std::abs(v) <= 0.01F; }));
+        return static_cast<double>(again - x.begin()) / rate;
+    };
+    const auto near = [](double s) { return doctest::Approx(s).epsilon(0.03); };
+    CHECK(opens_s(0.0, 2.0, {{0.1, 0.5}}) == near(0.1 + 0.02 + 0.27));
+    CHECK(opens_s(0.5, 2.0, {{0.3, 0.5}}) == near(0.3 + 0.25));             // while it rests
+    CHECK(opens_s(0.0, 2.0, {{0.1, 0.5}, {0.3, 0.45}}) == near(0.3 + 0.2)); // once more while it is closed
 }
 
 TEST_CASE("without a limit drive time is counted where it is asked for, and nothing is cut")
@@ -343,7 +376,7 @@ TEST_CASE("without a limit drive time is counted where it is asked for, and noth
     synth::mixer none(std::vector<double>(1, 1.0), format_kind::float32, 8, {});
     std::vector<float> x(std::size_t{20} * rate);
     for (synth::mixer* m : {&counts, &none}) {
-        m->resume(std::vector<double>{5.0});
+        m->raise(0, 5.0);
         m->add(voice(0.0, 20.0, 0.5));
         m->process(x.size(), reinterpret_cast<std::byte*>(x.data()));
         CHECK(m->counts().drives_cut == 0);

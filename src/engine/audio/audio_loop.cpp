@@ -18,6 +18,9 @@ namespace {
 // spin.
 constexpr unsigned many_idle_steps = 16;
 
+// While something sounds the control side wakes that often at least, and looks at what others drive.
+constexpr unsigned least_wakes_per_s = 10;
+
 // A level changes within 20 ms.
 constexpr unsigned ramps_per_s = 50;
 
@@ -42,9 +45,12 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       frame_bytes_(setup_.frame_bytes()),
       block_(setup_.period_frames * frame_bytes_)
 {
-    mixer_.resume(o.driven_s);
-    if (o.guards.drive_frames > 0.0)
+    for (std::size_t i = 0; i < o.driven_s.size(); ++i)
+        mixer_.raise(i, o.driven_s[i]);
+    if (o.guards.drive_frames > 0.0) {
         l.driven = std::vector<std::atomic<std::uint64_t>>(limits.size());
+        l.raised.resize(limits.size());
+    }
     l.amplifier.ready.store(!o.amplifier, std::memory_order_relaxed);
 }
 
@@ -166,6 +172,7 @@ bool audio_loop::take(const command& c) noexcept
 
 void audio_loop::mix_period() noexcept
 {
+    link_.raised.take([this](std::size_t channel, double level_s) { mixer_.raise(channel, level_s); });
     scores_.follow_gains();
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
     // Drives that wait for space in the mixer are there in time.
@@ -307,7 +314,8 @@ void audio_loop::publish() noexcept
         link_.amplifier.wake.signal();
 
     const bool hungry = link_.feeding.load(std::memory_order_relaxed) &&
-                        s.written - woken_frame_ >= options_.horizon_frames / 8;
+                        s.written - woken_frame_ >= std::min<std::uint64_t>(options_.horizon_frames / 8,
+                                                                            setup_.rate / least_wakes_per_s);
     if (hungry)
         woken_frame_ = s.written;
     if (hungry || news || link_.reports.available() != link_.reports.capacity())

@@ -83,6 +83,14 @@ engine::loop_options loop_options(const player_options& o, std::vector<double> d
     return l;
 }
 
+// Returns a stream's setup, without the name of its device where drive time is not kept.
+stream_setup kept_setup(const player_options& o, stream_setup s)
+{
+    if (!o.keep_drive_time)
+        s.device.clear();
+    return s;
+}
+
 // Returns the options of a thread. `higher`: difference from the audio thread's SCHED_FIFO priority.
 rt::thread_options thread_options(const player_options& o, const char* name, int higher, bool audio)
 {
@@ -411,6 +419,11 @@ std::vector<double> player::drive_levels_s() const
     return impl_->drive_levels_s;
 }
 
+std::string player::drive_time_doubt() const
+{
+    return impl_->book.doubt();
+}
+
 player_stats player::stats() const
 {
     const engine::counters& c = impl_->link.count;
@@ -457,9 +470,8 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       tactors(checked(a, out->setup())),
       limits(synth::channel_limits(a, out->setup().channels)),
       log(o.log, link, o.limits),
-      book(o.keep_drive_time ? out->setup().device : std::string(),
-           synth::make_guards(o.limits, out->setup().rate)),
-      drive_levels_s(book.read()),
+      book(kept_setup(o, out->setup()), synth::make_guards(o.limits, out->setup().rate)),
+      drive_levels_s(book.has_device() ? book.levels() : std::vector<double>{}),
       loop(*out, link, limits,
            loop_options(o, drive_levels_s, book.has_device(), out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o, "tactor-audio", 0, true))
@@ -476,6 +488,8 @@ void player::impl::start(const player_options& o)
                     made.period_frames, made.has_clock ? "" : ", timed by us");
         for (const std::string& odd : wiring_warnings(tactors, made.wiring))
             detail::log(log.function(), log_kind::warning, "{}: {}", stream, odd);
+        if (const std::string doubt = book.doubt(); !doubt.empty())
+            detail::log(log.function(), log_kind::warning, "{}: {}", stream, doubt);
         if (const int refused = audio.fifo_error(); refused == 0)
             detail::log(log.function(), log_kind::info, "the audio thread has real-time priority");
         else if (refused > 0)

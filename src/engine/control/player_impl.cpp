@@ -175,8 +175,9 @@ void player::impl::woken()
     lock.unlock();
     ended_strokes.clear();
     news.notify_all();
+    if (book.enter(link.driven, !last && link.sounds.load(std::memory_order_relaxed), link.raised))
+        log.warn(stream, book.doubt());
     log.write();
-    book.enter(link.driven, !last && link.sounds.load(std::memory_order_relaxed));
     call_handlers();
     if (!done) {
         constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};

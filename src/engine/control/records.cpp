@@ -6,9 +6,9 @@
 #include <cerrno>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -30,15 +30,31 @@
 namespace tactor::engine {
 namespace {
 
-constexpr std::string_view first_line = "tactor-drive-time 1";
-constexpr std::string_view last_line = "end";
+constexpr std::string_view first_line = "tactor-drive-time 2";
+constexpr std::string_view last_line = "\nend\n";
 constexpr double ahead_s = 0.5;
-constexpr std::int64_t renewed_ns = rt::ns_per_s / 4;
-constexpr std::size_t longest_name = 200; // longer ones share what begins alike
+constexpr std::int64_t renewed_ns = rt::ns_per_s / 10;
+constexpr std::int64_t patience_ns = rt::ns_per_s / 5; // with a process that keeps the file locked
+constexpr int patient_tries = 40;                      // of 5 ms: the same
+constexpr std::size_t longest_name = 200;              // longer ones share what begins alike
+constexpr double noticed_s = 1e-4;                     // levels in files are rounded
+constexpr double longest_s = 3600.0;                   // no limit is above it
 
 double seconds(std::int64_t ns)
 {
     return static_cast<double>(ns) * 1e-9;
+}
+
+std::string describe(int code)
+{
+    return std::generic_category().message(code);
+}
+
+// Returns a name of this start of the machine; the same in all containers.
+std::string boot_name()
+{
+    const std::string id = rt::read_file("/proc/sys/kernel/random/boot_id");
+    return id.substr(0, id.find('\n'));
 }
 
 bool is_own(const std::string& folder, mode_t closed_to)
@@ -74,7 +90,7 @@ place find_folder()
         return {.why = fmt::format("{} is not a folder of this user", runtime)};
     const std::string folder = runtime + "/tactor";
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
-        return {.why = fmt::format("{}: {}", folder, std::generic_category().message(errno))};
+        return {.why = fmt::format("{}: {}", folder, describe(errno))};
     if (!is_own(folder, S_IWGRP | S_IWOTH))
         return {.why = fmt::format("{} is not a folder of this user alone", folder)};
     return {.folder = folder};
@@ -88,13 +104,27 @@ std::string find_path(const place& p, std::string_view device)
 /// A file that is open and locked against other processes.
 class locked_file {
 public:
-    /// Opens and locks it, `flags` as for open(2). It is not open() if that fails.
-    locked_file(const std::string& path, int flags) noexcept
-        : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600))
+    /// Opens and locks it, and makes it where there is none. `text`: of a new one.
+    locked_file(const std::string& path, std::string_view text, int tries)
     {
+        fd_ = open_book(path, O_RDWR);
+        if (!fd_ && errno == ENOENT && make(path, text))
+            fd_ = open_book(path, O_RDWR);
+        code_ = fd_ ? 0 : errno;
+        if (code_ == EROFS || code_ == EACCES)
+            fd_ = open_book(path, O_RDONLY);
         struct stat is = {};
-        if (!fd_ || ::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode) || !detail::lock_file(fd_, tries))
+        if (!fd_) {
+            busy_ = code_ == EMFILE || code_ == ENFILE || code_ == ENOMEM;
+            exists_ = ::lstat(path.c_str(), &is) == 0;
+        } else if (::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode)) {
+            code_ = EINVAL;
+            exists_ = true;
             fd_ = {};
+        } else if (!detail::lock_file(fd_, tries)) {
+            busy_ = true;
+            fd_ = {};
+        }
     }
     /// Unlocks it, also where a process that was forked meanwhile has it open.
     ~locked_file()
@@ -106,6 +136,14 @@ public:
     locked_file& operator=(const locked_file&) = delete;
 
     bool open() const noexcept { return static_cast<bool>(fd_); }
+    /// Returns true if a later try may open it: another process keeps it locked, or this one has no
+    /// descriptors.
+    bool busy() const noexcept { return busy_; }
+    /// Returns true if it is there and cannot be opened.
+    bool exists() const noexcept { return exists_; }
+    /// Returns the error of the call that failed last.
+    int code() const noexcept { return code_; }
+
     std::string read() const
     {
         std::string text;
@@ -116,19 +154,52 @@ public:
         }
         return text;
     }
-    /// Returns false if it could not be written as a whole. Then it counts as empty.
-    bool write(const std::string& text) const noexcept
+    /// Writes it. Returns false if that failed. A kill between the two calls leaves an end of the text before
+    /// behind the new one.
+    bool write(const std::string& text) noexcept
     {
-        const auto size = static_cast<ssize_t>(text.size());
-        return ::pwrite(fd_.get(), text.data(), text.size(), 0) == size && ::ftruncate(fd_.get(), size) == 0;
+        if (code_ != 0) // it can only be read
+            return false;
+        if (write_all(fd_, text) && ::ftruncate(fd_.get(), static_cast<off_t>(text.size())) == 0)
+            return true;
+        code_ = errno;
+        return false;
     }
 
 private:
     static constexpr std::size_t most_bytes = std::size_t{1} << 20;
-    // Others hold it for microseconds. One that was stopped meanwhile must not stop this player.
-    static constexpr int tries = 8;
+
+    static detail::owned_fd open_book(const std::string& path, int flags) noexcept
+    {
+        return detail::owned_fd(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    }
+    static bool write_all(const detail::owned_fd& file, std::string_view text) noexcept
+    {
+        const ssize_t n = ::pwrite(file.get(), text.data(), text.size(), 0);
+        if (n >= 0 && n < static_cast<ssize_t>(text.size()))
+            errno = ENOSPC;
+        return n == static_cast<ssize_t>(text.size());
+    }
+    // Makes a whole file or none, because a file that is cut counts as full.
+    static bool make(const std::string& path, std::string_view text)
+    {
+        const std::string unready = fmt::format("{}.{}", path, ::getpid());
+        const detail::owned_fd file(
+            ::open(unready.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600));
+        if (!file)
+            return false;
+        const bool made =
+            write_all(file, text) && (::link(unready.c_str(), path.c_str()) == 0 || errno == EEXIST);
+        const int code = errno;
+        ::unlink(unready.c_str());
+        errno = code;
+        return made;
+    }
 
     detail::owned_fd fd_;
+    bool busy_ = false;
+    bool exists_ = false;
+    int code_ = 0;
 };
 
 /// Levels of devices whose files cannot be written.
@@ -143,132 +214,294 @@ memory& here()
     return m;
 }
 
-/// Calls `change` with the levels of a device, and keeps them if it returns true. `path`: empty: in memory.
-template <class Change>
-void look_up(const std::string& device, const std::string& path, int flags, Change change)
+enum class fault_kind { none, not_kept, not_read, busy };
+
+struct fault {
+    fault_kind what = fault_kind::none;
+    std::string why = {};
+};
+
+std::string text(const fault& f)
+{
+    return f.why + (f.what == fault_kind::not_kept
+                        ? ": the next run will not know for how long the array was driven"
+                        : ": each tactor counts as driven for as long as it may be");
+}
+
+fault not_read(const std::string& path)
+{
+    return {fault_kind::not_read, path + " cannot be read as a whole"};
+}
+
+fault not_written(const std::string& path, int code)
+{
+    return {fault_kind::not_kept, fmt::format("{} cannot be written: {}", path, describe(code))};
+}
+
+struct book_place {
+    const std::string& device;
+    const std::string& path; ///< empty: in memory
+    const std::string& boot;
+    double limit_s;
+};
+
+drive_levels full_levels(double limit_s, std::int64_t now_ns)
+{
+    return {.levels_s = std::vector<double>(detail::max_channels, limit_s), .at_ns = now_ns};
+}
+
+/// Calls `change` with the levels of a device, the newer of those in its file and in memory, and the time.
+/// Keeps them.
+template <class Clock, class Change>
+fault look_up(const book_place& at, const Clock& clock, int tries, Change change)
 {
     memory& m = here();
     const std::lock_guard lock(m.mutex);
-    drive_levels& own = m.by_device[device];
-    const locked_file file(path, flags);
-    drive_levels l = file.open() ? drive_levels::read(file.read()) : drive_levels();
-    if (l.levels_s.empty())
-        l = own;
-    if (change(l) && !(file.open() && file.write(l.text())))
-        own = std::move(l);
+    drive_levels& own = m.by_device[at.device];
+    if (at.path.empty()) {
+        change(own, clock());
+        return {};
+    }
+    locked_file file(at.path, drive_levels().text(at.boot), tries);
+    if (file.busy())
+        return {fault_kind::busy, at.path + " is locked by another program"};
+    const std::int64_t now_ns = clock();
+    drive_levels l = own;
+    fault f;
+    if (file.open()) {
+        const std::optional<drive_levels> kept = drive_levels::read(file.read(), at.boot, now_ns);
+        if (!kept)
+            f = not_read(at.path);
+        if (!kept || kept->at_ns >= own.at_ns)
+            l = kept.value_or(full_levels(at.limit_s, now_ns));
+    } else if (file.exists() && own.at_ns == 0) {
+        f = not_read(at.path);
+        l = full_levels(at.limit_s, now_ns);
+    }
+    change(l, now_ns);
+    if (file.open() && file.write(l.text(at.boot))) {
+        m.by_device.erase(at.device);
+        return f;
+    }
+    own = std::move(l);
+    return f.what != fault_kind::none ? f : not_written(at.path, file.code());
 }
 
 } // namespace
 
-bool drive_levels::is_foreign(std::int64_t now_ns) const noexcept
+void drive_levels::add(std::span<const double> drive_s, std::int64_t now_ns, const drive_law& law)
 {
-    return at_ns > now_ns + rt::ns_per_s;
+    const double passed_s = seconds(std::max<std::int64_t>(now_ns - at_ns, 0));
+    levels_s.resize(std::max(levels_s.size(), drive_s.size()));
+    for (std::size_t i = 0; i < levels_s.size(); ++i) {
+        const double drive = i < drive_s.size() ? drive_s[i] : 0.0;
+        // Others let it leak for all of the time before their last entry, so the rest may be below 0.
+        const double rested = std::min(levels_s[i], law.limit_s) - law.leak * (passed_s - drive);
+        levels_s[i] = std::min(std::max(rested, 0.0) + drive, law.limit_s);
+    }
+    at_ns = std::max(at_ns, now_ns);
 }
 
-std::vector<double> drive_levels::after_rest(std::int64_t now_ns, double limit_s, double leak) const
+void drive_levels::pass(std::int64_t now_ns, const drive_law& law)
 {
-    if (is_foreign(now_ns))
-        return {};
-    const double rest_s = seconds(std::max<std::int64_t>(now_ns - at_ns, 0));
-    std::vector<double> now = levels_s;
-    for (double& l : now)
-        l = std::max(std::min(l, limit_s) - leak * rest_s, 0.0);
-    return now;
+    std::sort(runs.begin(), runs.end(), [](const run& a, const run& b) { return a.until_ns < b.until_ns; });
+    while (!runs.empty() && runs.front().until_ns <= now_ns) {
+        add(std::vector<double>(levels_s.size(), ahead_s), runs.front().until_ns, law);
+        runs.erase(runs.begin());
+    }
 }
 
-std::string drive_levels::text() const
+std::string drive_levels::text(std::string_view boot) const
 {
-    // Has the same length for any levels: a kill between the two calls that write it leaves no end of the one
-    // before.
-    std::string t = fmt::format("{}\n{:019}\n", first_line, at_ns);
+    std::string t = fmt::format("{}\nboot {}\ntime {}", first_line, boot, at_ns);
     for (const double l : levels_s)
-        fmt::format_to(std::back_inserter(t), "{:016.6f}\n", l);
-    return t.append(last_line).append("\n");
+        fmt::format_to(std::back_inserter(t), "\nlevel {:.6f}", l);
+    for (const run& r : runs)
+        fmt::format_to(std::back_inserter(t), "\nrun {} {}", r.name, r.until_ns);
+    return t.append(last_line);
 }
 
-drive_levels drive_levels::read(std::string_view text)
+std::optional<drive_levels> drive_levels::read(std::string_view text, std::string_view boot,
+                                               std::int64_t now_ns)
 {
-    const std::vector<std::string_view> lines = detail::split(text, '\n');
-    if (lines.size() < 4 || lines.size() > detail::max_channels + 4 || lines.front() != first_line ||
-        !lines.back().empty() || lines[lines.size() - 2] != last_line)
+    const std::vector<std::string_view> lines = detail::split(text.substr(0, text.find(last_line)), '\n');
+    if (text.find(last_line) == text.npos || lines.size() < 3 || lines.front() != first_line)
         return {};
-    const auto at_ns = detail::number_in<std::int64_t>(lines[1]);
-    if (!at_ns)
-        return {};
-    drive_levels l{.at_ns = *at_ns};
-    for (std::size_t i = 2; i + 2 < lines.size(); ++i) {
-        const auto level = detail::number_in<double>(lines[i]);
-        if (!level || !(*level >= 0.0) || !std::isfinite(*level))
+    drive_levels l;
+    for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
+        const std::vector<std::string_view> words = detail::split(*line, ' ');
+        const auto whole = [&](std::size_t i) {
+            return i < words.size() ? detail::number_in<std::int64_t>(words[i]) : std::nullopt;
+        };
+        const auto level =
+            words.size() == 2 && words[0] == "level" ? detail::number_in<double>(words[1]) : std::nullopt;
+        if (line == lines.begin() + 1 && words[0] == "boot") {
+            if (*line != fmt::format("boot {}", boot))
+                return drive_levels();
+        } else if (line == lines.begin() + 2 && words[0] == "time" && whole(1) && *whole(1) <= now_ns)
+            l.at_ns = *whole(1);
+        else if (level && *level >= 0.0 && std::isfinite(*level) && l.levels_s.size() < detail::max_channels)
+            l.levels_s.push_back(*level);
+        else if (words.size() == 3 && words[0] == "run" && whole(1) && whole(2) &&
+                 *whole(2) <= now_ns + rt::ns_per_s)
+            l.runs.push_back({*whole(1), *whole(2)});
+        else
             return {};
-        l.levels_s.push_back(*level);
     }
     return l;
 }
 
-void drive_share::enter(drive_levels& l, std::span<const std::uint64_t> all, double rate, double leak,
-                        double next_s, std::int64_t now_ns)
+std::vector<double> drive_share::enter(drive_levels& l, std::span<const double> drive_s, const drive_law& law,
+                                       bool goes_on, std::int64_t now_ns)
 {
-    if (l.is_foreign(now_ns))
-        l = {};
-    const bool alone = l.at_ns == left_ns;
-    const double passed_s = seconds(now_ns - (alone ? entered_ns : l.at_ns));
-    driven.resize(all.size());
-    l.levels_s.resize(std::max(l.levels_s.size(), all.size()));
-    for (std::size_t i = 0; i < l.levels_s.size(); ++i) {
-        const bool ours = i < all.size();
-        const double drive_s = ours ? static_cast<double>(all[i] - driven[i]) / rate : 0.0;
-        const double before_s = std::max(l.levels_s[i] - (ours ? ahead_s : 0.0), 0.0);
-        const double rest_s = std::max(passed_s - drive_s, 0.0);
-        l.levels_s[i] = std::max(before_s - leak * rest_s, 0.0) + drive_s + (ours ? next_s : 0.0);
+    std::erase_if(l.runs, [this](const drive_levels::run& r) { return r.name == name; });
+    l.levels_s.resize(std::max(l.levels_s.size(), drive_s.size()));
+    l.pass(now_ns, law);
+    drive_levels without_this = l;
+    without_this.add({}, now_ns, law);
+    l.add(drive_s, now_ns, law);
+    std::vector<double> theirs = l.levels_s;
+    for (std::size_t i = 0; i < theirs.size(); ++i) {
+        const double left = i < left_s.size() ? left_s[i] - law.leak * seconds(now_ns - left_ns) : 0.0;
+        if (without_this.levels_s[i] <= std::max(left, 0.0) + noticed_s)
+            theirs[i] = 0.0;
     }
-    driven.assign(all.begin(), all.end());
-    ahead_s = next_s;
-    entered_ns = now_ns;
-    const std::int64_t until_ns = now_ns + std::llround(next_s * 1e9);
-    l.at_ns = left_ns = alone ? until_ns : std::max(until_ns, l.at_ns);
+    while (l.runs.empty() && l.levels_s.size() > drive_s.size() && l.levels_s.back() == 0.0)
+        l.levels_s.pop_back(); // of channels of which nothing is known
+    if (goes_on)
+        l.runs.push_back({name, now_ns + std::llround(ahead_s * 1e9)});
+    left_s = l.levels_s;
+    left_ns = now_ns;
+    sounds = goes_on;
+    return theirs;
 }
 
-drive_book::drive_book(std::string device, const synth::guard_settings& g)
-    : device_(std::move(device)),
-      path_(device_.empty() ? std::string() : find_path(find_folder(), device_)),
-      limit_s_(g.drive_frames > 0.0 ? g.drive_frames / g.rate : std::numeric_limits<double>::infinity()),
-      leak_(g.leak),
-      rate_(g.rate)
+drive_book::drive_book(const stream_setup& s, const synth::guard_settings& g,
+                       std::function<std::int64_t()> clock)
+    : device_(s.device),
+      outputs_(s.wiring.outputs),
+      channels_(s.channels),
+      law_{.limit_s = g.drive_frames > 0.0 ? g.drive_frames / g.rate : longest_s, .leak = g.leak},
+      rate_(g.rate),
+      clock_(std::move(clock))
 {
-}
-
-std::vector<double> drive_book::read() const
-{
-    std::vector<double> now;
-    if (has_device())
-        look_up(device_, path_, O_RDWR, [&](drive_levels& l) {
-            now = l.after_rest(rt::boottime_ns(), limit_s_, leak_);
-            return false;
-        });
-    return now;
-}
-
-void drive_book::enter(std::span<const std::atomic<std::uint64_t>> driven, bool sounds) noexcept
-{
-    const std::int64_t now_ns = rt::boottime_ns();
-    const bool ahead = share_.ahead_s > 0.0;
-    if (!has_device() || (sounds && ahead && now_ns - share_.entered_ns < renewed_ns))
+    if (!has_device())
         return;
+    for (const std::vector<unsigned>& reached : outputs_)
+        if (!reached.empty() && reached.back() >= detail::max_channels) { // of several devices
+            outputs_.clear();
+            break;
+        }
+    const place p = find_folder();
+    path_ = find_path(p, device_);
+    boot_ = boot_name();
+    share_.name = rt::boottime_ns();
+    const auto begin = [this](drive_levels& l, std::int64_t now_ns) {
+        l.pass(now_ns, law_);
+        l.add({}, now_ns, law_);
+        share_.left_s = l.levels_s;
+        share_.left_ns = now_ns;
+    };
+    fault f = look_up({device_, path_, boot_, law_.limit_s}, clock_, patient_tries, begin);
+    if (f.what == fault_kind::busy) {
+        drive_levels full = full_levels(law_.limit_s, clock_());
+        begin(full, full.at_ns);
+    }
+    if (path_.empty())
+        f = {fault_kind::not_kept, p.why};
+    if (f.what != fault_kind::none)
+        doubts(text(f));
+}
+
+std::string drive_book::doubt() const
+{
+    const std::lock_guard lock(mutex_);
+    return doubt_;
+}
+
+bool drive_book::doubts(std::string why)
+{
+    const std::lock_guard lock(mutex_);
+    if (!doubt_.empty())
+        return false;
+    doubt_ = std::move(why);
+    return true;
+}
+
+std::vector<double> drive_book::levels_at_channels(const std::vector<double>& of_device) const
+{
+    std::vector<double> levels(channels_, 0.0);
+    const auto level = [&](std::size_t output) {
+        return output < of_device.size() ? of_device[output] : 0.0;
+    };
+    for (std::size_t c = 0; c < channels_; ++c)
+        if (c >= outputs_.size())
+            levels[c] = level(c);
+        else
+            for (const unsigned output : outputs_[c])
+                levels[c] = std::max(levels[c], level(output));
+    return levels;
+}
+
+// Returns the drive, s, of each channel of the device since the last entry.
+std::vector<double> drive_book::drive_at_device(std::span<const std::uint64_t> now) const
+{
+    std::vector<double> drive_s(channels_, 0.0);
+    for (std::size_t c = 0; c < now.size(); ++c) {
+        const std::uint64_t before = c < share_.driven.size() ? share_.driven[c] : 0;
+        const double s = static_cast<double>(now[c] - before) / rate_;
+        const unsigned own[] = {static_cast<unsigned>(c)};
+        for (const unsigned output : c < outputs_.size() ? std::span<const unsigned>(outputs_[c]) : own) {
+            drive_s.resize(std::max<std::size_t>(drive_s.size(), output + 1));
+            drive_s[output] += s;
+        }
+    }
+    return drive_s;
+}
+
+bool drive_book::enter(std::span<const std::atomic<std::uint64_t>> driven, bool sounds,
+                       level_requests& raised) noexcept
+{
+    if (!has_device() || (sounds && share_.sounds && clock_() - share_.left_ns < renewed_ns))
+        return false;
     try {
         std::vector<std::uint64_t> now(driven.size());
         std::transform(driven.begin(), driven.end(), now.begin(),
                        [](const auto& n) { return n.load(std::memory_order_relaxed); });
-        drive_share next = share_;
-        next.driven.resize(now.size());
-        if (!sounds && !ahead && now == next.driven)
-            return;
-        look_up(device_, path_, O_RDWR | O_CREAT, [&](drive_levels& l) {
-            next.enter(l, now, rate_, leak_, sounds ? ahead_s : 0.0, now_ns);
-            return true;
-        });
-        share_ = std::move(next);
-    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): no memory; the next call enters it
+        share_.driven.resize(now.size());
+        if (!sounds && !share_.sounds && now == share_.driven)
+            return false;
+        return enter(now, sounds, raised);
+    } catch (const std::exception&) { // no memory; the next call enters it
+        return false;
     }
+}
+
+bool drive_book::enter(const std::vector<std::uint64_t>& now, bool sounds, level_requests& raised)
+{
+    drive_share next = share_;
+    next.driven = now;
+    std::vector<double> theirs;
+    const fault f = look_up({device_, path_, boot_, law_.limit_s}, clock_, sounds ? 0 : patient_tries,
+                            [&](drive_levels& l, std::int64_t now_ns) {
+                                theirs = next.enter(l, drive_at_device(now), law_, sounds, now_ns);
+                            });
+    if (f.what == fault_kind::busy) {
+        // While something sounds this thread has other work: it looks again when it wakes next.
+        const std::int64_t now_ns = clock_();
+        locked_ns_ = locked_ns_.value_or(now_ns);
+        if (sounds && now_ns - *locked_ns_ < patience_ns)
+            return false;
+        theirs.assign(detail::max_channels, law_.limit_s);
+    } else {
+        locked_ns_.reset();
+        share_ = std::move(next);
+    }
+    const std::vector<double> levels = levels_at_channels(theirs);
+    for (std::size_t c = 0; c < levels.size(); ++c)
+        if (levels[c] > 0.0)
+            raised.set(c, levels[c]);
+    return f.what != fault_kind::none && doubts(text(f));
 }
 
 namespace {
@@ -377,6 +610,16 @@ void stream_log::look_at_end(const stroke_report& r) noexcept
     }
 }
 
+void stream_log::warn(std::string_view stream, std::string_view what) noexcept
+{
+    if (!on())
+        return;
+    try {
+        add(log_kind::warning, fmt::format("{}: {}", stream, what));
+    } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
+    }
+}
+
 void stream_log::end(const std::string& why) noexcept
 {
     if (!on() || std::exchange(over_, true))
@@ -412,8 +655,17 @@ std::string drive_time_fault(std::string_view device)
     if (p.folder.empty())
         return p.why;
     const std::string path = engine::find_path(p, device);
-    const bool good = ::access(path.c_str(), F_OK) != 0 || engine::locked_file(path, O_RDWR).open();
-    return good ? std::string() : fmt::format("{} cannot be written", path);
+    const std::string boot = engine::boot_name();
+    engine::locked_file file(path, engine::drive_levels().text(boot), engine::patient_tries);
+    if (file.busy())
+        return path + " is locked by another program";
+    if (!file.open())
+        return fmt::format("{} cannot be {}: {}", path, file.exists() ? "opened" : "made",
+                           engine::describe(file.code()));
+    const std::string text = file.read();
+    if (!engine::drive_levels::read(text, boot, rt::boottime_ns()))
+        return engine::not_read(path).why;
+    return file.write(text) ? std::string() : engine::not_written(path, file.code()).why;
 }
 
 } // namespace v0

@@ -64,8 +64,8 @@ class Player(_Unique):
         log : callable, optional
             `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
         keep_drive_time : bool
-            What earlier players and runs of this user drove on this device counts, and what this one drives counts for later ones. False: it
-            begins with 0, and is not kept.
+            What other players and runs of this user drive on this device counts, earlier ones and those that play now, and what this one drives
+            counts for them. False: it begins with 0, and is not kept.
         rate
             As in `plan`.
         sample_format : str
@@ -108,7 +108,7 @@ class Player(_Unique):
         self._setup: dict[str, _t.Any] = core.setup()
         self._given: Array = array
         self._array: Array = array if core.configured is None else Array._wrap(core.configured)
-        for doubt in (core.doubt, _tactor.find_drive_doubt(device) if keep_drive_time else ""):
+        for doubt in (core.doubt, core.drive_time_doubt()):
             if doubt:
                 warnings.warn(doubt, stacklevel=2)
         self._held = _Held(log)

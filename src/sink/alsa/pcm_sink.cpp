@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -17,6 +19,7 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "rt/clock.hpp"
+#include "sink/alsa/devices/devices.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
@@ -312,22 +315,32 @@ io_kind classify_error(long code, int state) noexcept
 
 namespace {
 
-bool is_on_card(snd_pcm_t* p)
+std::optional<card_place> find_place(snd_pcm_t* p)
 {
     const auto info =
         allocate<std::unique_ptr<snd_pcm_info_t, deleter<snd_pcm_info_free>>>(snd_pcm_info_malloc);
-    return snd_pcm_info(p, info.get()) == 0 && snd_pcm_info_get_card(info.get()) >= 0;
+    if (snd_pcm_info(p, info.get()) != 0 || snd_pcm_info_get_card(info.get()) < 0)
+        return {};
+    const std::string index = fmt::to_string(snd_pcm_info_get_card(info.get()));
+    const std::optional<card_info> card = find_card(sound_cards("/"), index);
+    return card_place{.card = card ? card->id : index,
+                      .device = snd_pcm_info_get_device(info.get()),
+                      .subdevice = snd_pcm_info_get_subdevice(info.get())};
 }
 
-// Configures a PCM. `top`: the configuration that defines it; null: none does.
-std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card,
-                                std::string_view device)
+// Configures a PCM. `top`: the configuration that defines it; null: none does. `device`: then, as
+// stream_setup::device.
+std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card = false,
+                                std::string_view device = {})
 try {
     const library_messages silent;
     stream_setup s = negotiate(h.get(), o);
     s.device = device;
-    if (top != nullptr)
+    const std::optional<card_place> place = find_place(h.get());
+    if (top != nullptr) {
         s.wiring = find_wiring(top, o.pcm, o.channels, s.device_channels);
+        s.device = name_drive_time(o.pcm, find_route(top, o.pcm), place, s.wiring);
+    }
     set_software(h.get(), s);
     detail::log(o.log, log_kind::info, "PCM \"{}\": {}, {} Hz, {}, {} of {} frames{}", o.pcm,
                 s.device_channels == s.channels
@@ -343,8 +356,7 @@ try {
         detail::log(o.log, log_kind::warning,
                     "PCM \"{}\": which of the device's channels its own reach is not known: {} is between",
                     o.pcm, s.wiring.hidden_by);
-    const bool on_card = as_card || is_on_card(h.get());
-    return std::make_unique<pcm_sink>(std::move(h), std::move(s), on_card);
+    return std::make_unique<pcm_sink>(std::move(h), std::move(s), as_card || place);
 } catch (const error&) {
     throw;
 } catch (const std::system_error& e) {
@@ -369,7 +381,7 @@ std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
     alsa::check(o);
     const alsa::configuration top = alsa::read_configuration(o.config_text);
-    return alsa::configure(alsa::open(o, top.get()), o, top.get(), false, o.pcm);
+    return alsa::configure(alsa::open(o, top.get()), o, top.get());
 }
 
 std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>& pause)

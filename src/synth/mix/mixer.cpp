@@ -325,9 +325,9 @@ std::uint64_t mixer::driven(std::size_t channel) const noexcept
     return impl_->duty.driven(channel);
 }
 
-void mixer::resume(std::span<const double> levels_s) noexcept
+void mixer::raise(std::size_t channel, double level_s) noexcept
 {
-    impl_->duty.resume(levels_s);
+    impl_->duty.raise(channel, impl_->clock, level_s);
 }
 
 void mixer::cut() noexcept

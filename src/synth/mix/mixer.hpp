@@ -60,9 +60,8 @@ public:
 
     /// Returns the frames in which a channel was driven so far; 0 where drive time is not counted.
     std::uint64_t driven(std::size_t channel) const noexcept;
-    /// Begins with these levels of drive time, s, by channel; those beyond are 0. Only before the first
-    /// process().
-    void resume(std::span<const double> levels_s) noexcept;
+    /// Raises a channel to a level of drive time, s, that others have driven it to, from the next frame on.
+    void raise(std::size_t channel, double level_s) noexcept;
 
     /// Drops everything at once. Drive times still count.
     void cut() noexcept;

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <alsa/asoundlib.h>
 #include <doctest/doctest.h>
@@ -108,6 +110,24 @@ private:
 };
 
 } // namespace
+
+TEST_CASE("all names that reach one place on a card keep one drive time, and the null device none")
+{
+    const alsa::card_place place{.card = "Tactor", .device = 1, .subdevice = 2};
+    const stream_wiring straight;
+    for (const auto& [name, route] : {std::pair<std::string, std::vector<std::string>>{"hw:0,1,2", {"hw"}},
+                                      {"hw:CARD=Tactor,DEV=1", {"hw"}},
+                                      {"plughw:Tactor,1", {"plug", "hw"}},
+                                      {"default", {"plug", "dmix", "hw"}}})
+        CHECK(alsa::name_drive_time(name, route, place, straight) == "hw:CARD=Tactor,DEV=1,SUBDEV=2");
+    CHECK(alsa::name_drive_time("pulse", {"pulse"}, {}, straight) == "pulse");
+    CHECK(alsa::name_drive_time("null", {"null"}, {}, straight).empty());
+    CHECK(alsa::name_drive_time("file:x", {"file", "null"}, {}, straight).empty());
+    CHECK(alsa::name_drive_time("half", {"route", "multi", "hw", "null"}, {}, straight) == "half");
+    // A PCM of two cards has channels of its own.
+    const stream_wiring two{.outputs = {{0}, {1024}}};
+    CHECK(alsa::name_drive_time("both", {"multi", "hw", "hw"}, place, two) == "both");
+}
 
 TEST_CASE("each playback device of each card is listed by its card's id, cards first")
 {

@@ -290,6 +290,17 @@ std::string find_server(const std::vector<std::string>& route)
     return {};
 }
 
+std::string name_drive_time(const std::string& pcm, const std::vector<std::string>& route,
+                            const std::optional<card_place>& place, const stream_wiring& w)
+{
+    const bool several = std::any_of(w.outputs.begin(), w.outputs.end(), [](const auto& reached) {
+        return !reached.empty() && reached.back() >= most_channels;
+    });
+    if (place && !several)
+        return fmt::format("hw:CARD={},DEV={},SUBDEV={}", place->card, place->device, place->subdevice);
+    return contains(route, "null") && !contains(route, "hw") ? std::string() : pcm;
+}
+
 std::vector<std::string> defined_pcms(snd_config_t* top)
 {
     std::vector<std::string> names;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,6 +64,19 @@ bool writes(const std::vector<std::string>& route);
 
 /// Returns "PipeWire", "PulseAudio" or "JACK" if the route ends in one, else empty.
 std::string find_server(const std::vector<std::string>& route);
+
+/// Place of a PCM on a card of the kernel's.
+struct card_place {
+    std::string card = {}; ///< its id
+    unsigned device = 0;
+    unsigned subdevice = 0;
+};
+
+/// Returns stream_setup::device of a PCM: the same for all names that reach one place on a card, else the
+/// PCM's own name. Empty if its route ends in the null device, which nobody feels. `place`: where it plays,
+/// or, of several devices (`w` knows), where the first plays; none: on no card.
+std::string name_drive_time(const std::string& pcm, const std::vector<std::string>& route,
+                            const std::optional<card_place>& place, const stream_wiring& w);
 
 struct known_name {
     std::string name = {};
