@@ -158,6 +158,12 @@ class Page:
         for kind in ("rawKeyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, code=code, key=key or code, modifiers=modifiers)
 
+    def type(self, text):
+        """Presses the key of each character, as a hand does: what takes a key as a shortcut keeps it from the field."""
+        for c in text:
+            self.call("Input.dispatchKeyEvent", type="keyDown", key=c, text=c)
+            self.call("Input.dispatchKeyEvent", type="keyUp", key=c)
+
     def picture(self, file):
         self.call("Page.bringToFront")  # a tab behind another is not painted
         data = self.call("Page.captureScreenshot", format="png")["data"]

@@ -4,7 +4,7 @@ Usage: test_page.py TOOL SOURCE_ROOT"""
 import sys
 
 del sys.argv[3:]
-from studio import LONG, PHONE, StudioTest  # noqa: E402
+from studio import LONG, PHONE, TAKE, StudioTest  # noqa: E402
 from harness import main  # noqa: E402
 
 # Fields in which space is a character, and does not stop.
@@ -210,6 +210,42 @@ class Keys(StudioTest):
         self.assertIn(number, [x["stroke"] for x in player.ok("status")["strokes"]])
         p.click("#stop")
         self.assertEqual(watcher.await_end(number)["state"], "cancelled")
+
+    def test_a_number_is_typed_key_by_key_and_no_key_of_it_is_a_shortcut(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([4, 20], [36, 20]))
+        p.click("[data-tool=points]")
+        p.until("tactor.state.tool === 'points'")
+        p.value("tactor.state.knot = 1")
+        shown = "JSON.stringify([tactor.state.tool, tactor.state.knot, tactor.view.zoom, tactor.state.at_s, tactor.state.takes.length, tactor.state.compare, tactor.state.loop])"
+        before, found = p.value(shown), set()
+        for tab in ("method", "timing", "vibration"):
+            p.click(f"[data-tab={tab}]")
+            p.until(f"document.querySelector('#pane').getAttribute('aria-labelledby') === 'tab-{tab}'")
+            p.value("document.querySelectorAll('#pane details').forEach(d => { d.open = true; })")
+            p.value("(globalThis.fields = [...document.querySelectorAll('#pane input[inputmode=decimal]')]).length")
+            for i in range(p.value("fields.length")):
+                found.add(p.value(f"(fields[{i}].scrollIntoView(), fields[{i}].focus(), fields[{i}].select(), fields[{i}].labels[0].textContent)"))
+                p.type("-+0.12,3=45 dbpn[z")
+                p.call("Input.dispatchKeyEvent", type="rawKeyDown", key="Backspace", code="Backspace", windowsVirtualKeyCode=8)
+                typed = "-+0.12,3=45dbpn["  # a number has no blank, so Space stops
+                self.assertEqual(p.value(f"[fields[{i}].value, {shown}]"), [typed, before])
+                p.value(f"fields[{i}].value = ''")
+        self.assertLess({"Starts at", "Slope of the law", "Spread of speeds"}, found)
+        # The field keeps what was typed; Ctrl Z in it takes back the typing, and not the take.
+        p.click("[data-tab=timing]")
+        p.until("(globalThis.field = [...document.querySelectorAll('#pane .entry')].find(e => e.textContent.startsWith('Starts at'))?.querySelector('input'))")
+        p.value("field.closest('details').open = true, field.focus(), field.select()")
+        p.type("0,125")
+        p.key("KeyZ", "z", modifiers=2)
+        self.assertEqual(p.value("tactor.state.takes.length"), 1)
+        p.value("field.select()")
+        p.type("0,125")
+        p.value("field.blur()")
+        p.until(f"{TAKE}.strokes[0].start_s === 0.125")
+        p.value("document.querySelector('#p-study').showPopover(), document.querySelector('#study [name=trials]').focus(), document.activeElement.select()")
+        p.type("120")
+        self.assertEqual(p.value("[document.activeElement.value, tactor.state.compare, tactor.view.zoom]"), ["120", None, 1])
 
     def test_space_stops_what_is_being_drawn(self):
         p, watcher = self.ready(self.serve())

@@ -21,7 +21,9 @@ const KEYS = [["Space", "stop everything"], ["P, Shift P", "play, play from here
     ["Esc", "close; where nothing is open, stop"]];
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
-const is_text = e => e instanceof HTMLInputElement && ["text", "password"].includes(e.type) && e.inputMode !== "decimal";
+const is_field = e => e instanceof HTMLInputElement && ["text", "password"].includes(e.type);
+const is_number = e => is_field(e) && e.inputMode === "decimal"; // it takes no blank, so Space stops there, too
+const is_text = e => is_field(e) && !is_number(e);
 const press = id => () => by_id(id).click();
 export function new_take() {
   state.append = false;
@@ -73,7 +75,7 @@ for (const event of ["keydown", "keyup"]) addEventListener(event, e => {
   if (event === "keydown" && !e.repeat) stop();
 }, {capture: true});
 addEventListener("keydown", e => {
-  if (is_text(e.target)) return;
+  if (is_field(e.target) && !(is_number(e.target) && e.key === "Escape")) return; // its keys type, and undo what was typed
   if (e.ctrlKey || e.metaKey) {
     const edit = {z: e.shiftKey ? redo : undo, y: redo, d: () => copy_clip()}[e.key.toLowerCase()];
     if (edit) e.preventDefault();
