@@ -141,6 +141,56 @@ class Takes(TakesTest):
         p.until(f"{TAKE}.strokes[0].knots.length === {len(knots)}")
         self.assertEqual(self.take(p)["strokes"][0]["knots"], knots)
 
+    def test_a_point_and_a_diamond_that_are_chosen_stay_where_they_are(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *[[4 + x, 20 + 4 * math.sin(x / 3)] for x in range(33)])
+        self.planned(p)
+        now = f"JSON.stringify({TAKE})"
+        # What is felt cannot be put everywhere; the pointer is 2.4 mm off.
+        for tool, points, near_mm in (("points", f"{TAKE}.strokes[0].knots", 0.2), ("felt", "tactor.felt_points()", 1.2)):
+            with self.subTest(tool=tool):
+                p.click(f"[data-tool={tool}]")
+                p.until(f"tactor.state.tool === '{tool}'")
+                self.planned(p)
+                # The point of the middle that is farthest from all others.
+                places = [(q["x"], q["y"]) for q in p.value(points)]
+                i = max((i for i, q in enumerate(places) if 10 < q[0] < 30), key=lambda i: min(math.dist(places[i], q) for q in places if q is not places[i]))
+                before, at = p.value(now), places[i]
+                x, y = self.at(p, at)[0]
+                x, y = x + 12, y - 12  # within reach
+                p.mouse("mousePressed", x, y)
+                p.move_to((x + 1, y + 1))
+                p.mouse("mouseReleased", x + 1, y + 1)
+                p.until(f"tactor.state.knot === {i}")
+                self.assertEqual(p.value(now), before)
+                # Dragged, it keeps its distance from the pointer.
+                p.mouse("mousePressed", x, y)
+                p.move_to((x, y - 4), (x, y - 8))
+                p.mouse("mouseReleased", x, y - 8)
+                wanted = p.value(f"{at[1]} - 8 / tactor.view.scale")
+                p.until(f"Math.hypot({points}[{i}].x - {at[0]}, {points}[{i}].y - {wanted}) < {near_mm}")
+
+    def test_of_a_palm_that_lay_there_before_the_pen_nothing_stays(self):
+        p, watcher = self.ready(self.serve(), fingers=True)
+        palm = [30, 34]
+        self.fingers(p, "touchStart", palm)
+        for mm in range(1, 6):
+            self.fingers(p, "touchMove", [palm[0] + mm, palm[1]])
+        number = self.next_stroke(watcher, "started")
+        pen = {"button": "left", "pointerType": "pen", "force": 0.5}
+        places = self.at(p, *self.way([5, 10], [35, 10]))
+        for kind, (x, y), buttons in (("mousePressed", places[0], 1), *(("mouseMoved", q, 1) for q in places), ("mouseReleased", places[-1], 0)):
+            p.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, buttons=buttons, clickCount=1, **pen)
+        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
+        self.fingers(p, "touchMove", [palm[0], palm[1] - 6])
+        p.touch("touchEnd")
+        p.until("tactor.state.takes.length === 1 && !tactor.state.drawing")
+        take = self.take(p)
+        self.assertEqual((take["origin"], len(take["strokes"]), take["strokes"][0]["start_s"]), ("drawn with a pen", 1, 0))
+        for _, _, y, strength in take["strokes"][0]["timed"]:
+            self.assertAlmostEqual(y, 10, delta=0.3)
+            self.assertEqual(strength, 0.5)
+
     def test_the_longest_and_the_shortest_duration_can_be_played(self):
         p, _ = self.ready(self.serve())
         self.draw(p, *self.way([4, 20], [36, 20]))

@@ -56,6 +56,49 @@ class Time(StudioTest):
         self.assertGreater(p.until("tactor.state.dbfs.some(v => v !== null) && tactor.state.at_s"), 1.1)
         p.click("#stop")
 
+    def test_a_clip_follows_the_pointer_while_its_drag_makes_the_take_shorter_or_longer(self):
+        p, _ = self.drawn()
+        p.click("#snap")
+        clip = f"{TAKE}.strokes[0].timed.at(-1)[0] + ' ' + {TAKE}.strokes[0].start_s"
+        # Held 4 px within its end, start and middle: no jump, and each step of the pointer is one of the clip.
+        for grasp, by_s, wanted in ((-4, -0.5, lambda s: (length + s, start)), (4, 0.2, lambda s: (length - s, start + s)), (40, 0.7, lambda s: (length, start + s))):
+            self.planned(p)
+            p.frames()
+            length, start = map(float, p.value(clip).split())
+            (x, y), (one, _) = self.at_time(p, start + length if grasp < 0 else start, CLIPS), self.at_time(p, start + 1, CLIPS)
+            px_s = one - self.at_time(p, start, CLIPS)[0]
+            p.mouse("mousePressed", x + grasp, y)
+            for step in range(1, 11):
+                p.move_to((x + grasp + by_s * px_s * step / 10, y))
+                p.frames()
+                self.planned(p)
+                for is_now, ought in zip(map(float, p.value(clip).split()), wanted(by_s * step / 10)):
+                    self.assertAlmostEqual(is_now, ought, delta=2 / px_s)
+            p.mouse("mouseReleased", x + grasp + by_s * px_s, y)
+        # The whole is shown again.
+        p.until("!tactor.lanes.held_s")
+
+    def test_a_point_of_the_strength_is_chosen_where_it_is_and_keeps_its_distance(self):
+        p, _ = self.drawn()
+        p.value("document.querySelector('#show_speed').click()")
+        p.frames()
+        rows, h = self.take(p)["strokes"][0]["timed"], p.until("tactor.lanes.curves && tactor.lanes.height")
+        (t, u), (v, w) = next((a[:2], b[:2]) for a, b in zip(rows, rows[1:]) if a[1] <= 20 <= b[1])  # half of its way
+        x, _ = self.at_time(p, t + (v - t) * (20 - u) / (w - u), 0)
+        top, bottom = h - 58, h - 8  # the middle point is at the full strength: 12 px below the top
+        y = self.at_time(p, 0, top + 12)[1] + 6
+        before = p.value(f"JSON.stringify({TAKE})")
+        p.mouse("mousePressed", x, y)
+        p.move_to((x + 1, y + 1))
+        p.mouse("mouseReleased", x + 1, y + 1)
+        p.frames()
+        self.assertEqual(p.value(f"JSON.stringify({TAKE})"), before)
+        p.mouse("mousePressed", x, y)
+        p.move_to((x, y + 10), (x, y + 19))
+        p.mouse("mouseReleased", x, y + 19)
+        p.until(f"{TAKE}.strokes[0].strength?.length === 3")
+        self.assertAlmostEqual(p.value(f"{TAKE}.strokes[0].strength[1][1]"), 1 - 19 / (bottom - top - 12), delta=0.02)
+
     def test_a_range_is_dragged_played_looped_and_cleared(self):
         p, watcher = self.drawn()
         self.drag(p, 0.45, 0.2, RULER)
@@ -80,8 +123,11 @@ class Time(StudioTest):
         self.assertTrue(low <= p.value("tactor.state.at_s") <= low + total)
         p.click("#stop")
         # An end is pulled; two taps clear it.
-        self.drag(p, high, 0.8, RULER)
-        p.until("Math.abs(tactor.state.marks.range[1] - 0.8) < 0.02")
+        (x, y), (end, _) = self.at_time(p, high, RULER), self.at_time(p, 0.8, RULER)
+        p.mouse("mousePressed", x + 6, y)  # it keeps its distance from the pointer
+        p.move_to((x + 20, y), (end + 6, y))
+        p.mouse("mouseReleased", end + 6, y)
+        p.until("Math.abs(tactor.state.marks.range[1] - 0.8) < 0.01")
         self.assertAlmostEqual(p.value("tactor.state.marks.range[0]"), low, places=3)
         for _ in range(2):
             p.tap(*self.at_time(p, 0.6, RULER))

@@ -23,12 +23,12 @@ function start_wish(knot) {
   state.knot = knot;
   changed("knot");
 }
-// Takes the diamond at a place, if there is one.
+// Takes the diamond near a place, if there is one; returns how far it is from there.
 export function grasp_felt(mm) {
-  const near = nearest_knot(felt_points(), mm);
-  if (near.off * view.scale > GRASP_PX) return false;
+  const points = felt_points(), near = nearest_knot(points, mm), at = points[near.index];
+  if (near.off * view.scale > GRASP_PX) return null;
   start_wish(near.index);
-  return true;
+  return [at.x - mm[0], at.y - mm[1]];
 }
 // Lets the point of the wish be felt at a place.
 export function pull(at) {

@@ -15,7 +15,7 @@ const RESTING_MS = 100;    // a finger that rests says so, or its stroke would e
 const LEAST_MM = 1;        // a shorter touch is a tap
 const HOLD_MS = 500;
 const LEAST_STEP_MS = 2;   // between points that are sent
-const REACH_PX = 22;
+const REACH_PX = 22, LEAST_PX = 3; // of a point, and by which it is dragged
 const LINE_MM_S = 60;
 const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1; // of a point, by keys
 export const PAUSE_S = 0.1; // between strokes of a take that were drawn, or copied, one after the other
@@ -25,17 +25,18 @@ const field = by_id("field");
 const fingers = new Map();
 
 const to_pixel = e => { const r = field.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
-// A pen's pressure; mice and most fingers have none to tell.
-const strength = e => e.pointerType === "pen" && e.pressure > 0 ? Math.min(1, +e.pressure.toFixed(3)) : 1;
+// A pen's pressure, and where it is lifted the one before; mice and most fingers have none to tell.
+const strength = (e, before = 1) => e.pointerType !== "pen" ? 1 : e.pressure > 0 ? Math.min(1, +e.pressure.toFixed(3)) : before;
 const seconds = ms => +(ms / 1000).toFixed(4);
 
 function down(id, px, e) {
   if (!array || state.placing || fingers.has(id)) return;
   if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
+  if (e.pointerType === "pen") drop_palm();
   const mm = to_mm(...px);
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType, down_ms: e.timeStamp, mode: "tap",
     straight: state.tool === "line" || e.shiftKey, sent_ms: 0, number: null};
-  if (state.tool === "felt") { f.mode = "felt"; if (!grasp_felt(mm)) return; }
+  if (state.tool === "felt") { f.mode = "felt"; f.off = grasp_felt(mm); if (!f.off) return; }
   if (f.mode === "felt" || state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
   const tactor = tactor_at(mm);
   if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_tactor(tactor, px); } }, HOLD_MS);
@@ -58,9 +59,13 @@ function moved(id, px, e) {
     return;
   }
   f.at = mm;
-  f.strength = strength(e);
-  if (f.mode === "felt") return pull(mm);
-  if (f.mode === "knot") return move_knot(f.knot, mm, f.key);
+  f.strength = strength(e, f.strength);
+  if (f.off) {
+    if (!f.moved && Math.hypot(px[0] - f.px[0], px[1] - f.px[1]) < LEAST_PX) return;
+    f.moved = true;
+    const place = [mm[0] + f.off[0], mm[1] + f.off[1]];
+    return f.mode === "felt" ? pull(place) : move_knot(f.knot, place, f.key);
+  }
   if (f.mode === "tap" && Math.hypot(mm[0] - f.from[0], mm[1] - f.from[1]) > LEAST_MM && state.tool !== "points") begin(f);
   if (f.mode === "draw") record(f, mm, e.timeStamp);
 }
@@ -132,11 +137,22 @@ function up(id, cancelled = false) {
 function take_back(id) {
   const f = fingers.get(id), others = [...fingers.values()].some(o => o !== f && o.mode === "draw");
   if (f?.mode !== "draw" || !(others || f.kind === "touch" && state.drawing.kind === "pen")) return up(id, true);
-  fingers.delete(id);
+  drop(f);
+  if (!others) return finish();
+  changed("drawing");
+}
+function drop(f) {
+  fingers.delete(f.id);
   state.drawing.tracks = state.drawing.tracks.filter(k => k !== f.track);
   f.track.down = false;
   if (f.number !== null) tell("cancel", {stroke: f.number});
-  if (!others) return finish();
+}
+// A hand may lie on the array before its pen does: nothing of its touches stays.
+function drop_palm() {
+  for (const f of [...fingers.values()]) if (f.kind === "touch" && f.mode === "draw") drop(f); else if (f.kind === "touch") up(f.id, true);
+  if (!state.drawing || [...fingers.values()].some(f => f.mode === "draw")) return;
+  state.drawing = null;
+  document.body.classList.remove("touching");
   changed("drawing");
 }
 function tap(f) {
@@ -183,9 +199,9 @@ on_lost(() => fingers.forEach(f => { f.number = null; }));
 // Points.
 const edited_stroke = () => current_stroke() && editable(current_stroke());
 function grasp(f, mm) {
-  const near = nearest_knot(edited_stroke()?.knots ?? [], mm);
+  const knots = edited_stroke()?.knots ?? [], near = nearest_knot(knots, mm), k = knots[near.index];
   if (near.off * view.scale > REACH_PX) return false;
-  Object.assign(f, {mode: "knot", knot: near.index, key: `knot ${f.id} ${now_ms()}`});
+  Object.assign(f, {mode: "knot", knot: near.index, off: [k.x - mm[0], k.y - mm[1]], key: `knot ${f.id} ${now_ms()}`});
   state.knot = near.index;
   changed("knot");
   return true;

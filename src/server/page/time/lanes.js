@@ -124,7 +124,7 @@ export function draw_lanes() {
     l.moment.hidden = x < left(l) - 1 || x > l.width - right(l) + 20;
   }
   // The moment follows where it leaves what is shown.
-  if (state.playing && full.span && (state.at_s > full.from + full.span * 0.95
+  if (state.playing && full.span && !full.held_s && (state.at_s > full.from + full.span * 0.95
     || state.at_s < full.from)) { full.from = Math.max(0, state.at_s - full.span * 0.1); full.stale = true; }
 }
 // Goes one burst on or back.

@@ -43,7 +43,8 @@ function measure(l) {
 // Part of a take that is shown, or all of it.
 export const total = () => Math.max(state.plan?.total_s ?? 0, state.drawing ? 0 : take_s(current_take()));
 const whole = () => Math.max(total(), LEAST_S) * 1.02;
-export const shown = l => l.span ?? whole();
+// While a pointer is down (held_s) the axis stays as it is, whatever a drag makes longer or shorter.
+export const shown = l => l.span ?? l.held_s ?? whole();
 export const left = l => l.thin ? EDGE : LABEL;
 export const right = l => l.mini ? EDGE : RIGHT;
 export const to_x = (l, t) => left(l) + (t - l.from) / shown(l) * (l.width - left(l) - right(l));
@@ -100,9 +101,9 @@ export const clear_marks = () => set_marks({start_s: 0, range: null});
 export function set_range(a, b) { if (Math.abs(b - a) >= LEAST_S) set_marks({range: [a, b].sort((p, q) => p - q)}); }
 
 // Returns a moment, or what it is so near to that it snaps: the start, an end of a stroke but the one that is moved, a burst.
-export const snapped = (l, t, e, moved) => e.altKey || !state.snap ? t : [marks().start_s,
+export const snapped = (l, t, e, moved, to_bursts = true) => e.altKey || !state.snap ? t : [marks().start_s,
   ...current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [],
-  ...moved >= 0 ? [] : state.plan?.onsets ?? []].find(v => Math.abs(to_x(l, v) - to_x(l, t)) <= SNAP_PX) ?? t;
+  ...to_bursts && state.plan?.onsets || []].find(v => Math.abs(to_x(l, v) - to_x(l, t)) <= SNAP_PX) ?? t;
 
 export function draw_time_marks(p, l) {
   const {start_s, range} = marks(), bottom = l.height - 8, x = to_x(l, start_s);

@@ -21,23 +21,24 @@ function lane_down(l, e) {
   const r = l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, take = current_take();
   l.canvas.setPointerCapture(e.pointerId);
   touching.set(e.pointerId, x);
+  l.held_s = shown(l);
   if (touching.size === 2 && !l.mini) { held = {l, kind: "zoom"}; return; }
-  held = {l, kind: "look", key: now_ms(), x};
+  held = {l, kind: "look", key: now_ms(), x, y, off_s: 0};
   if (most_scroll(l) && y > l.top && y < l.bottom && (x < left(l) || x > l.width - 24))
-    return void Object.assign(held, {kind: "scroll", y, from: l.scroll, by: x < left(l) ? -1 : most_scroll(l) / (l.bottom - l.top) + 1});
+    return void Object.assign(held, {kind: "scroll", from: l.scroll, by: x < left(l) ? -1 : most_scroll(l) / (l.bottom - l.top) + 1});
   if (!l.mini && take) {
     if (y < l.ruler - 2) return void Object.assign(held, hold_ruler(l, x, e));
     const handle = handles(l).find(h => Math.hypot(h.x - x, h.y - y) < REACH);
-    if (handle) return void Object.assign(held, handle);
+    if (handle) return void Object.assign(held, handle, {x, y, rise: (y - handle.y) / (l.curves - 20)});
     if (y >= l.ruler - 2 && y <= l.ruler + CLIP) {
       if (x > to_x(l, total()) + 4) { held = null; return toggle_append(); }
       const under = [...take.strokes.keys()].filter(i => { const [a, b] = clip_box(l, take.strokes[i]); return x >= a - 6 && x <= b + 6; });
       if (under.length) {
         const again = under.includes(state.stroke), index = again ? state.stroke : under[0], stroke = take.strokes[index];
         choose_clip(index);
-        const [a, b] = clip_box(l, stroke), ends = b - a > 30;
-        return void Object.assign(held, {kind: ends && x < a + 10 ? "trim-start" : ends && x > b - 10 ? "trim-end" : "move",
-          stroke, index, take, alt: e.altKey, t: to_time(l, x), next: again ? under[(under.indexOf(index) + 1) % under.length] : index});
+        const [a, b] = clip_box(l, stroke), ends = b - a > 30, kind = ends && x < a + 10 ? "trim-start" : ends && x > b - 10 ? "trim-end" : "move";
+        return void Object.assign(held, {kind, off_s: (kind === "trim-end" ? end_s(stroke) : stroke.start_s) - to_time(l, x),
+          stroke, index, take, alt: e.altKey, next: again ? under[(under.indexOf(index) + 1) % under.length] : index});
       }
     }
   }
@@ -47,7 +48,8 @@ function lane_down(l, e) {
 function hold_ruler(l, x, e) {
   const is_near = (t, px) => Math.abs(to_x(l, t) - x) < px, {range} = marks();
   const end = range?.findIndex(t => is_near(t, e.pointerType === "touch" ? 22 : 8)) ?? -1;
-  return {ruler: true, ...!(end < 0 && is_near(state.at_s, 8)) && {kind: "range", fixed: range?.[1 - end] ?? snapped(l, to_time(l, x), e)}};
+  return {ruler: true, ...!(end < 0 && is_near(state.at_s, 8)) && {kind: "range", fixed: range?.[1 - end] ?? snapped(l, to_time(l, x), e),
+    off_s: end < 0 ? 0 : range[end] - to_time(l, x)}};
 }
 function tap_ruler(t, now = now_ms()) {
   if (now - tapped_ms < DOUBLE_MS) return clear_marks();
@@ -65,20 +67,21 @@ function pull_end({take, stroke, index, key}, px, t) {
 function lane_moved(e) {
   if (!held) return;
   const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x), s = held.stroke;
-  const high = (held.l.height - 8 - y) / (held.l.curves - 20), limited = (v, a, b) => Math.min(b, Math.max(a, v));
+  const high = (held.l.height - 8 - y) / (held.l.curves - 20) + held.rise, limited = (v, a, b) => Math.min(b, Math.max(a, v));
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
   if (held.kind === "scroll") return scroll_to(held.l, held.from + (y - held.y) * held.by);
+  // What is only chosen does not move; what is dragged keeps its distance from the pointer.
+  if (Math.abs(held.rise === undefined ? x - held.x : y - held.y) < 3 && !held.moved) return;
+  const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t + held.off_s, e, held.index, held.kind !== "move");
+  held.moved = true;
   if (held.kind === "strength") return set_strength(held.index, limited(high, 0, 1), held.key);
   if (held.kind === "speed") return set_speed(held.index, limited(+(high * held.most / held.mean).toFixed(2), 0.1, 5), held.key);
-  if (Math.abs(x - held.x) < 3 && !held.moved) return;
-  const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t, e);
-  held.moved = true;
   if (held.kind === "look") return scrub_to(near, held.key);
   if (held.kind === "range") return set_range(held.fixed, limited(near, 0, total()));
   if (held.kind === "trim-end") return pull_end(held, x - held.x, near);
   if (copies) held.index = copy_clip(s.start_s, held.key);
   put_stroke(held.kind === "trim-start" ? () => trimmed(s, limited(near - s.start_s, 0, duration_s(s) - LEAST_S), duration_s(s))
-    : k => starting_at(k, snapped(held.l, s.start_s + t - held.t, e, held.index)), held.key, held.index);
+    : k => starting_at(k, near), held.key, held.index);
 }
 // Keeps the moments under two fingers where the fingers are.
 function zoom_lanes(l, id, x) {
@@ -96,7 +99,7 @@ function lane_up(e) {
   if (held?.ruler && !held.moved) tap_ruler(snapped(held.l, to_time(held.l, held.x), e));
   else if (held) { end_edit(); changed("take"); }
   end_scrub();
-  held = null;
+  full.held_s = mini.held_s = held = null;
 }
 
 // The moment that is dragged is felt: the burst under it, by a live stroke.
