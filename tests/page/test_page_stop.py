@@ -94,6 +94,19 @@ class Stop(StudioTest):
         self.toast(p, "Stopped, everybody's strokes")
         p.until("document.querySelector('#banner').hidden && !document.querySelector('#stop').dataset.state")
 
+    def test_a_stop_that_is_not_sent_says_so_and_is_sent_once_it_can_be(self):
+        s = self.serve()
+        p, _ = self.ready(s)
+        s.kill()
+        self.says(p, "No connection")
+        p.click("#stop")
+        self.banner(p, "Stop is not sent: there is no connection to tactor. Switch the amplifier off.")
+        p.until("document.querySelector('#stop').textContent.startsWith('Stop againnot sent, ')")
+        self.watch_sent(p)
+        self.restart(s)
+        p.until(STOPS + " > 0")
+        p.until("!tactor.state.stopping && document.querySelector('#banner').hidden")
+
 
 class Play(StudioTest):
     def play(self, p, watcher):

@@ -13,7 +13,7 @@ import {felt_points} from "./drawing/felt.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
-import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
+import {play, stop, tick, silence_speaker, unanswered_s, stop_words} from "./service/player.js";
 import {change_point, remove_point, finish_early} from "./drawing/pointer.js";
 import "./takes/takes_panel.js";
 import {open_tour} from "./takes/gallery.js";
@@ -109,7 +109,7 @@ function show_stop() {
   const late_s = unanswered_s(), done = !state.stopping && state.stopped && now_ms() - state.stopped.at < DONE_MS;
   by_id("stop").dataset.state = late_s ? "late" : done ? "done" : "";
   const label = late_s ? "Stop again" : done ? "Stopped" : "Stop", span = by_id("stop").querySelector("span");
-  if (span.textContent !== label) span.replaceChildren(label, ...late_s ? [make("small", {}, `no answer, ${late_s.toFixed(1)} s`)] : []);
+  if (span.textContent !== label) span.replaceChildren(label, ...late_s ? [make("small", {}, `${stop_words()[0]}, ${late_s.toFixed(1)} s`)] : []);
   if (done) setTimeout(() => changed("link"), DONE_MS);
 }
 function take_facts(take) {

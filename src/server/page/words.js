@@ -19,7 +19,7 @@ export const OPTION_NAMES = {
   overlap: "Where bursts overlap", soa: "Interval, onset to onset (SOA)", burst: "Burst", slope: "Slope of the law",
   intercept: "Intercept of the law", timing: "Interval", min_duration: "Shortest burst", carrier: "Carrier", am: "Amplitude modulation",
   noise_seed: "Seed of the noise", ramp: "Ramp", envelope: "Envelope", attack: "Attack", release: "Release", sl: "Level above the threshold",
-  intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength",
+  intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength", level_dbfs: "Level", phase: "One carrier through the stroke",
 };
 // An error as a part of the pitch.
 export const place_word = part => part < 0.06 ? "close to the path" : part < 0.15 ? "near the path" : "far from the path";
@@ -34,3 +34,20 @@ export const number_text = (v, digits = 1) => v.toFixed(digits).replace("-", "�
 export const plain_name = id => (id.charAt(0).toUpperCase() + id.slice(1)).replace(/[-_]/g, " ");
 export const array_name = a => ({"palm-3x3": "Palm, 3 × 3", "palm-2x4": "Palm, 2 × 4"})[a?.name]
   ?? (a?.name ? plain_name(a.name) : "Array");
+
+const SHORT_HINT = 80; // characters; in a file there is room for no longer one
+// Parameters that are what is drawn, or a limit whose text says all.
+const OF_PROTOCOL = /^(toml|text|base64|points|params|stream|bursts|max_\w+|export|import)?$/;
+const option_name = name => OPTION_NAMES[name] ?? plain_name(name);
+// Returns a fault, of the service or of this page, in words for people: without the terms of the protocol, and without a full stop.
+export function fault_text({message, data}) {
+  const {what = "", why, hint, line} = data ?? {}, plain = text => text.replace(/\boptions\.(\w+)/g, (_, name) => `“${option_name(name)}”`);
+  if (!why) return message;
+  if (/no line of the grid/.test(why)) return "the Tactile Brush begins and ends on lines of the grid, and this stroke does not";
+  const about = line ? `line ${line}` : OF_PROTOCOL.test(what) ? "" : option_name(what.replace(/^options\./, ""));
+  return `${about && `${about}: `}${plain(why)}${hint && !(line && hint.length > SHORT_HINT) ? ` (${plain(hint)})` : ""}`;
+}
+export function fault_sentence(e) {
+  const text = fault_text(e);
+  return `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+}

@@ -10,6 +10,7 @@ import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_kno
 import {grasp_felt, pull, step_felt} from "./felt.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
 import {show_tactor} from "../service/device.js";
+import {fault_sentence} from "../words.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
 const LEAST_MM = 1;        // a shorter touch is a tap
@@ -108,7 +109,7 @@ export function begin_live(f) {
     f.number = r.stroke;
     send(f, now_ms(), true);
     if (!f.track.down) tell("end", {stroke: f.number});
-  }, e => { if (!f.refused) say(e.message); f.refused = true; });
+  }, e => { if (!f.refused) say(fault_sentence(e)); f.refused = true; });
 }
 export function send(f, at_ms, always = false) {
   if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;

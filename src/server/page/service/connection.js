@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The WebSocket to the service: calls, answers and notifications.
 import {state, changed, now_ms} from "../state.js";
+import {fault_sentence} from "../words.js";
 
 export const SLOW_MS = 300; // without an answer
 const POLL_MS = 500;
@@ -24,16 +25,16 @@ export const from_server_ms = s => (s - offset_s) * 1000;
 
 class Fault extends Error {
   constructor(e) {
-    const d = e.data ?? {};
-    super([d.what, d.why ?? e.message].filter(Boolean).join(": ") + (d.hint ? ` (${d.hint})` : ""));
-    this.code = e.code;
-    this.data = d;
+    super(e.message);
+    this.code = e.code; // 0: there is no connection
+    this.sent = e.sent ?? true;
+    this.data = e.data ?? {};
   }
 }
 
 export function call(method, params = {}) {
   return new Promise((done, failed) => {
-    if (socket?.readyState !== WebSocket.OPEN) return failed(new Fault({code: 0, message: "there is no connection to tactor"}));
+    if (socket?.readyState !== WebSocket.OPEN) return failed(new Fault({code: 0, sent: false, message: "there is no connection to tactor"}));
     const id = ++last;
     calls.set(id, {done, failed, at: now_ms(), method});
     socket.send(JSON.stringify({jsonrpc: "2.0", id, method, params}));
@@ -97,7 +98,7 @@ async function hello() {
       state.link = "token";
       changed("link");
     } else if (e.code !== 0) {
-      state.fault = e.message;
+      state.fault = fault_sentence(e);
       socket?.close();
     }
   }

@@ -4,8 +4,8 @@ import {state, on_change, changed, ceiling_dbfs, is_simulated, plays_to_nobody, 
 import {by_id, make, on_click, listen, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
-import {test_tactor, unanswered_s} from "./player.js";
-import {array_name, number_text} from "../words.js";
+import {test_tactor, unanswered_s, stop_words} from "./player.js";
+import {array_name, number_text, fault_sentence} from "../words.js";
 
 const STOPPED_MS = 6000;
 
@@ -33,7 +33,7 @@ const who = client => { const w = state.status?.who?.find(x => x.client === clie
 // Returns what the banner says: [text, tone, details], or null.
 function warn() {
   const s = state.stream;
-  if (unanswered_s()) return ["Stop is sent, but tactor does not answer. Switch the amplifier off.", "bad", ""];
+  if (unanswered_s()) return [`Stop is ${stop_words()[1]}. Switch the amplifier off.`, "bad", ""];
   if (state.link === "token") return [state.asks_token, "warn",
     "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
   if (state.link === "lost") return ["No connection to tactor. It is tried again; nothing is lost.", "bad", state.lost_reason
@@ -120,7 +120,7 @@ listen("p-others", "beforetoggle", () => {
 listen("own-name", "submit", e => e.preventDefault());
 listen("own-name-text", "change", () => {
   remember("name", by_id("own-name-text").value.trim());
-  rename_client(own_name()).catch(e => say(e.message));
+  rename_client(own_name()).catch(e => say(fault_sentence(e)));
 });
 by_id("own-name-text").value = remembered("name") ?? "";
 export const own_name = () => remembered("name") || (matchMedia("(pointer: coarse)").matches ? "A phone" : "A browser");

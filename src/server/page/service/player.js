@@ -5,6 +5,7 @@ import {call, tell, is_connected, server_now_s, from_server_ms, on_notification,
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
 import {start_loudspeaker} from "./loudspeaker.js";
+import {fault_text, fault_sentence} from "../words.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // before the end, when the next round of a loop is asked for
@@ -95,7 +96,7 @@ async function ask_to_play() {
     if (state.playing !== own) return;
     state.playing = null;
     if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
-    else if (e.code !== 0) { state.fault = e.message; changed("link"); }
+    else if (e.code !== 0) { state.fault = fault_sentence(e); changed("link"); }
   }
   changed("playing");
 }
@@ -214,12 +215,15 @@ on_notification("touches", t => {
 // Sends a stop before all else: nothing in this page may hold it up. Sends it again until the service answers.
 export function stop() {
   const sent = call("stop"), own = state.stopping ??= {since_ms: now_ms()};
-  own.sent_ms = now_ms();
+  Object.assign(own, {sent_ms: now_ms(), fault: null});
   sent.then(() => {
     if (state.stopping !== own) return;
     state.stopping = null;
     changed("link");
-  }, () => { if (!is_connected()) say("No connection: use the amplifier's switch"); });
+  }, e => {
+    own.fault = e;
+    if (!is_connected()) say("No connection: use the amplifier's switch");
+  });
   end_playing();
   lift_fingers?.();
   return sent;
@@ -228,6 +232,12 @@ const is_unanswered = s => now_ms() - s.since_ms > SLOW_MS;
 // Returns for how long a stop has not been answered, s; 0 where there is none, or it is young.
 export const unanswered_s = () => state.stopping && is_unanswered(state.stopping)
   ? (now_ms() - state.stopping.since_ms) / 1000 : 0;
+// Returns what became of that stop, for the button and for the banner.
+export function stop_words() {
+  const e = state.stopping.fault;
+  return !e ? ["no answer", "sent, but tactor does not answer"] : e.code ? ["refused", `refused: ${fault_text(e)}`]
+    : e.sent ? ["no answer", "sent, but the connection is gone"] : ["not sent", "not sent: there is no connection to tactor"];
+}
 setInterval(() => {
   if (!unanswered_s()) return;
   if (is_connected() && now_ms() - state.stopping.sent_ms > STOP_AGAIN_MS) stop();
@@ -244,7 +254,7 @@ export function test_tactor(i) {
     .then(r => {
       if (state.compare) tell("level", {db: state.level_db, stroke: r.stroke});
       say(`Tactor ${i}, ${TEST_S} s`);
-    }, e => say(e.message));
+    }, e => say(fault_sentence(e)));
 }
 
 // Without a card a tactor that is tried is a sound.

@@ -6,7 +6,7 @@ import {icon} from "../look.js";
 import {set_option, edit_take, fit_take, algorithm} from "../takes/takes.js";
 import {excess_db, weaken_take} from "../service/planner.js";
 import {spark} from "./diagrams.js";
-import {place_word, even_word, number_text, plain_name} from "../words.js";
+import {place_word, even_word, number_text, fault_sentence} from "../words.js";
 import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
 import {felt_speeds} from "../time/curves.js";
@@ -19,7 +19,7 @@ function show_predicted() {
   by_id("pill").hidden = !is_known;
   set_text("pill-text", is_known ? `${number_text(mm)} mm off` : "");
   by_id("predicted").replaceChildren(...!is_known
-    ? [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")]
+    ? [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : state.link === "lost" && current_take() ? "No connection: there is no plan." : "Draw, and the prediction shows here.")]
     : [tile(number_text(mm), "mm off", [place_word(mm / array.pitch), ", RMS"], spark(errors_over_time())),
       typeof cv !== "number" ? tile("–", "", ["speed is not predicted"], spark([]))
         : tile(`${Math.round(100 / (1 + cv))}`, "% even", [even_word(cv), `, CV ${cv.toFixed(2)}`], spark(felt_speed(), mean_speed()))]);
@@ -41,7 +41,7 @@ const mean_speed = () => { const s = current_stroke(); return s ? length_mm(s.ti
 // Warnings in plain words, with what mends them.
 function show_warnings() {
   const found = [], take = current_take();
-  if (state.plan_fault) found.push({text: plain_fault(state.plan_fault), buttons: mending(state.plan_fault)});
+  if (state.plan_fault) found.push({text: fault_sentence(state.plan_fault), buttons: mending(state.plan_fault)});
   state.outside = [];
   if (array && take && !state.drawing) take.strokes.forEach(s => {
     const worst = s.timed.reduce((w, q) => { const off = outside_mm(array.edge, [q[1], q[2]]);
@@ -56,7 +56,7 @@ function show_warnings() {
   if (weaker_db > 0 && take) found.push({text: `Its strokes meet on a tactor, so all of it is played ${number_text(weaker_db)} dB weaker.`,
     short: `${number_text(weaker_db)} dB weaker`, buttons: []});
   if (over_db && take) found.push({text: `It is ${number_text(over_db)} dB stronger than may be played.`,
-    short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(current_take()).catch(e => say(e.message))]]});
+    short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(current_take()).catch(e => say(fault_sentence(e)))]]});
   for (const w of new Set(state.plan?.warnings)) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings"), more = found.length - 1;
   box.toggleAttribute("data-all", false);
@@ -75,14 +75,6 @@ function outside_text() {
   const who = n === 1 ? `“${state.outside[0].name}” is` : `${n} strokes are`;
   return {text: `${who} up to ${mm} mm outside the array. There ${n === 1 ? "it is" : "they are"} felt at the edge.`,
     short: `${who} ${mm} mm outside`};
-}
-// Says a refusal for people: what is too much, and not in the terms of files.
-function plain_fault(f) {
-  const {what = "", why, hint} = f.data ?? {};
-  if (!why) return f.message;
-  if (/no line of the grid/.test(why)) return "The Tactile Brush begins and ends on lines of the grid, and this stroke does not.";
-  const about = what === "toml" ? "" : `${plain_name(what.replace(/^options\./, ""))}: `;
-  return `${about}${why}${hint ? ` (${hint})` : ""}.`;
 }
 const to_continuous = ["Use Continuous", () => set_option("algorithm", "continuous")];
 function mending(f) {

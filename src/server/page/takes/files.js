@@ -7,8 +7,8 @@ import {add_take, make_request} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
 import {is_own_host} from "./address.js";
 
+import {fault_text, fault_sentence} from "../words.js";
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
-const SHORT_HINT = 80;        // characters
 const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv", "Timed points",
   "a table: time, place, intensity"], ["svg", "Figure, SVG", "for a paper, to be edited"],
   ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
@@ -53,12 +53,6 @@ async function what_to_import(file) {
   if (file.size > MOST_BYTES) throw new Error(`it is larger than ${MOST_BYTES >> 10} KiB`);
   return {name: file.name, text};
 }
-// Says why in one sentence, with the line and a short hint.
-function fault_text({message, data}) {
-  if (!data?.why) return message;
-  const why = `${data.line ? `line ${data.line}: ` : ""}${data.why}`;
-  return data.hint?.length < SHORT_HINT ? `${why} (${data.hint})` : why;
-}
 on_click("open", () => by_id("file").click());
 listen("file", "change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
 let over = 0;
@@ -99,7 +93,7 @@ async function save_as(kind) {
     else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`, "text/csv", stroke_csv(take.strokes[0]));
     else throw new Error("without a connection only a stroke, as TOML or CSV, can be saved");
     say(`Saved “${take.name}” as ${file_name(take)}.${kind}`);
-  } catch (e) { say(e.message); }
+  } catch (e) { say(fault_sentence(e)); }
 }
 // A browser may ask first whether the page may give several files.
 on_click("save-all", () => {
@@ -122,7 +116,7 @@ listen("p-save", "beforetoggle", async e => {
   try {
     const {command} = await call("export", {...make_request(take), as: "toml", name: file_name(take)});
     show(command, command.replace(/^(tactor) render (.*) -o .*/, "$1 play $2"));
-  } catch (x) { show(x.message); }
+  } catch (x) { show(fault_sentence(x)); }
 });
 async function copy(id) {
   try { await navigator.clipboard.writeText(by_id(id).textContent); say("Copied"); } catch {
