@@ -146,7 +146,7 @@ class Takes(TakesTest):
         self.draw(p, *[[4 + x, 20 + 4 * math.sin(x / 3)] for x in range(33)])
         self.planned(p)
         now = f"JSON.stringify({TAKE})"
-        # What is felt cannot be put everywhere; the pointer is 2.4 mm off.
+        # A diamond cannot be put everywhere; the pointer is 2.4 mm off.
         for tool, points, near_mm in (("points", f"{TAKE}.strokes[0].knots", 0.2), ("felt", "tactor.felt_points()", 1.2)):
             with self.subTest(tool=tool):
                 p.click(f"[data-tool={tool}]")

@@ -107,6 +107,7 @@ export function begin_live(f) {
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
   call("begin", {options}).then(r => {
     f.number = r.stroke;
+    if (f.dropped) return tell("cancel", {stroke: f.number});
     send(f, now_ms(), true);
     if (!f.track.down) tell("end", {stroke: f.number});
   }, e => { if (!f.refused) say(fault_sentence(e)); f.refused = true; });
@@ -146,6 +147,7 @@ function drop(f) {
   fingers.delete(f.id);
   state.drawing.tracks = state.drawing.tracks.filter(k => k !== f.track);
   f.track.down = false;
+  f.dropped = true;
   if (f.number !== null) tell("cancel", {stroke: f.number});
 }
 // A hand may lie on the array before its pen does: nothing of its touches stays.
