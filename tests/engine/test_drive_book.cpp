@@ -100,7 +100,7 @@ std::uint64_t count_cuts(const std::string& device, double seconds, player_optio
     o.limits.window_s = 3600.0;
     stream_setup s{.name = device, .device = device, .channels = 9, .rate = rate};
     player p(std::make_unique<deaf_sink>(s), palm(), o);
-    p.wait(p.submit(tone(seconds)));
+    CHECK(p.wait(p.submit(tone(seconds))));
     p.stop();
     return p.stats().drives_cut;
 }

@@ -155,20 +155,21 @@ class Takes(TakesTest):
                 # The point of the middle that is farthest from all others.
                 places = [(q["x"], q["y"]) for q in p.value(points)]
                 i = max((i for i, q in enumerate(places) if 10 < q[0] < 30), key=lambda i: min(math.dist(places[i], q) for q in places if q is not places[i]))
-                before, at = p.value(now), places[i]
+                before, at, knot = p.value(now), places[i], p.value(f"{points}[{i}].knot ?? {i}")
+                place = f"({points}.find(q => q.knot === {knot}) ?? {points}[{i}])"
                 x, y = self.at(p, at)[0]
                 x, y = x + 12, y - 12  # within reach
                 p.mouse("mousePressed", x, y)
                 p.move_to((x + 1, y + 1))
                 p.mouse("mouseReleased", x + 1, y + 1)
-                p.until(f"tactor.state.knot === {i}")
+                p.until(f"tactor.state.knot === {knot}")
                 self.assertEqual(p.value(now), before)
                 # Dragged, it keeps its distance from the pointer.
                 p.mouse("mousePressed", x, y)
                 p.move_to((x, y - 4), (x, y - 8))
                 p.mouse("mouseReleased", x, y - 8)
                 wanted = p.value(f"{at[1]} - 8 / tactor.view.scale")
-                p.until(f"Math.hypot({points}[{i}].x - {at[0]}, {points}[{i}].y - {wanted}) < {near_mm}")
+                p.until(f"Math.hypot({place}.x - {at[0]}, {place}.y - {wanted}) < {near_mm}")
 
     def test_of_a_palm_that_lay_there_before_the_pen_nothing_stays(self):
         p, watcher = self.ready(self.serve(), fingers=True)

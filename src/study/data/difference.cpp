@@ -37,7 +37,7 @@ std::vector<std::string> list_names(const std::vector<T>& all)
 }
 
 // Keeps the first difference that it finds.
-class comparison {
+class difference_search {
 public:
     template <class T>
     void key(const std::string& of, std::string_view name, const T& before, const T& now)
@@ -102,7 +102,7 @@ private:
 
 std::string find_difference(const experiment_outline& before, const experiment_outline& now)
 {
-    comparison c;
+    difference_search c;
     c.key("", "name", before.name, now.name);
     c.key("", "sessions", before.sessions, now.sessions);
     c.runs("", before.runs, now.runs);
