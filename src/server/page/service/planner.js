@@ -102,4 +102,10 @@ export function predicted_key(take, name, v) {
   return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}${state.compare?.on ? JSON.stringify(state.compare.other) : ""}`;
 }
 
-on_change(() => { ++round; plan_soon(); }, "take", "drawing", "ink", "level", "link", "observer");
+// Without a connection there is no plan, and that of another take, or of this one before a change, is not shown for it.
+function forget_other_plan() {
+  if (is_connected() || !state.plan && !state.plan_fault || !state.drawing && state.plan_of === current_take()) return;
+  Object.assign(state, {plan: null, plan_fault: null, plan_of: null});
+  changed("plan");
+}
+on_change(() => { ++round; forget_other_plan(); plan_soon(); }, "take", "drawing", "ink", "level", "link", "observer");
