@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "core/bounds.hpp"
+#include "core/kind_names.hpp"
 #include "core/start_times.hpp"
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
@@ -75,10 +76,26 @@ bool is_plan(std::string_view bytes, const std::string& name)
     return extension == ".json" || (!is_stroke && files::holds_plans(bytes));
 }
 
+// Returns the method of a plan. A burst that is not shorter than its SOA is that of the timing law.
+stroke_choices read_method(const plan& p)
+{
+    stroke_choices said{.algorithm = detail::find_kind<algorithm_kind>(p.algorithm),
+                        .phantom = detail::find_kind<phantom_kind>(p.phantom)};
+    if (said.algorithm != algorithm_kind::park2016 || !p.soa_s || p.bursts.empty())
+        return said;
+    said.soa_s = p.soa_s;
+    if (const double burst_s = p.bursts.front().duration_s; burst_s < *p.soa_s)
+        said.burst_s = burst_s;
+    return said;
+}
+
 std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string& name)
 {
     files::plan_file f = files::read_plans(bytes, name, files::recordings_kind::refuse);
     for (std::size_t i = 0; i < f.made.strokes.size(); ++i) {
+        const double level_db = f.made.strokes[i].choices.level_db;
+        f.made.strokes[i].choices = read_method(f.made.plans[i].plan);
+        f.made.strokes[i].choices.level_db = level_db;
         f.made.strokes[i].start_s = f.made.plans[i].start_s;
         f.made.strokes[i].anchor = f.made.plans[i].anchor;
     }
@@ -140,6 +157,40 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
     }
 }
 
+// Returns the keys of a stroke file that say how the stroke is made, without those of its path and start.
+net::reply_json keys_json(const stroke& k)
+{
+    net::reply_json keys = net::reply_json::object();
+    const auto put = [&keys](const char* key, const auto& said) {
+        if (said)
+            keys[key] = *said;
+    };
+    const auto put_kind = [&keys](const char* key, const auto& said) {
+        if (said)
+            keys[key] = to_string(*said);
+    };
+    put_kind("algorithm", k.choices.algorithm);
+    put_kind("phantom", k.choices.phantom);
+    put_kind("faces", k.choices.faces);
+    put("soa_s", k.choices.soa_s);
+    put("burst_s", k.choices.burst_s);
+    if (k.choices.level_db != 0.0)
+        keys["level_db"] = k.choices.level_db;
+    put("carrier_hz", k.sound.carrier_profile.empty() ? k.sound.carrier_hz : std::nullopt);
+    for (const carrier_part& p : k.sound.carrier_profile)
+        keys["carrier_profile"].push_back({p.part, p.hz});
+    if (k.sound.wave) {
+        keys["waveform"] = waveform_text(*k.sound.wave);
+        if (k.sound.wave->kind == waveform_kind::noise)
+            keys["noise_seed"] = k.sound.wave->seed;
+    }
+    if (k.sound.am) {
+        keys["am_hz"] = k.sound.am->hz;
+        keys["am_depth"] = k.sound.am->depth;
+    }
+    return keys;
+}
+
 std::string result_text(read_file f)
 {
     const std::vector<double> starts = path_starts_s(f.strokes);
@@ -147,7 +198,10 @@ std::string result_text(read_file f)
     net::reply_json warnings = net::reply_json::array();
     for (std::size_t i = 0; i < f.strokes.size(); ++i) {
         const stroke& k = f.strokes[i];
-        strokes.push_back({{"name", k.name}, {"start_s", starts[i]}, {"duration_s", k.motion.duration_s()}});
+        strokes.push_back({{"name", k.name},
+                           {"start_s", starts[i]},
+                           {"duration_s", k.motion.duration_s()},
+                           {"keys", keys_json(k)}});
         for (const std::string& w : k.warnings)
             warnings.push_back(net::cut_echo(w));
     }

@@ -47,8 +47,8 @@ class Import(ServeTest):
         c = self.serve().client()
         r = c.ok("import", name="a.toml", text=SEVERAL)
         self.assertEqual(r["toml"], SEVERAL)
-        self.assertEqual(r["strokes"], [{"name": "there", "start_s": 0, "duration_s": 0.5},
-                                        {"name": "back", "start_s": 0.75, "duration_s": 1}])
+        self.assertEqual(r["strokes"], [{"name": "there", "start_s": 0, "duration_s": 0.5, "keys": {}},
+                                        {"name": "back", "start_s": 0.75, "duration_s": 1, "keys": {}}])
         self.assertEqual(r["points"], [[[0, 0, 0, 1], [0.5, 40, 0, 1]], [[0, 40, 0, 1], [0.25, 20, 20, 0.5], [1, 0, 40, 1]]])
         r = c.ok("import", name="a.csv", text=CSV)
         self.assertEqual(r["points"], [[[0, 0, 0, 1], [0.5, 20, 20, 0.5], [1, 40, 40, 1]]])
@@ -59,6 +59,25 @@ class Import(ServeTest):
         self.assertEqual(r["toml"], group)
         r = c.ok("import", text=group, fit=True)
         self.assertEqual([s["start_s"] for s in c.ok("import", text=r["toml"])["strokes"]], [0, 0.75, 2.75, 3.5])
+
+    def test_a_client_learns_the_method_sound_and_level_of_each_stroke(self):
+        c = self.serve().client()
+        said = [{"algorithm": "continuous", "phantom": "log", "level_db": -3, "waveform": "noise:100-400", "noise_seed": 9, "am_hz": 30, "am_depth": 0.5},
+                {"faces": "nearest", "soa_s": 0.06, "burst_s": 0.05, "carrier_hz": 200, "waveform": "square"},
+                {"carrier_profile": [[0, 100], [1, 300]]}]
+        text = "".join("[[stroke]]\npath = 'M 0 0 L 40 0'\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in keys.items()) for keys in said)
+        r = c.ok("import", name="a.toml", text=text)
+        self.assertEqual([s["keys"] for s in r["strokes"]], said)
+        for options, keys in (({"algorithm": "continuous", "phantom": "log"}, {}), ({"soa": 0.06, "burst": 0.03, "carrier": 200}, {"soa_s": 0.06, "burst_s": 0.03}),
+                              ({"soa": 0.07}, {"soa_s": 0.07})):
+            plan = base64.b64decode(c.ok("export", path="M 0 0 L 40 0", options=options, **{"as": "json"})["base64"]).decode()
+            [found] = c.ok("import", name="plan.json", text=plan)["strokes"]
+            usual = {"algorithm": "park2016", "phantom": "inverse-distance", "carrier_hz": 250, "waveform": "sine"}
+            wanted = usual | {"algorithm": options.get("algorithm", "park2016"), "phantom": options.get("phantom", "inverse-distance"),
+                              "carrier_hz": options.get("carrier", 250)} | keys
+            self.assertEqual({k: v for k, v in found["keys"].items() if k not in ("am_hz", "am_depth")}, wanted)
+        again = c.ok("import", text=c.ok("import", text=text, fit=True)["toml"])
+        self.assertEqual([s["keys"] for s in again["strokes"]], said)
 
     def test_a_curve_has_points_that_are_close_enough_and_fits_the_array(self):
         c = self.serve().client()

@@ -2,6 +2,7 @@
 """The studio's files in a real Chromium: from a drawing to the file that the tool renders, and files that are opened.
 Usage: test_page_files.py TOOL SOURCE_ROOT"""
 import base64
+import json
 import shlex
 import sys
 
@@ -137,6 +138,133 @@ class FromDrawingToFile(StudioTest):
         self.says(p, "No connection")
         self.ok("plan", self.write("offline.toml", self.saved(p, "toml").read_bytes()), "--array", "palm-3x3")
         self.ok("plan", self.write("offline.csv", self.saved(p, "csv").read_bytes()), "--array", "palm-3x3")
+
+    def test_without_a_connection_no_other_plan_is_shown_or_heard(self):
+        s = self.serve()
+        p, _ = self.ready(s)
+        for row in (10, 30):
+            self.draw(p, *self.way([5, row], [35, row]))
+            self.planned(p)
+        p.value("""globalThis.heard = 0; for (const kind of [OscillatorNode, AudioBufferSourceNode]) { const was = kind.prototype.start;
+            kind.prototype.start = function (...a) { ++heard; return was.apply(this, a); }; }""")
+        s.kill()
+        self.says(p, "No connection")
+        self.assertTrue(p.value("tactor.state.plan"))  # it is of this take
+        p.value("document.querySelectorAll('#takes .take')[1].click()")
+        p.until("!tactor.state.plan && document.querySelector('#predicted').textContent === 'No connection: there is no plan.'")
+        p.click("#speaker")
+        p.click("#play")
+        self.toast(p, "shown, not felt")
+        p.until("tactor.state.at_s > 0 && !tactor.state.playing")
+        self.assertEqual(p.value("heard"), 0)
+        # A change, and a drawing, have no plan either.
+        p.value("document.querySelectorAll('#takes .take')[0].click()")
+        self.restart(s)
+        self.await_service(p)
+        self.planned(p)
+
+
+# Every option that the page can set, in takes that can be planned; the last needs thresholds, and is only kept as text.
+SETTINGS = (
+    {"algorithm": "continuous", "phantom": "barycentric", "waveform": "noise:100-400", "noise_seed": 7, "am": "30:0.5", "outside": "error"},
+    {"algorithm": "park2016", "faces": "nearest", "soa": 0.06, "burst": 0.03, "carrier": 200, "phase": "burst", "attack": 0.004, "release": 0.006, "envelope": "linear"},
+    {"waveform": "square", "am": "30", "slope": 0.4, "intercept": 0.03, "timing": "fit", "min_duration": 0.01, "ramp": 0.003},
+    {"algorithm": "tactile-brush", "snap": True, "drop_points": True, "overlap": "max", "intensity_scale": "stevens", "stevens_exponent": 0.9},
+    {"compensate": "low-speed", "sigma_mm": 4, "sigma_v_mm_s": 90},
+    {"sl": 20, "phantom": "log"})
+NOT_SET = {"level_dbfs", "duration", "speed", "intensity_max"}  # the page's level, what is drawn, and what recordings alone have
+PUT = """(takes => new Promise((done, failed) => { const asked = indexedDB.open("tactor", 1);
+    asked.onerror = failed; asked.onsuccess = () => { const t = asked.result.transaction("takes", "readwrite");
+        takes.forEach(take => t.objectStore("takes").put(take)); t.oncomplete = () => { asked.result.close(); done(1); }; }; }))(%s)"""
+# Keeps the files that the page gives, in place of what a browser does with them.
+GIVEN = """globalThis.given = []; URL.createObjectURL = blob => { given.push(blob); return "#"; };
+    HTMLAnchorElement.prototype.click = function () { given.at(-1).named = this.download; }; 1"""
+
+
+class RoundTrip(StudioTest):
+    def given(self, p, count=1):
+        """Returns the next files that the page gives: texts by their names."""
+        p.until(f"given.length >= {count} && given.every(b => b.named)")
+        return p.value("Promise.all(given.splice(0).map(async b => [b.named, await b.text()]))")
+
+    def save(self, p, kind):
+        p.value(f"document.querySelector('#p-save [data-kind={kind}]').click()")
+        return self.given(p)[0]
+
+    def opened(self, p, name, text):
+        """Opens a file; returns its take."""
+        count = p.value("tactor.state.takes.length")
+        self.choose_files(p, {name: text})
+        p.until(f"tactor.state.takes.length === {count + 1} && {TAKE}.origin === 'file'")
+        return self.take(p)
+
+    def check(self, take, wanted):
+        for key, usual in (("options", {}), ("gain_db", None), ("leaves_array", None)):
+            self.assertEqual(take.get(key, usual), wanted.get(key, usual))
+        self.assertEqual([s["timed"] for s in take["strokes"]], [s["timed"] for s in wanted["strokes"]])
+
+    def takes(self):
+        """Returns a page with a take for each of the settings, the oldest first, and its service."""
+        s = self.serve()
+        p, _ = self.ready(s)
+        self.draw(p, *self.way([5, 5], [35, 30]))  # the storage is there
+        self.toast(p, "Kept as")
+        stroke = {"name": "line", "start_s": 0, "timed": [[0, 0, 0, 1], [1, 40, 40, 1]]}
+        takes = [{"id": f"t{i}", "made": i + 1, "name": f"set {i}", "origin": "drawn", "strokes": [stroke], "options": o, **more}
+                 for i, (o, more) in enumerate(zip(SETTINGS, ({"gain_db": -6.5}, {"leaves_array": True}, {}, {"gain_db": -1}, {}, {})))]
+        p.value(PUT % json.dumps(takes))
+        self.reload(p)
+        p.until(f"tactor.state.takes.length === {len(takes) + 1}")
+        p.value(GIVEN)
+        rows = p.value("tactor.state.options.map(o => o.name)")
+        self.assertEqual({name for o in SETTINGS for name in o}, set(rows) - NOT_SET)
+        return s, p, takes
+
+    def choose(self, p, take):
+        p.value(f"[...document.querySelectorAll('#takes .take')].find(b => b.querySelector('b').textContent === {quoted(take['name'])}).click()")
+        p.until(f"{TAKE}.id === {quoted(take['id'])}")
+
+    def test_each_option_comes_back_from_a_file_of_each_way_to_save(self):
+        s, p, takes = self.takes()
+        for take in takes:
+            with self.subTest(options=take["options"]):
+                self.choose(p, take)
+                text = self.save(p, "toml")[1]
+                self.ok("plan", self.write("saved.toml", text), "--outside", "clamp", "--array", "palm-3x3")
+                wav = "sl" not in take["options"] and self.save(p, "wav")[1]
+                # Neither the name nor what was shown before plays a part.
+                self.choose(p, takes[3])
+                self.check(self.opened(p, "other.toml", text), take)
+                if wav:
+                    self.planned(p)
+                    self.assertEqual(self.save(p, "wav")[1], wav)
+                    self.choose(p, take)
+                    self.check(self.opened(p, "figure.svg", self.save(p, "svg")[1]), take)
+        p.value("document.querySelector('#save-all').click()")
+        files = dict(self.given(p, len(takes)))
+        for take in takes:
+            self.check(self.opened(p, "a.toml", files[f"{take['name'].replace(' ', '-')}.toml"]), take)
+        # Without a connection; it is opened once that is there again.
+        s.kill()
+        self.says(p, "No connection")
+        texts = []
+        for take in takes:
+            self.choose(p, take)
+            texts.append(self.save(p, "toml")[1])
+        self.restart(s)
+        self.await_service(p)
+        for take, text in zip(takes, texts):
+            self.check(self.opened(p, "offline.toml", text), take)
+
+    def test_a_file_has_its_own_method_and_not_the_one_that_was_shown(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 30]))
+        p.value("document.querySelector('#pane [data-value=continuous]').click()")
+        p.until(f"{TAKE}.options.algorithm === 'continuous'")
+        self.assertEqual(self.opened(p, "line.csv", LINE)["options"], {})
+        text = "[stroke]\npath = 'M 0 0 L 40 40'\nwaveform = 'noise:100-400'\nnoise_seed = 1\nalgorithm = 'tactile-brush'\n"
+        self.assertEqual(self.opened(p, "brush.toml", text)["options"], {"waveform": "noise:100-400", "noise_seed": 1, "algorithm": "tactile-brush"})
+        p.until("document.querySelector('#pane [data-value=tactile-brush]').getAttribute('aria-checked') === 'true'")
 
 
 class Files(StudioTest):

@@ -4,18 +4,19 @@ import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_only_if, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
 import {add_take, make_request} from "./takes.js";
-import {strokes_toml, stroke_csv} from "./stroke.js";
+import {stroke_csv} from "./stroke.js";
+import {with_level, rest_comment, take_toml, read_take} from "./stroke_file.js";
 import {is_own_host} from "./address.js";
-
 import {fault_text, fault_sentence} from "../words.js";
+
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
 const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv", "Timed points",
   "a table: time, place, intensity"], ["svg", "Figure, SVG", "for a paper, to be edited"],
   ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
     ["json", "Plan", "all bursts as numbers"]];
 
-// A figure of this page has its stroke, as TOML in base64, in a comment at its end.
-const STROKE_OF_FIGURE = /<!-- stroke of this figure: ([\w+/=]+) -->\s*$/;
+// A figure of this page has its stroke, as TOML in base64, in one part or two, in a comment at its end.
+const STROKE_OF_FIGURE = /<!-- stroke of this figure: ([\w+/= ]+) -->\s*$/;
 const FIGURE = "it is a figure; open the stroke from which it was drawn (.toml)";
 
 async function open_files(files) {
@@ -23,9 +24,8 @@ async function open_files(files) {
   let message = "";
   for (const file of files) {
     try {
-      const r = await import_file(file);
-      const strokes = r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
-      add_take(strokes, {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
+      const source = await what_to_import(file), r = await import_file(file, source), take = read_take(r, source.text, state.options);
+      add_take(take.strokes, {...take, name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
       message = r.warnings[0] ?? `Opened “${file.name}”`;
     } catch (e) { faults.push(`“${file.name}” was not opened: ${fault_text(e)}.`); }
   }
@@ -35,8 +35,7 @@ async function open_files(files) {
   requestAnimationFrame(() => { state.fault = faults.join(" "); changed("link"); });
 }
 // Asks which value of a recording that goes above 1 means the level, as --intensity-max does.
-async function import_file(file) {
-  const source = await what_to_import(file);
+async function import_file(file, source) {
   try { return await call("import", source); } catch (e) {
     if (!e.data?.hint?.includes("intensity_max")) throw e;
     const most = Number(prompt(`“${file.name}”: ${e.data.why}. ` + "Which value is the full level? 100 is per cent, 127 MIDI, 255 8 bits.", "127"));
@@ -47,7 +46,7 @@ async function import_file(file) {
 // Returns the name and the text of the strokes of a file; throws what it is instead.
 async function what_to_import(file) {
   const text = await file.text(), head = text.slice(0, 400), own = STROKE_OF_FIGURE.exec(text);
-  if (own) return {name: "figure.toml", text: new TextDecoder().decode(decoded(own[1]))};
+  if (own) return {name: "figure.toml", text: own[1].split(" ").map(part => new TextDecoder().decode(decoded(part))).join("")};
   if (head.includes("<!-- Drawn by tactor -->") || head.startsWith("%PDF") || head.slice(1).startsWith("PNG\r\n")) throw new Error(FIGURE);
   if (text.includes("\0") || /^\ufffd\ufffd/.test(head)) throw new Error("it is not text; strokes are SVG, CSV, TOML or a plan");
   if (file.size > MOST_BYTES) throw new Error(`it is larger than ${MOST_BYTES >> 10} KiB`);
@@ -78,6 +77,9 @@ function give(name, type, ...parts) {
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);
 }
 export const give_toml = (name, text) => give(`${name}.toml`, "application/toml", text);
+// Asks the service for a take as a file. Its gain is in a file that can say it, and otherwise in the level at which it is played.
+const export_as = (take, as) => call("export", {...make_request(as === "csv" ? take : with_level(take)), as, name: file_name(take)});
+const encoded = text => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
 const decoded = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
 async function save_as(kind) {
@@ -86,10 +88,10 @@ async function save_as(kind) {
   by_id("p-save").hidePopover();
   try {
     if (is_connected()) {
-      const ask = as => call("export", {...make_request(take), as, name: file_name(take)});
-      const r = await ask(kind), stroke = kind === "svg" ? `<!-- stroke of this figure: ${(await ask("toml")).base64} -->\n` : "";
-      give(r.name, r.mime, decoded(r.base64), stroke);
-    } else if (kind === "toml") give_toml(file_name(take), strokes_toml(take.strokes));
+      const r = await export_as(take, kind), rest = rest_comment(take);
+      const more = {toml: () => rest, svg: async () => `<!-- stroke of this figure: ${(await export_as(take, "toml")).base64} ${encoded(rest)} -->\n`};
+      give(r.name, r.mime, decoded(r.base64), await more[kind]?.() ?? "");
+    } else if (kind === "toml") give_toml(file_name(take), take_toml(take));
     else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`, "text/csv", stroke_csv(take.strokes[0]));
     else throw new Error("without a connection only a stroke, as TOML or CSV, can be saved");
     say(`Saved “${take.name}” as ${file_name(take)}.${kind}`);
@@ -98,7 +100,7 @@ async function save_as(kind) {
 // A browser may ask first whether the page may give several files.
 on_click("save-all", () => {
   const takes = state.takes.filter(t => t.strokes.length);
-  for (const t of takes) give_toml(file_name(t), strokes_toml(t.strokes));
+  for (const t of takes) give_toml(file_name(t), take_toml(t));
   say(`Saved ${takes.length} takes`);
 });
 by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
@@ -114,7 +116,7 @@ listen("p-save", "beforetoggle", async e => {
   if (!take?.strokes.length) return show("There is nothing to save yet.");
   show("…");
   try {
-    const {command} = await call("export", {...make_request(take), as: "toml", name: file_name(take)});
+    const {command} = await export_as(take, "toml");
     show(command, command.replace(/^(tactor) render (.*) -o .*/, "$1 play $2"));
   } catch (x) { show(fault_sentence(x)); }
 });

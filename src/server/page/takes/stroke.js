@@ -334,7 +334,7 @@ export const points_moved = s => (s.knots ?? []).filter(k => k.moved).length;
 // Makes a stroke play its ink again; what it was before is kept beside it.
 export function as_drawn(s) {
   const {edited: _, ...before} = s;
-  return {...from_drawing(s.ink, s.name, s.start_s), ...shape(s) === "edited" && {edited: before}};
+  return {...from_drawing(s.ink, s.name, s.start_s), ...s.keys && {keys: s.keys}, ...shape(s) === "edited" && {edited: before}};
 }
 // Makes a stroke as it was edited, or, without edits, play the spline through its knots.
 export const as_edited = s => s.edited ? {...s.edited, name: s.name, start_s: s.start_s} : rebuild({...s, knots: s.knots.map(k => ({...k, curve: true}))});
@@ -445,9 +445,12 @@ export function box(places) {
 
 // TOML and CSV of strokes.
 export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
-// Strokes may have `keys` of their own, such as {soa_s: 0.4}; an option that is set for all of them wins.
-const own_keys = (s, options) => Object.entries(s.keys ?? {}).filter(([key]) => options[key.replace(/_s$/, "")] === undefined)
-  .map(([key, v]) => `${key} = ${v}\n`).join("");
+// Strokes may have `keys` of their own, as in a stroke file, such as {soa_s: 0.4}; an option that is set for all of them wins.
+export const keys_left = (s, options) => Object.fromEntries(Object.entries(s.keys ?? {}).filter(([key]) => key === "noise_seed"
+  ? options.waveform === undefined : options[key.replace(/_(s|hz|depth|profile)$/, "")] === undefined)
+  .map(([key, v]) => [key, key === "noise_seed" ? options.noise_seed ?? v : v]));
+const own_keys = (s, options) => Object.entries(keys_left(s, options))
+  .map(([key, v]) => `${key} = ${typeof v === "string" ? quoted(v) : JSON.stringify(v)}\n`).join("");
 export function strokes_toml(strokes, options = {}) {
   const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s);
   return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+s.start_s.toFixed(4)}\nstart_from = "piece"\n` +

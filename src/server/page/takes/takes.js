@@ -57,9 +57,9 @@ function step(from, to) {
   put_takes(s.changes.map(([id, before]) => [id, before]), s.current[0]);
 }
 
-export function add_take(strokes, {name, origin, options} = {}) {
+export function add_take(strokes, {name, origin, options, ...more} = {}) {
   const number = 1 + all_takes().reduce((most, t) => Math.max(most, Number(/^Take (\d+)$/.exec(t.name)?.[1] ?? 0)), 0);
-  const take = {id: new_id(), made: Date.now(), name: name || `Take ${number}`, origin: origin ?? "drawn", strokes,
+  const take = {...more, id: new_id(), made: Date.now(), name: name || `Take ${number}`, origin: origin ?? "drawn", strokes,
     options: options ?? current_take()?.options ?? {}};
   edit([take], {current: take.id, stroke: 0});
   return take;

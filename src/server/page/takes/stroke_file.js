@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// A take as a stroke file says it: options by the file's keys, the gain as its level, and what it has no keys for in a comment at its end.
+import {keys_left, strokes_toml} from "./stroke.js";
+
+const KEYS = {algorithm: "algorithm", phantom: "phantom", faces: "faces", soa: "soa_s", burst: "burst_s", carrier: "carrier_hz", waveform: "waveform"};
+const REST = /^# Options of the studio that a stroke file has no keys for: (\{.*\})$/m;
+const AM = /^([\d.]+)(?::([\d.]+))?$/; // HZ or HZ:DEPTH
+
+// Returns options as keys of a stroke file, and the rest of them.
+function split({noise_seed, am, ...options}) {
+  const keys = {}, rest = {}, depth = AM.exec(am ?? "");
+  for (const [name, v] of Object.entries(options)) if (KEYS[name]) keys[KEYS[name]] = v; else rest[name] = v;
+  if (noise_seed !== undefined) (/^noise/.test(options.waveform) ? keys : rest).noise_seed = noise_seed;
+  if (depth) Object.assign(keys, {am_hz: +depth[1], am_depth: +(depth[2] ?? 1)}); else if (am !== undefined) rest.am = am;
+  return {keys, rest};
+}
+// Returns a take whose gain is the level of each of its strokes.
+export const with_level = ({gain_db = 0, ...take}) => ({...take, strokes: take.strokes.map(s => ({...s,
+  keys: {...s.keys, ...gain_db && {level_db: gain_db + (s.keys?.level_db ?? 0)}}}))});
+// Returns the comment of a take, or "".
+export function rest_comment({options, leaves_array}) {
+  const {rest} = split(options), said = {...Object.keys(rest).length && {options: rest}, ...leaves_array && {leaves_array}};
+  return Object.keys(said).length ? `# Options of the studio that a stroke file has no keys for: ${JSON.stringify(said)}\n` : "";
+}
+// Writes a take as the service does.
+export function take_toml(take) {
+  const {keys} = split(take.options);
+  return strokes_toml(with_level(take).strokes.map(s => ({...s, keys: {...keys_left(s, take.options), ...keys}}))) + rest_comment(take);
+}
+// Returns the strokes, options and gain of a file: what the service found in its text, and the text. What all strokes have is the take's.
+export function read_take({strokes, points}, text, rows) {
+  const own = strokes.map(s => ({...s.keys})), shared = key => own.every(k => k[key] === own[0][key]) ? own[0][key] : undefined;
+  const options = {}, take = {options}, drop = key => own.forEach(k => { delete k[key]; });
+  for (const [name, key] of [...Object.entries(KEYS), ["noise_seed", "noise_seed"]]) {
+    const v = shared(key);
+    if (v === undefined || key === "noise_seed" && !options.waveform) continue;
+    options[name] = v;
+    drop(key);
+  }
+  const hz = shared("am_hz"), depth = shared("am_depth");
+  if (hz !== undefined && depth !== undefined) { options.am = depth === 1 ? `${hz}` : `${hz}:${depth}`; drop("am_hz"); drop("am_depth"); }
+  if (shared("level_db") < 0) { take.gain_db = shared("level_db"); drop("level_db"); }
+  try {
+    const said = JSON.parse(REST.exec(text)?.[1] ?? "{}");
+    if (said.leaves_array) take.leaves_array = true;
+    for (const [name, v] of Object.entries(said.options ?? {})) if (rows.some(o => o.name === name) && /string|number|boolean/.test(typeof v)) options[name] ??= v;
+  } catch { /* somebody wrote another comment */ }
+  return {...take, strokes: points.map((timed, i) => ({name: strokes[i].name, start_s: strokes[i].start_s, timed,
+    ...Object.keys(own[i]).length && {keys: own[i]}}))};
+}
