@@ -306,6 +306,7 @@ class Page(CalibrateTest):
             self.page.say(ask=asked["ask"], answer=2)  # each question takes one
             self.until_text("Ja|Nein")
         s.process.send_signal(signal.SIGINT)
+        self.page.until("over", asked=False)
         self.assertEqual(s.end(), 130)
         self.assertEqual(self.responses(), ["1"] * 2)
         self.assertIn("trial 1: interval 1 interval 2 which? 1", s.shown)

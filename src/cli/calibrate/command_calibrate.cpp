@@ -429,7 +429,12 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     }
     show(study::time_text(c) + ".\n");
     const study::stage::interruption why = study::until_interrupted(stage, [&] {
-        ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
+        try {
+            ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
+        } catch (...) {
+            who.thank(); // however it ends, for the participant it is over
+            throw;
+        }
         who.thank();
     });
     return why.signal;

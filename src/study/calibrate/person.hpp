@@ -26,7 +26,7 @@ public:
     calibration_answer answer(const calibration_trial& t);
     /// Says if the answer was right, with feedback only.
     void tell(const calibration_record& r);
-    /// Says that all trials are answered.
+    /// Shows that no trial comes any more.
     void thank();
 
 private:
