@@ -88,8 +88,25 @@ class Compare(StudioTest):
         p.click("#blind")
         p.until(f"{TEXT.format('#tally')}.startsWith('2 of 3 for Park 2016')")
 
-    def test_a_study_of_it_runs(self):
-        p, _ = self.compare(self.serve())
+    def test_what_one_side_cannot_play_is_said_in_words_beside_the_bar(self):
+        p, _ = self.ready(self.serve())
+        self.choose_files(p, {"flick.csv": "t_s,x_mm,y_mm\n0,0,0\n0.06,40,40\n"})
+        self.planned(p)
+        for size in ((1440, 900), (390, 844)):
+            p.resize(size)
+            p.key("KeyB", "b")
+            text = p.until("tactor.state.compare && !document.querySelector('#banner').hidden && document.querySelector('#banner-text').textContent")
+            self.assertRegex(text, r"^[A-Z“].*\.$")
+            self.assertNotRegex(text, "options|toml|_")
+            bottom, top = p.value("[document.querySelector('#compare').getBoundingClientRect().bottom, document.querySelector('#banner').getBoundingClientRect().top]")
+            self.assertGreaterEqual(top, bottom)
+            p.click("#compare-end")
+            p.until("!tactor.state.compare")
+            p.click("#banner-close")
+            p.until("document.querySelector('#banner').hidden")
+
+    def study(self, p, count):
+        """Saves a study of what is compared; returns the folder of its files, `count` of them."""
         p.open_popover("#study-open", "#p-study")
         folder = self.dir / "study"
         folder.mkdir()
@@ -97,12 +114,45 @@ class Compare(StudioTest):
         since = len(p.browser.events)
         p.value("document.querySelector('#study [name=question]').value = 'Which \"one\"?'")
         p.click("#study button")
-        while sum(e.get("method") == "Browser.downloadProgress" and e["params"]["state"] == "completed" for e in p.browser.events[since:]) < 2:
-            p.browser.events.append(json.loads(p.browser.channel.text()))
-        self.assertEqual(p.value(TEXT.format("#study-command")), "tactor experiment two-methods.toml --participant P01 -o results")
+        while sum(e.get("method") == "Browser.downloadProgress" and e["params"]["state"] == "completed" for e in p.browser.events[since:]) < count:
+            p.browser.await_event(len(p.browser.events), lambda e: True)
+        return folder
+
+    def runs(self, folder):
+        """Lets the tool plan the study of a folder; returns its definition."""
         r = self.run_tool("experiment", folder / "two-methods.toml", "--dry-run", "--format", "json")
         self.assertEqual(r.returncode, 0, r.stderr)
-        self.assertIn('Which \\"one\\"?', (folder / "two-methods.toml").read_text())
+        return (folder / "two-methods.toml").read_text()
+
+    def test_a_study_of_it_runs(self):
+        p, _ = self.compare(self.serve())
+        text = self.runs(self.study(p, 3))
+        self.assertEqual(p.value(TEXT.format("#study-command")), "tactor experiment two-methods.toml --participant P01 -o results")
+        for line in ('question = "Which \\"one\\"?"', 'name = "park2016"', 'name = "tactile-brush"', f"name = {quoted(self.take(p)['name'])}"):
+            self.assertIn(f"{line}\n", text)
+
+    def test_a_study_has_every_stroke_and_the_array_that_was_drawn_on(self):
+        # A row of five, which no preset is; a limit, a gain and thresholds are the owner's.
+        tactors = [{"x_mm": 15 * i, "y_mm": 0, "channel": 4 - i, "gain_db": -2, "max_dbfs": -3.5, "polarity": -1, "threshold_dbfs": [[100, -50], [250, -55.25]]}
+                   for i in range(5)]
+        own = self.write("row.toml", '[array]\nname = "palm-like \\"row\\""\n' + "".join(
+            "[[tactor]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in t.items()) for t in tactors))
+        p, _ = self.ready(self.serve("--array", own))
+        self.choose_files(p, {"both.toml": "[[stroke]]\nname = 'there'\npath = 'M 0 0 L 60 0'\nlevel_db = -6\n[[stroke]]\nname = 'there'\npath = 'M 60 0 L 0 0'\nlevel_db = -6\nstart_s = 2\n"})
+        p.until("tactor.state.takes.length === 1")
+        p.key("KeyB", "b")
+        p.until("tactor.state.compare")
+        folder = self.study(p, 4)
+        text = self.runs(folder)
+        self.assertEqual({f.name for f in folder.iterdir()}, {f"two-methods{end}.toml" for end in ("", "-array", "-stroke-1", "-stroke-2")})
+        for name, file in (("there", "two-methods-stroke-1.toml"), ("there 2", "two-methods-stroke-2.toml")):
+            self.assertIn(f'[[motion]]\nname = "{name}"\nfile = "{file}"\n', text)
+            self.assertIn("level_db = -6\n", (folder / file).read_text())
+        # The tool finds the same array in both files.
+        found = [json.loads(self.ok("plan", folder / "two-methods-stroke-1.toml", "--array", a, "--format", "json").stdout)["array"]
+                 for a in (own, folder / "two-methods-array.toml")]
+        self.assertEqual(*found)
+        self.assertEqual(found[0]["tactors"][0]["threshold_dbfs"], tactors[0]["threshold_dbfs"])
 
 
 class Felt(StudioTest):

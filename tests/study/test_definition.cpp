@@ -77,7 +77,7 @@ TEST_CASE("missing keys have defaults")
     for (const page_word& w : page_words_in_english())
         CHECK(d.page[w.key] == w.english);
     CHECK(d.runs[0].practice == 0);
-    CHECK(!d.runs[0].question.empty());
+    CHECK(!d.runs[0].outline.question.empty());
     CHECK(d.runs[0].break_s == 0.0);
 }
 

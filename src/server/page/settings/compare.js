@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
-// And the definition of a study of both.
-import {state, changed, on_change, current_take, current_stroke, level_dbfs, say} from "../state.js";
+import {state, changed, on_change, current_take, level_dbfs, say} from "../state.js";
 import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {row, value, with_side, request_options} from "../takes/takes.js";
-import {quoted, strokes_toml} from "../takes/stroke.js";
+import {with_level} from "../takes/stroke_file.js";
 import {file_name, give_toml} from "../takes/files.js";
+import {study_files, study_command} from "./study.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
 import {ALGORITHMS, PHANTOMS, number_text} from "../words.js";
 
@@ -100,32 +100,15 @@ on_change(() => {
   set_text("tally", tally_text(c));
 });
 
-// The definition of a study of both, for `tactor experiment`.
-
-// Options of a method, see tactor-experiment(5), without the level in dBFS, which is the experiment's.
-const OF_METHOD = ("algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap compensate sigma_mm " +
-  "sigma_v_mm_s carrier waveform am noise_seed phase ramp envelope attack release intensity_scale stevens_exponent sl").split(" ");
+// A study of both. Its definition names the files of the array and the strokes, which lie beside it.
 const form = by_id("study"), study_name = () => file_name({name: form.elements.name.value});
-
-const table = (head, values) => `${head}\n${Object.entries(values).map(([k, v]) => `${k} = ${typeof v === "string" ? quoted(v) : v}\n`).join("")}`;
-function definition(name) {
-  const {question, trials} = form.elements, preset = /^palm-/.test(state.hello.array.name) && {array: state.hello.array.name};
-  const methods = [0, 1].map(side => {
-    const o = Object.entries(request_options(with_side(current_take(), side))).filter(([k, v]) => OF_METHOD.includes(k) && v !== undefined);
-    return table("[[method]]", {name: `method ${side + 1}`, ...Object.fromEntries(o)});
-  });
-  return [`${table("[experiment]", {name, ...preset})}level = { dbfs = ${level_dbfs()} }\n`,
-    table("[[motion]]", {name: current_stroke().name, file: `${name}-stroke.toml`}), ...methods,
-    table("[[run]]", {name: "choice", task: "choose", attribute: "preference", simulate_as: "uniformity", question: question.value,
-      trials: Math.round(trials.value) || 20})].join("\n");
-}
-const show_command = () => { set_text("study-command", `tactor experiment ${study_name()}.toml --participant P01 -o results`); };
+const show_command = () => { set_text("study-command", study_command(study_name(), state.hello?.stream.pcm)); };
 listen("p-study", "beforetoggle", show_command);
 listen(form, "input", show_command);
-// The definition names the file of the stroke, which lies beside it.
 listen(form, "submit", e => {
   e.preventDefault();
-  const name = study_name();
-  give_toml(`${name}-stroke`, strokes_toml([current_stroke()]));
-  give_toml(name, definition(name));
+  const {question, trials} = form.elements, take = with_level(current_take()), usual = {algorithm: row("algorithm")?.default, phantom: row("phantom")?.default};
+  const methods = [0, 1].map(side => ({...usual, ...request_options(with_side(take, side))}));
+  study_files({name: study_name(), question: question.value, trials: Math.round(trials.value) || 20, level_dbfs: level_dbfs(),
+    array: state.hello.array, take, methods}).forEach(file => give_toml(...file));
 });
