@@ -102,7 +102,7 @@ class Samples(RenderTest):
                            "--overlap", "max")["render"]
         self.assertEqual(render, {"rate": 44100, "channels": 9, "frames": 64827, "phase": "burst", "ramp_s": 0.003,
                                   "level_dbfs": -9.5, "overlap": "max", "peak_dbfs": [-9.5] * 9, "marker": None})
-        first, second, third = self.plan("strokes.toml", "--array", "pair.toml", "--sl", "7")["plans"]
+        first, second, third = self.plan("strokes.toml", "--array", "pair.toml", "--sl", "7", "--together", "sum")["plans"]
         self.assertEqual((first["render"]["peak_dbfs"], first["render"]["sl_db"], first["render"]["ramp_s"]), ([-34.5, -23.0], 7.0, None))
         self.assertNotIn("level_dbfs", first["render"])
         self.assertEqual(first["render"]["marker"], {"channel": 3, "duration_s": 0.005})
@@ -126,10 +126,11 @@ class Together(RenderTest):
         for how in ((), ("--algorithm", "continuous")):
             with self.subTest(how):
                 peaks = self.peaks_dbfs("--level-dbfs", "-40", *how)
-                self.assertAlmostEqual(max(peaks), -40, 2)
+                self.assertAlmostEqual(max(peaks), -40, delta=0.02)  # a crest of the carrier is near the crest of the sum
+                self.assertLessEqual(max(peaks), -40 + 1e-5)
                 self.assertEqual(peaks.index(max(peaks)), 4)
                 as_is = self.peaks_dbfs("--level-dbfs", "-40", "--together", "sum", *how)
-                self.assertAlmostEqual(as_is[4], -40 + 20 * math.log10(3), 2)
+                self.assertAlmostEqual(as_is[4], -40 + 20 * math.log10(3), delta=0.02)
                 for weak, strong in zip(peaks, as_is):
                     self.assertTrue(weak == strong == -math.inf or abs(strong - weak - 20 * math.log10(3)) < 0.01)
 
