@@ -72,8 +72,8 @@ class Definition(ExperimentTest):
         self.ok("calibrate", "--participant", "01", "-o", "felt.toml", "--simulate", "threshold=-45")
         self.assertIn("thresholds were simulated",
                       self.ok("experiment", "park2016", "--dry-run", "--array", "felt.toml").stderr)
-        # A preset beside a configuration has none of its thresholds.
-        self.assertNotIn("simulated", self.ok("experiment", "park2016", "--dry-run", "--config", "felt.toml").stderr)
+        # The preset is the configuration's array, which has the same places.
+        self.assertIn("thresholds were simulated", self.ok("experiment", "park2016", "--dry-run", "--config", "felt.toml").stderr)
 
 
 class DryRun(ExperimentTest):
@@ -184,7 +184,7 @@ class DryRun(ExperimentTest):
             plan = self.ok("plan", f"park2016-{motion}", "--algorithm", "park2016", "--sl", 7, "--array", felt,
                            "--format", "json").stdout
             self.assertIn({"sha256": hashlib.sha256(plan.encode()).hexdigest(), "motion": f"motion-{motion}",
-                           "method": "park2016"}, told["stimuli"])
+                           "method": "park2016", "weakened_db": 0.0}, told["stimuli"])
 
     def test_a_method_has_the_options_that_tactor_plan_and_render_have(self):
         felt = self.felt("felt.toml", [-40 - i for i in range(9)])

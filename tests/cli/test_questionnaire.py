@@ -64,23 +64,23 @@ class AtTheTerminal(Forms):
         lines = AGREED + "33\n1\n q  \"x\"\n0\n" + "1\n1\n" + "3\n" + "1\n1\n" + '"quoted" n/a\n9\n1\n'
         said = self.ok(*self.args(), stdin=lines).stdout
         self.assertIn("That is no answer: 1 (never) to 5 (always)", said)
-        self.assertEqual(self.told("about"), [["sub-01", "33", "1", " q  \"x\"", "0"]])
+        self.assertEqual(self.told("about"), [["sub-01", "33", "1", '" q  ""x"""', "0"]])
         self.assertEqual(self.told("end")[0][1], '"""quoted"" n/a"')  # or it would be read without its quotes
         self.assertIn("finished", self.ok(*self.args("--resume"), stdin="").stdout)
 
     def test_ctrl_c_in_a_text_ends_and_the_session_goes_on_there(self):
         t = Terminal(self, self.args())
         t.walk()
-        t.answer("Age\\?", "1\n")
+        t.answer("Age\\?", "2\n")
         t.answer("Hand\\?", "1")
         t.answer("Remark\\? Backspace Back: ", "abc\x03")
         self.assertEqual(t.end(), 130)
-        self.assertEqual(self.begun(), {"about": ["1", "1"]})
+        self.assertEqual(self.begun(), {"about": ["2", "1"]})
         self.assertFalse((self.dir / "study/phenotype/about.tsv").exists())
         # A code that is mistyped begins no other session.
         self.refused(2, *[{"01": "1"}.get(a, a) for a in self.args("--resume")], says=("there is no sub-1 in study",))
         said = self.ok(*self.args("--resume"), stdin="y\ny\n" + "words\n50\n" + "1\n1\n" + "3\n" + "1\n1\n" + "x\n1\n").stdout
-        self.assertEqual(self.told("about"), [["sub-01", "1", "1", "words", "50"]])
+        self.assertEqual(self.told("about"), [["sub-01", "2", "1", "words", "50"]])
         self.assertNotIn("Age?", said)
         self.assertIsNone(self.begun())
 
