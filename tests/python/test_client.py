@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import gc
+import json
 import os
 import subprocess
 import threading
@@ -63,6 +64,28 @@ def test_strokes_are_played_and_waited_for(client, tap):
     assert tactor.Client(client._wire.path).play(tap, algorithm="continuous").wait(LONG).state == "finished"
     late = client.play(tap, delay=0.2).wait(LONG)
     assert late.started_s > report.started_s + 0.2 and late.late_s < LONG
+
+
+def test_a_client_of_another_computer_comes_by_tcp_with_the_token(tmp_path, tap):
+    token, config = tmp_path / "token", tmp_path / "c.toml"
+    token.write_text("a token of many letters\n")
+    token.chmod(0o600)
+    config.write_text(f'[serve]\ntoken_file = "{token}"\n')
+    with subprocess.Popen([os.environ["TACTOR_TOOL"], "serve", "--socket", tmp_path / "s.sock", "--tcp", "0", "-D", "null", "--config", config,
+                           "--format", "json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as server:
+        try:
+            where = json.loads(server.stdout.readline())["tcp"]
+            with tactor.Client(tcp=where, token="a token of many letters") as c:
+                assert c.play(tap, algorithm="continuous", level_dbfs=-30).wait(LONG).state == "finished"
+                assert where in repr(c)
+            for token_given in (None, "another"):
+                assert "token" in refused(lambda: tactor.Client(tcp=where, token=token_given), tactor.StreamError).what
+        finally:
+            server.terminate()
+    refused(lambda: tactor.Client(tcp=where), tactor.DeviceError)
+    for wrong in ("pi.lan", "::1:4001", "4001x", "127.0.0.1:0", "127.0.0.1:70000"):
+        assert "no address" in refused(lambda: tactor.Client(tcp=wrong)).why
+    refused(lambda: tactor.Client(tmp_path / "s.sock", tcp="127.0.0.1:4001"))
 
 
 def test_strokes_are_awaited(service, tap, endless):

@@ -187,17 +187,44 @@ class RemoteLive(RemoteStroke):
             await self
 
 
+def _open_unix(path: str) -> _socket.socket:
+    made = _socket.socket(_socket.AF_UNIX, _socket.SOCK_STREAM | _socket.SOCK_CLOEXEC)
+    try:
+        made.connect(path)
+    except BaseException:
+        made.close()
+        raise
+    return made
+
+
+def _open_tcp(address: tuple[str, int]) -> _socket.socket:
+    made = _socket.create_connection(address, _HELLO_S)
+    made.settimeout(None)
+    made.setsockopt(_socket.IPPROTO_TCP, _socket.TCP_NODELAY, 1)
+    return made
+
+
+def _parse_address(tcp: str) -> tuple[str, int]:
+    """Returns host and port of "127.0.0.1:4001", "[::1]:4001" or "4001"."""
+    _need(tcp, str, "tcp")
+    host, _, port = tcp.rpartition(":")
+    bare = host[1:-1] if host.startswith("[") and host.endswith("]") else host
+    if not (port.isascii() and port.isdigit() and 0 < int(port) < 65536) or (bare == host and ":" in host):
+        raise InputError("tcp", f"{_shown(tcp)} is no address", "HOST:PORT as tactor serve --tcp prints it", field="tcp")
+    return bare or "127.0.0.1", int(port)
+
+
 class _Connection:
     """The socket and its thread: not the client, so that a forgotten one can be collected."""
 
-    def __init__(self, path: str) -> None:
-        self.socket = _socket.socket(_socket.AF_UNIX, _socket.SOCK_STREAM | _socket.SOCK_CLOEXEC)
+    def __init__(self, path: str, tcp: tuple[str, int] | None = None) -> None:
         try:
-            self.socket.connect(path)
+            self.socket = _open_tcp(tcp) if tcp is not None else _open_unix(path)
         except OSError as e:
-            self.socket.close()
-            raise _system_kind(DeviceError, e.errno or 0)(
-                path, os.strerror(e.errno or 0), "start one: tactor serve", file=path, errno=e.errno or 0) from None
+            code = e.errno or 0
+            why = e.strerror if isinstance(e, _socket.gaierror) else os.strerror(code)
+            raise _system_kind(DeviceError, 0 if isinstance(e, _socket.gaierror) else code)(
+                path, why, "start one: tactor serve" + (" --tcp PORT" if tcp is not None else ""), file=path, errno=code) from None
         self.path = path
         self.owner = os.getpid()
         self.lock = threading.RLock()
@@ -287,8 +314,12 @@ def _refused(error: dict[str, _t.Any]) -> Error:
     return kind(data["what"], data["why"], data["hint"], field=data["what"].rpartition(".")[2] or None)
 
 
-def _connected(socket: str | os.PathLike[str] | None) -> _Connection:
-    """Connects to the service at that socket, or to the first that listens: the user's, then the system's."""
+def _connected(socket: str | os.PathLike[str] | None, tcp: str | None) -> _Connection:
+    """Connects to the service at that socket or address, or to the first that listens: the user's, then the system's."""
+    if tcp is not None:
+        if socket is not None:
+            raise InputError("tcp", "there is also a socket", "give one of them", field="tcp")
+        return _Connection(tcp, _parse_address(tcp))
     if socket is not None:
         return _Connection(os.fspath(socket))
     folder = os.environ.get("XDG_RUNTIME_DIR")
@@ -318,17 +349,25 @@ class Client(_Unique):
     ----------
     socket : path-like, optional
         The service's Unix socket; default: where a user's service listens ($XDG_RUNTIME_DIR/tactor.sock), else the system's.
+    tcp : str, optional
+        In its place the address of `tactor serve --tcp`, "HOST:PORT"; the service may be on another computer.
+    token : str, optional
+        The token that the service needs there: the first line of its token_file.
 
     Raises
     ------
     DeviceError
         When nobody listens there; a missing socket is a FileNotFoundError, too.
+    StreamError
+        For a token that is wrong or owed.
     """
 
-    def __init__(self, socket: str | os.PathLike[str] | None = None) -> None:
-        self._wire = _connected(socket)
+    def __init__(self, socket: str | os.PathLike[str] | None = None, *, tcp: str | None = None, token: str | None = None) -> None:
+        if token is not None:
+            _need(token, str, "token")
+        self._wire = _connected(socket, tcp)
         try:
-            self._hello: dict[str, _t.Any] = self.call("hello").wait(_HELLO_S)
+            self._hello: dict[str, _t.Any] = self.call("hello", **({} if token is None else {"token": token})).wait(_HELLO_S)
         except BaseException:
             self._wire.close()
             raise
