@@ -94,9 +94,53 @@ std::string describe_row(const options::option& o)
     line("[[method]]:", (o.where & options::in_method) != 0 ? std::string(o.name) : "");
     line("JSON-RPC:", (o.where & options::by_client) != 0 ? fmt::format("options.{}", o.name) : "");
     line("OSC:", (o.where & options::by_client) != 0 ? fmt::format("{}=", o.name) : "");
+    const bool is_limit = o.name == "power_dbfs" || o.name == "max_drive_s" || o.name == "drive_window_s";
+    line("[limits]:", is_limit ? std::string(o.field_name()) : "");
     const std::string python = places_text(python_names, o.where);
     line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
     return text;
+}
+
+// A key of array and configuration files that is no option of the table, or a table of them.
+struct file_key {
+    std::string_view name;
+    std::string_view type;
+    std::string_view table;
+    std::string_view help;
+};
+constexpr std::array file_keys{
+    file_key{"max_dbfs", "DB", "[array], [[tactor]]",
+             "highest peak of all tactors, or of one, -200 to 0 dBFS (default 0); check --walk --max-dbfs "
+             "writes it"},
+    file_key{"gain_db", "DB", "[[tactor]]",
+             "added to --level-dbfs for this tactor, -200 to 60 dB (default 0)"},
+    file_key{"threshold_dbfs", "DB", "[[tactor]]",
+             "weakest vibration that is felt, from which --sl counts; tactor calibrate measures it"},
+    file_key{
+        "max_level_dbfs", "DB", "[serve]",
+        "highest level that clients may ask for, -200 to 0 dBFS (default: level-dbfs of [defaults], else "
+        "-12); serve --max-level-dbfs is lower"},
+    file_key{"token_file", "FILE", "[serve]", "file with the token that TCP and HTTP need"},
+    file_key{"osc_peers", "[...]", "[serve]", "other machines that may send OSC"},
+    file_key{"allow_hosts", "[...]", "[serve]", "other names by which browsers may call the service"},
+    file_key{"limits", "", "[limits]",
+             "power_dbfs, max_drive_s and window_s: what all tactors together, and each one, may get"},
+};
+
+// Returns a page about a key of files, "max_dbfs" or "[limits]"; nothing for others.
+std::string describe_key(std::string_view word)
+{
+    if (word.starts_with('[') && word.ends_with(']'))
+        word = word.substr(1, word.size() - 2);
+    std::string name(word);
+    std::replace(name.begin(), name.end(), '-', '_');
+    const auto* found = std::find_if(file_keys.begin(), file_keys.end(),
+                                     [&name](const file_key& k) { return k.name == name; });
+    if (found == file_keys.end())
+        return {};
+    return fmt::format("{}\n  {}\n  {:<18}{}, see tactor.toml(5)\n",
+                       with_type(std::string(found->name), std::string(found->type)), found->help,
+                       "In files:", found->table);
 }
 
 // Returns usage, arguments and examples.
@@ -164,6 +208,21 @@ struct foreign_name {
     std::string_view name;
     std::string_view here;
 };
+// An option that a command does not take, and what to do instead.
+struct other_way {
+    std::string_view command;
+    std::string_view name;
+    std::string_view hint;
+};
+constexpr std::array other_ways{
+    other_way{"serve", "level-dbfs",
+              "--max-level-dbfs is the ceiling of its clients, who say the level of each stroke"},
+    other_way{"serve", "sl", "each client says it with its strokes; --max-level-dbfs is their ceiling"},
+    other_way{"experiment", "level-dbfs", "the definition says it: level = { dbfs = -18 }"},
+    other_way{"experiment", "sl", "the definition says it: level = { sl_db = 7 }"},
+    other_way{"calibrate", "level-dbfs", "--start-dbfs is the level at which it begins"},
+};
+
 constexpr std::array foreign_names{
     foreign_name{"volume", "level-dbfs"}, foreign_name{"gain", "level-dbfs"}, foreign_name{"port", "http"},
     foreign_name{"frequency", "carrier"}, foreign_name{"card", "device"},     foreign_name{"pcm", "device"},
@@ -278,6 +337,10 @@ error unknown(const CLI::App& app, const CLI::App& command)
     const std::string help = help_command(app, command) + " lists them";
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
+        for (const other_way& o : other_ways)
+            if (o.command == command.get_name() && o.name == bare_name(name))
+                return {error_kind::bad_input, name, fmt::format("tactor {} does not take it", o.command),
+                        o.hint};
         const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
                                                   : nearest_option(name, option_names(command));
         return {error_kind::bad_input, name, "no such option",
@@ -506,8 +569,7 @@ option_help::option_help(const std::string& word)
 {
     if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
         row_ = nullptr;
-    if (row_ != nullptr)
-        text_ = describe_row(*row_);
+    text_ = row_ != nullptr ? describe_row(*row_) : describe_key(name_);
 }
 
 void option_help::add(const CLI::App& command)

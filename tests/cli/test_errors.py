@@ -46,6 +46,10 @@ class Help(ErrorsTest):
         self.assertIn("  --level-dbfs DB ", self.ok("help", "level").stdout)
         self.assertEqual(re.findall(r"^  (?:-\w,)?--([a-z-]+)", self.ok("help", "reopen").stdout, re.M), ["reopen-s"])
         self.assertTrue(self.ok("help", "soa").stdout.startswith("--soa S\n"))
+        for key, table in (("max_dbfs", "[array], [[tactor]]"), ("max-level-dbfs", "[serve]"), ("[limits]", "[limits]")):
+            self.assertIn(f"  In files:         {table}, see tactor.toml(5)\n", self.ok("help", key).stdout)
+        for key, name in (("max_drive_s", "max_drive_s"), ("window_s", "window_s"), ("power_dbfs", "power_dbfs")):
+            self.assertIn(f"  [limits]:         {name}\n", self.ok("help", key).stdout)
 
     def test_without_arguments_it_says_what_to_try(self):
         says = self.refused(2).stderr
@@ -86,7 +90,8 @@ class CommandLine(ErrorsTest):
             "plan park2016-1 --speeed 3", "plan park2016-1 --sped 3", "plan park2016-1 --arry 3", "plan park2016-1 --algoritm 3",
             "play park2016-1 -d null", "-v", "play park2016-1 -v", "play park2016-1 --volume 3", "serve --port 4003",
             "play park2016-1 -duration 1", "plan park2016-1 --array plam-3x3", "play park2016-1 --level-dbfs 12", "serve --http 80000",
-            "serve --tcp 80000", "serve --osc 80000",
+            "serve --tcp 80000", "serve --osc 80000", "serve --level-dbfs -40", "serve --sl 7", "experiment park2016 --level-dbfs -20", "experiment park2016 --sl 7",
+            "calibrate --level-dbfs -20", "plan park2016_3",
             # These are near nothing.
             "plan park2016-1 --seed 3", "plan park2016-1 --loop", "plan park2016-1 --soap-opera", "plan park2016-1 -s")
 
