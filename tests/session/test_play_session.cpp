@@ -3,6 +3,7 @@
 #include "session/play_session.hpp"
 
 #include <atomic>
+#include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <functional>
@@ -196,6 +197,17 @@ TEST_CASE("with an amplifier that may be on, a lost device is not opened again")
     const session::run_facts all = r.session->finish();
     CHECK(all.stats.left_on);
     CHECK_THROWS_AS(all.check_amplifier(), error);
+}
+
+TEST_CASE("a signal ends the stream, with all that plays, not one stroke alone")
+{
+    run r(0.0);
+    REQUIRE_FALSE(r.session->submit(tone(3600.0)).has_value());
+    REQUIRE_FALSE(r.session->submit(tone(3600.0)).has_value());
+    REQUIRE(::kill(::getpid(), SIGINT) == 0);
+    CHECK(r.session->follow().state == state_kind::cancelled);
+    CHECK(r.session->signal() == SIGINT);
+    CHECK(r.session->lost()); // the first stroke would go on in a stream that has not ended
 }
 
 } // namespace play_session_test
