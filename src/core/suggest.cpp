@@ -140,6 +140,13 @@ std::string preset_hint(std::string_view name, const std::vector<std::string>& p
                        fmt::join(presets, ", "));
 }
 
+std::string choice_hint(std::string_view name, std::span<const std::string_view> known)
+{
+    const std::string_view near = nearest_name(name, known);
+    return fmt::format("{}one of {}", near.empty() ? "" : fmt::format("did you mean '{}'? ", near),
+                       fmt::join(known, ", "));
+}
+
 std::string quoted(std::string_view name)
 {
     constexpr std::size_t shown = 40;

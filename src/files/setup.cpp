@@ -192,7 +192,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
     t.actuator = read_actuator(entry).value_or(t.actuator);
 }
 
-// Reads entries without a grid: each is a tactor and says where it is. `max_dbfs`: limit of those that say none.
+// Reads entries without a grid: each is a tactor and says where it is. `max_dbfs`: limit of those that say
+// none.
 void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, array& a)
 {
     for (const toml_table& e : entries) {

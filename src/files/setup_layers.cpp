@@ -7,8 +7,6 @@
 #include <utility>
 #include <variant>
 
-#include <tactor/render.hpp>
-
 namespace tactor::detail {
 namespace {
 
@@ -44,11 +42,9 @@ std::optional<limit_settings> join_limits(const std::optional<limit_settings>& a
         both.window_s = b->window_s;
         return both;
     }
-    const drive_limits usual;
-    const auto drive_s = [&](const limit_settings& l) { return l.max_drive_s.value_or(usual.max_drive_s); };
-    const auto window_s = [&](const limit_settings& l) { return l.window_s.value_or(usual.window_s); };
-    both.max_drive_s = std::min(drive_s(*a), drive_s(*b));
-    both.window_s = std::max(window_s(*a), window_s(*b));
+    both.max_drive_s =
+        std::min(a->max_drive_s.value_or(usual_drive_s), b->max_drive_s.value_or(usual_drive_s));
+    both.window_s = std::max(a->window_s.value_or(usual_window_s), b->window_s.value_or(usual_window_s));
     return both;
 }
 

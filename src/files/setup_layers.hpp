@@ -10,6 +10,10 @@
 
 namespace tactor::detail {
 
+/// Limits on time where no file says any, s: those of drive_limits, which this folder does not know.
+inline constexpr double usual_drive_s = 5.0;
+inline constexpr double usual_window_s = 10.0;
+
 /// Returns the limits of both files: of two of a kind the lower power, the shorter drive and the longer
 /// window. A time that a file leaves out beside another is the default there.
 std::optional<limit_settings> join_limits(const std::optional<limit_settings>& a,
@@ -18,8 +22,8 @@ std::optional<limit_settings> join_limits(const std::optional<limit_settings>& a
 /// Adds a value of [defaults], which replaces an earlier one of its name.
 void add_default(std::vector<written_value>& all, written_value v);
 
-/// Adds [serve] of a later file. Its values replace earlier ones of their names; of two values of a key max_...
-/// the lower stays.
+/// Adds [serve] of a later file. Its values replace earlier ones of their names; of two values of a key
+/// max_... the lower stays.
 void join_serve(std::vector<written_value>& all, const std::vector<written_value>& later);
 
 } // namespace tactor::detail

@@ -18,8 +18,8 @@ std::string toml_string(std::string_view s);
 /// Writes the tables [array] and [[tactor]], which hold a whole array.
 std::string array_text(const array& a);
 
-/// Writes the tables [output], [amplifier], [sync], [limits], [serve] and [defaults]. Two setups with the same
-/// text drive an array alike.
+/// Writes the tables [output], [amplifier], [sync], [limits], [serve] and [defaults]. Two setups with the
+/// same text drive an array alike.
 std::string besides_text(const setup& besides);
 
 /// Writes an array file with both. It needs no other file.

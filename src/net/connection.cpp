@@ -310,8 +310,13 @@ void line_connection::shut()
 }
 
 listener::listener(asio::io_context& io, int fd, std::string when_full,
-                   std::function<void(socket_type)> taken)
-    : io_(io), fd_(io, fd), pause_(io), when_full_(std::move(when_full)), taken_(std::move(taken))
+                   std::function<void(socket_type)> taken, std::function<void()> turned_away)
+    : io_(io),
+      fd_(io, fd),
+      pause_(io),
+      when_full_(std::move(when_full)),
+      taken_(std::move(taken)),
+      turned_away_(std::move(turned_away))
 {
     keep_spare();
 }
@@ -362,8 +367,11 @@ void listener::take()
     }
     if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)
         return start();
-    if ((errno == EMFILE || errno == ENFILE) && turn_away())
+    if ((errno == EMFILE || errno == ENFILE) && turn_away()) {
+        if (turned_away_)
+            turned_away_();
         return start();
+    }
     // Memory ran out, or another process took the spare descriptor. An attempt without a pause would only
     // take time.
     pause_.expires_after(accept_pause);

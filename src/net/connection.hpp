@@ -86,6 +86,8 @@ struct peer_handlers {
     /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
     /// Bearer".
     std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get = {};
+    /// Browsers: called when a request names another server or comes from another's page.
+    std::function<void(const std::string& why)> refused = {};
     /// Browsers: returns true if there is a place for a WebSocket. From then on `message` is called, and
     /// `closed` is its end.
     std::function<bool()> upgrade = {};
@@ -227,9 +229,10 @@ class listener {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
-    /// Listens on `fd`, which stays its owner's. `when_full`: refusal when descriptors run out.
+    /// Listens on `fd`, which stays its owner's. `when_full`: refusal when descriptors run out; `turned_away`
+    /// is called after it.
     listener(boost::asio::io_context& io, int fd, std::string when_full,
-             std::function<void(socket_type)> taken);
+             std::function<void(socket_type)> taken, std::function<void()> turned_away = {});
     ~listener();
     listener(const listener&) = delete;
     listener& operator=(const listener&) = delete;
@@ -247,6 +250,7 @@ private:
     boost::asio::steady_timer pause_;
     std::string when_full_;
     std::function<void(socket_type)> taken_;
+    std::function<void()> turned_away_;
     detail::owned_fd spare_;
 };
 

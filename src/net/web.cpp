@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "net/access.hpp"
+#include "net/rpc.hpp"
 
 namespace tactor::net {
 namespace {
@@ -135,6 +136,12 @@ void web_connection::answer_request()
         one_host && host_is_ours(host_header, local_, allowed_) && host_is_ours(to.host, local_, allowed_);
     for (auto o = origins.first; o != origins.second; ++o)
         ours = ours && origin_is_ours(view(o->value()), to.host, allowed_);
+    if (!ours && calls().refused)
+        calls().refused(
+            fmt::format("a browser's request for the host \"{}\"{}", cut_echo(host_header),
+                        origins.first == origins.second
+                            ? ""
+                            : fmt::format(" by a page of \"{}\"", cut_echo(view(origins.first->value())))));
     if (!ours)
         return respond(
             {403, "text/plain",

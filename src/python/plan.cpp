@@ -178,18 +178,20 @@ py::dict summary(const plan_handle& p)
                     "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
 }
 
-// Returns the plan for another array with the same places. \throws error where the tactors have other numbers.
+// Returns the plan for another array with the same places. \throws error where the tactors have other
+// numbers.
 plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>& to)
 {
     const auto& from = p.on->value().tactors;
     const auto& tactors = to->value().tactors;
     for (std::size_t i = 0; i < tactors.size(); ++i)
         if (i >= from.size() || distance_mm(from[i].position, tactors[i].position) > same_place_mm)
-            throw error(error_kind::bad_input, "score",
-                        fmt::format("it is for the array \"{}\", and the player has that of the configuration, "
-                                    "whose tactor {} is elsewhere",
-                                    p.on->value().name, i),
-                        "plan the stroke for Player.array");
+            throw error(
+                error_kind::bad_input, "score",
+                fmt::format("it is for the array \"{}\", and the player has that of the configuration, "
+                            "whose tactor {} is elsewhere",
+                            p.on->value().name, i),
+                "plan the stroke for Player.array");
     plan_handle moved = p;
     moved.on = to;
     return moved;

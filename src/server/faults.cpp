@@ -8,8 +8,8 @@
 #include <new>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
 
@@ -121,7 +121,8 @@ void allow_only(const json& params, std::initializer_list<std::string_view> know
         if (std::find(known.begin(), known.end(), name) == known.end())
             bad_param(name.empty() ? "params" : name,
                       name.empty() ? "one of them has no name" : "there is no such parameter",
-                      known.size() == 0 ? "it takes none" : fmt::format("one of {}", fmt::join(known, ", ")));
+                      known.size() == 0 ? "it takes none"
+                                        : detail::choice_hint(name, {known.begin(), known.size()}));
 }
 
 const json* member(const json& params, const char* name)

@@ -19,6 +19,7 @@
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
 #include "core/start_times.hpp"
+#include "core/suggest.hpp"
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
@@ -325,14 +326,16 @@ constexpr std::array file_kinds{
 const file_kind& find_kind(const json& params)
 {
     const json* as = member(params, "as");
-    constexpr const char* hint = "one of toml, csv, svg, wav, png, pdf, json";
+    std::vector<std::string_view> known;
+    for (const file_kind& k : file_kinds)
+        known.push_back(k.extension);
     if (as == nullptr)
-        bad_param("as", "it is missing", hint);
+        bad_param("as", "it is missing", detail::choice_hint("", known));
     const std::string name = text(*as, "as");
     const auto* found = std::find_if(file_kinds.begin(), file_kinds.end(),
                                      [&name](const file_kind& k) { return k.extension == name; });
     if (found == file_kinds.end())
-        bad_param("as", fmt::format("there is no \"{}\"", name), hint);
+        bad_param("as", fmt::format("there is no \"{}\"", name), detail::choice_hint(name, known));
     return *found;
 }
 

@@ -19,6 +19,7 @@
 #include <tactor/stroke.hpp>
 
 #include "core/split.hpp"
+#include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "net/access.hpp"
 #include "server/faults.hpp"
@@ -47,22 +48,22 @@ public:
         return as_number(all_[next_]) == 0.0 || (other != nullptr && other->tag == 'F');
     }
 
-    double number(const char* what)
+    double number(const char* what, const char* hint = "a number")
     {
-        const std::optional<double> x = as_number(take(what, "a number"));
+        const std::optional<double> x = as_number(take(what, hint));
         if (!x)
-            bad_param(what, "it is no number", "i, h, f and d are taken");
+            bad_param(what, "it is no number", "i, h, f and d are taken; send a text as a number");
         if (!std::isfinite(*x))
             bad_param(what, "it is not finite");
         return *x;
     }
     template <typename Whole>
-    Whole whole(const char* what, Whole low)
+    Whole whole(const char* what, Whole low, const char* hint = "")
     {
         const double x = number(what);
         constexpr Whole high = std::numeric_limits<Whole>::max();
         if (x != std::floor(x) || x < low || x > high)
-            bad_param(what, fmt::format("{} is no whole number of {} to {}", x, low, high));
+            bad_param(what, fmt::format("{} is no whole number of {} to {}", x, low, high), hint);
         return static_cast<Whole>(x);
     }
     const std::string& text(const char* what)
@@ -127,9 +128,12 @@ json read_options(value_list& v)
     return options;
 }
 
+constexpr const char* number_first =
+    "the stroke's number comes first: /tactor/begin 1, then /tactor/to 1 X Y in mm";
+
 std::int32_t stroke_number(value_list& v)
 {
-    const auto n = v.whole<std::int32_t>("number", lowest_number);
+    const auto n = v.whole<std::int32_t>("number", lowest_number, number_first);
     if (n == 0)
         bad_param("number", "0 stands for none", "choose another, by which the stroke is called later");
     return n;
@@ -164,7 +168,7 @@ void read_to(value_list& v, osc_request& r)
 {
     r.number = stroke_number(v);
     r.params["x_mm"] = v.number("x_mm");
-    r.params["y_mm"] = v.number("y_mm");
+    r.params["y_mm"] = v.number("y_mm", number_first); // a pad may send its place alone
     if (v.left())
         r.params["intensity"] = v.number("intensity");
 }
@@ -214,6 +218,16 @@ constexpr std::pair<std::string_view, void (*)(value_list& v, osc_request& r)> r
     {"cancel", read_own_stroke}, {"stop", read_stop},   {"drive", read_drive}, {"subscribe", read_subscribe},
 };
 
+// Returns "did you mean /tactor/begin? ", or nothing.
+std::string near_address(std::string_view address)
+{
+    std::vector<std::string_view> known;
+    for (const auto& reader : readers)
+        known.push_back(reader.first);
+    const std::string_view near = detail::nearest_name(address.substr(address.rfind('/') + 1), known);
+    return near.empty() ? "" : fmt::format("did you mean {}{}? ", osc_root, near);
+}
+
 // A smaller difference comes from the time between two readings.
 constexpr std::int64_t clocks_differ_ns = 50'000;
 
@@ -247,7 +261,8 @@ osc_request read_osc(const osc_message& m)
     if (found == std::end(readers))
         throw fault_error(
             {net::code_no_method, "bad-input", "address", "it is not known",
-             "/tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
+             near_address(address) +
+                 "/tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
     osc_request r{.method = std::string(found->first)};
     value_list v(m);
     found->second(v, r);

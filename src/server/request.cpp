@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "core/start_times.hpp"
+#include "core/suggest.hpp"
 #include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
@@ -53,8 +54,7 @@ const option& known_option(const std::string& name, options_for which)
         for (const option& x : options::all())
             if ((x.where & options::by_client) != 0)
                 names.push_back(x.name);
-        bad_param("options." + name, "there is no such option",
-                  fmt::format("one of {}", fmt::join(names, ", ")));
+        bad_param("options." + name, "there is no such option", detail::choice_hint(name, names));
     }
     if (which == options_for::live && (o->where & options::live) == 0)
         bad_param("options." + name, "a live stroke does not know it", "its points say when it is where");
@@ -262,8 +262,7 @@ options::wishes settle_options(options::wishes owner, const json& params)
         if (!predicts)
             bad_param("observer", "only the view percept has one", R"(add "view":"percept")");
         if (std::find(known.begin(), known.end(), name) == known.end())
-            bad_param("observer", fmt::format("\"{}\" is not known", name),
-                      fmt::format("one of {}", options::choices_text(o)));
+            bad_param("observer", fmt::format("\"{}\" is not known", name), detail::choice_hint(name, known));
         o.to.set(owner, name);
     }
     const json* given = member(params, "options");
@@ -454,7 +453,7 @@ planned make_drive(const planning& with, const json& params)
     const double seconds = number_or(params, "duration_s", detail::bounds_of::duration_s, usual_s);
     check_duration(with, seconds);
     check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
-    planned p{{"drive"}, with.owner.render};
+    planned p{{fmt::format("tactor {}", tactor)}, with.owner.render};
     const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
     plan one{.algorithm = "drive", .phantom = "none"};
     one.stroke_duration_s = seconds;

@@ -97,7 +97,8 @@ class osc_endpoint {
 public:
     /// Uses `fd`, a bound socket, which stays its owner's. Accepts only `peers` of other machines.
     osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers)
-        : socket_(io, net::local_address(fd).starts_with('[') ? udp::v6() : udp::v4(), fd),
+        : service_(s),
+          socket_(io, net::local_address(fd).starts_with('[') ? udp::v6() : udp::v4(), fd),
           due_(io),
           peers_(std::move(peers)),
           clients_(io, s,
@@ -139,12 +140,20 @@ private:
         boost::system::error_code failed;
         udp::endpoint from;
         const std::size_t n = socket_.receive_from(asio::buffer(packet_), from, 0, failed);
-        if (!failed && net::is_accepted(from.address(), peers_))
+        if (!failed && !net::is_accepted(from.address(), peers_))
+            refuse(net::plain(from.address()).to_string());
+        else if (!failed)
             try {
                 clients_.receive({packet_.data(), n}, from);
             } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way
             }
         arm();
+    }
+    // Notes another machine once.
+    void refuse(const std::string& from)
+    {
+        if (refused_.size() < most_refused && refused_.insert(from).second)
+            service_.log_refusal(from, "a sender of OSC that osc_peers does not list");
     }
     void arm()
     {
@@ -170,7 +179,10 @@ private:
     }
 
     static constexpr std::size_t largest_packet = 65536;
+    static constexpr std::size_t most_refused = 1000;
 
+    service& service_;
+    std::set<std::string> refused_;
     udp::socket socket_;
     asio::steady_timer due_;
     std::vector<net::address_prefix> peers_;
@@ -194,11 +206,12 @@ public:
             if (*fd)
                 listeners_.push_back(std::make_unique<listener>(
                     io, fd->get(), no_descriptors(),
-                    [this, kind = kind](socket_type c) { take(std::move(c), kind); }));
+                    [this, kind = kind](socket_type c) { take(std::move(c), kind); },
+                    [this] { log_full(); }));
         if (at.http)
-            listeners_.push_back(
-                std::make_unique<listener>(io, at.http.get(), net::no_descriptors_for_browsers(),
-                                           [this](socket_type c) { take_browser(std::move(c)); }));
+            listeners_.push_back(std::make_unique<listener>(
+                io, at.http.get(), net::no_descriptors_for_browsers(),
+                [this](socket_type c) { take_browser(std::move(c)); }, [this] { log_full(); }));
         if (at.osc)
             osc_.emplace(io, at.osc.get(), service_, at.osc_peers);
         service_.on_all_sent([this](client_number n) { finish(n); });
@@ -251,6 +264,7 @@ private:
         if (!service_.has_place(kind)) {
             c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
             c->send(refusal("max_clients", no_place(kind), "try again later"));
+            service_.log_refusal(from, "a connection for which there is no place");
             return c->finish();
         }
         const client_number n = service_.connect(c, kind, from);
@@ -260,8 +274,11 @@ private:
             if (service_.input_ended(n))
                 finish(n);
         };
-        h.fault = [this, n](connection_fault f) {
+        h.fault = [this, n, from](connection_fault f) {
             const std::string why = why_given_up(f, limits_, service_.is_admitted(n));
+            if (f != connection_fault::gone)
+                service_.log_refusal(from, f == connection_fault::too_slow ? "a message that takes too long"
+                                                                           : "a message that is too large");
             if (const auto found = links_.find(n); found != links_.end() && !why.empty())
                 found->second->send(why);
         };
@@ -287,6 +304,8 @@ private:
                            kept == 0 ? "" : fmt::format(", {} of them on this machine's socket", kept));
     }
 
+    void log_full() { service_.log_refusal("somebody", "a connection for which there is no descriptor"); }
+
     void finish(client_number n)
     {
         if (const auto found = links_.find(n); found != links_.end())
@@ -296,9 +315,11 @@ private:
     // Takes a browser. It becomes a client when it opens a WebSocket.
     void take_browser(socket_type s)
     {
-        if (visitors_.size() >= limits_.max_clients + short_visits)
-            return net::turn_away(s.native_handle()); // and the socket closes
         const std::string from = net::peer_address(s.native_handle());
+        if (visitors_.size() >= limits_.max_clients + short_visits) {
+            service_.log_refusal(from, "a browser for which there is no place");
+            return net::turn_away(s.native_handle()); // and the socket closes
+        }
         const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
         if (!c)
             return;
@@ -313,9 +334,12 @@ private:
         h.get = [this, from](std::string_view path, std::string_view host, std::string_view token) {
             return page(path, host, token, from);
         };
+        h.refused = [this, from](const std::string& why) { service_.log_refusal(from, why); };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
-            if (!service_.has_place(client_kind::web))
+            if (!service_.has_place(client_kind::web)) {
+                service_.log_refusal(from, "a browser for which there is no place");
                 return false;
+            }
             const auto link = weak.lock();
             *n = service_.connect(link, client_kind::web, from);
             links_.emplace(*n, link);
@@ -331,6 +355,8 @@ private:
             return net::make_page(studio_page, host);
         if (path != "/status")
             return {404, "text/plain", "there are / and /rpc and /status\n", ""};
+        if (token.empty() && !service_.admits(token))
+            service_.log_refusal(from, "no token");
         if (!service_.admits(token))
             return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n",
                     "",  "",           token.empty() ? 0.0 : service_.count_wrong_token(from)};

@@ -2,6 +2,7 @@
 #include "server/service.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "core/suggest.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {
@@ -171,6 +173,14 @@ bool service::is_admitted(client_number number) const
     return found != clients_.end() && found->second->admitted;
 }
 
+void service::log_refusal(const std::string& from, std::string_view why)
+{
+    constexpr double most_a_second = 10.0;
+    if (options_.log && refusals_.take(1.0, most_a_second, options_.now_ns()))
+        options_.log(log_kind::warning,
+                     fmt::format("refused: {} from {}", why, from.empty() ? "this computer" : from));
+}
+
 service::client* service::find(client_number c)
 {
     const auto found = clients_.find(c);
@@ -189,6 +199,8 @@ bool service::admitted(client& c, const net::rpc_message& m)
         return true;
     const auto* first = m.batch ? nullptr : std::get_if<net::rpc_request>(&m.parts.front());
     c.greeted = first != nullptr && first->method == "hello";
+    if (!c.greeted)
+        log_refusal(c.from, "a connection that does not begin with hello");
     return c.greeted;
 }
 
@@ -205,6 +217,8 @@ bool service::receive(client_number number, std::string_view text)
 void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
 {
     client* c = find(number);
+    if (c != nullptr && !c->greeted)
+        log_refusal(c->from, "a connection that does not begin with hello");
     if (c == nullptr || !c->greeted)
         return done(false);
     if (!c->admitted) {
@@ -306,10 +320,11 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     for (const auto& [name, handle] : handlers)
         if (name == r.method)
             return (this->*handle)(c, r.params, to);
+    static constexpr std::array<std::string_view, 17> known{
+        "hello", "play",  "plan",   "level",     "cancel",  "stop", "fire",   "begin", "to",
+        "end",   "drive", "status", "subscribe", "options", "qr",   "import", "export"};
     throw fault_error({net::code_no_method, "bad-input", "method",
-                       fmt::format("there is no \"{}\"", r.method),
-                       "one of hello, play, plan, level, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe, options, qr, import, export"});
+                       fmt::format("there is no \"{}\"", r.method), detail::choice_hint(r.method, known)});
 }
 
 bool service::input_ended(client_number number)

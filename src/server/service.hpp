@@ -126,6 +126,9 @@ public:
     /// Counts and logs a wrong token from an address. Returns the time after which it is to be answered, s:
     /// the later, the more of them came from there.
     double count_wrong_token(const std::string& from);
+    /// Writes a line of the log about a connection or message that is refused. `from`: its address; empty:
+    /// this computer. Some ten lines a second at most.
+    void log_refusal(const std::string& from, std::string_view why);
 
 private:
     using reply_json = net::reply_json;
@@ -179,6 +182,9 @@ private:
         std::optional<repeated> again = {};       ///< until it is to end
         bool next_waits = false;                  ///< the newest submission is a round that has not begun
         std::uint64_t frames = 0;                 ///< of the submissions that have ended
+        std::string name = {};                    ///< for the log, as the next two
+        double asked_db = 0.0;                    ///< level that it asked for ...
+        bool is_sl = false;                       ///< ... in dB SL, not dBFS
         std::optional<stroke_report> broken = {}; ///< end of the first one that did not finish
     };
 
@@ -323,6 +329,8 @@ private:
     void add_submission(stroke_record& r, stroke_id id);
     void finish(stroke_record& r, const stroke_report& how);
     std::string reason(const stroke_record& r, const stroke_report& how) const;
+    static void note_sound(stroke_record& r, std::string_view name, const render_options& o);
+    std::string log_name(const stroke_record& r);
     const char* stop_reason(client_number owner) const;
     stop_mark mark(const client& c) const;
     const char* stop_reason_since(const answer& to) const;
@@ -343,6 +351,7 @@ private:
     boost::asio::steady_timer touch_timer_;
     std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
     allowance touches_ = {};
+    allowance refusals_ = {};                               ///< lines of the log
     std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
     std::list<boost::asio::steady_timer> late_answers_ = {};
     std::size_t jobs_ = 0;            ///< that wait to be planned or are

@@ -17,6 +17,7 @@
 
 #include <tactor/stroke.hpp>
 
+#include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "rt/clock.hpp"
 #include "server/faults.hpp"
@@ -31,7 +32,7 @@ constexpr unsigned most_wrong_tokens = 3;
 constexpr double first_wrong_token_s = 0.2; // until one is answered; doubles with each
 constexpr double longest_wrong_token_s = 10.0;
 constexpr std::size_t most_addresses = 1024;
-constexpr std::array event_names{"strokes", "levels", "stream", "touches", "stops"};
+constexpr std::array<std::string_view, 5> event_names{"strokes", "levels", "stream", "touches", "stops"};
 
 // Compares in a time that does not show how much is right.
 bool same_secret(const std::string& a, const std::string& b)
@@ -109,8 +110,7 @@ double service::count_wrong_token(const std::string& from)
         wrong_token_wait_s_.clear();
     double& wait_s = wrong_token_wait_s_[from];
     wait_s = wait_s == 0.0 ? first_wrong_token_s : std::min(2.0 * wait_s, longest_wrong_token_s);
-    if (options_.log)
-        options_.log(log_kind::warning, fmt::format("a wrong token from {}", from));
+    log_refusal(from, "a wrong token");
     return wait_s;
 }
 
@@ -119,6 +119,8 @@ void service::refuse_token(client& c, const answer& to, bool is_missing)
 {
     if (++c.wrong_tokens > most_wrong_tokens)
         return; // it is turned out when the one before is answered
+    if (is_missing)
+        log_refusal(c.from, "no token");
     const auto refuse = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
         to.fault({net::code_no_token, "token", "token", is_missing ? "it is owed" : "it is wrong",
                   "give what the server's token_file holds"});
@@ -261,7 +263,8 @@ void service::subscribe(client& c, const json& params, const answer& to)
     for (const json& e : *events) {
         const std::string name = text(e, "events");
         if (std::find(event_names.begin(), event_names.end(), name) == event_names.end())
-            bad_param("events", fmt::format("there are no \"{}\"", name), known);
+            bad_param("events", fmt::format("there are no \"{}\"", name),
+                      detail::choice_hint(name, event_names));
         wanted.insert(name);
     }
     constexpr double usual_hz = 30.0;

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "core/words.hpp"
 #include "rt/clock.hpp"
 #include "server/faults.hpp"
 #include "session/log.hpp"
@@ -70,6 +71,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         records.push_back(&r);
         r.player = stream_.number();
         r.gain_db = gain_db;
+        note_sound(r, i < p.strokes.size() ? p.strokes[i].name : p.name, p.render);
         if (const client* c = find(owner); again && c != nullptr && !c->input_over)
             r.again = repeated{scores[i], rounds_frames};
         if (asked.armed)
@@ -456,12 +458,36 @@ void service::finish(stroke_record& r, const stroke_report& how)
     stroke_report report = how;
     report.why = reason(r, how);
     if (options_.log)
-        options_.log(log_kind::info, session::stroke_text(fmt::format("{} of client {}", r.number, owner),
-                                                          report, options_.plans.owner.render.rate));
+        options_.log(log_kind::info,
+                     session::stroke_text(log_name(r), report, options_.plans.owner.render.rate));
     tell_stroke(r, to_string(report.state), report);
     if (r.released)
         strokes_.erase(r.number);
     check_all_sent(owner);
+}
+
+// Notes what the log says of a stroke.
+void service::note_sound(stroke_record& r, std::string_view name, const render_options& o)
+{
+    r.name = name;
+    r.is_sl = o.sl_db.has_value();
+    r.asked_db = o.sl_db.value_or(o.level_dbfs);
+}
+
+// Returns the name of a stroke in the log: 7 "park2016-1" at -12 dBFS of client 3 "pad" (192.168.1.7).
+std::string service::log_name(const stroke_record& r)
+{
+    std::string text = fmt::format("{}", r.number);
+    if (!r.name.empty())
+        text += fmt::format(" \"{}\" at {} {}", net::cut_echo(r.name),
+                            plain_number(r.asked_db + level_db(r), 4), r.is_sl ? "dB SL" : "dBFS");
+    text += fmt::format(" of client {}", r.owner);
+    const client* const c = find(r.owner);
+    if (c != nullptr && !c->name.empty())
+        text += fmt::format(" \"{}\"", c->name);
+    if (c != nullptr && !c->from.empty())
+        text += fmt::format(" ({})", c->from);
+    return text;
 }
 
 std::string service::reason(const stroke_record& r, const stroke_report& how) const
@@ -537,6 +563,7 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
     add_submission(r, live.id());
     r.live = live;
     r.intensity_max = intensity_max;
+    note_sound(r, "live", o.render);
     if (r.level_db != 0.0)
         out->set_level(live.id(), r.level_db);
     ++c.live;

@@ -18,6 +18,7 @@
 
 #include <tactor/path.hpp>
 
+#include "core/suggest.hpp"
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
 #include "server/faults.hpp"
@@ -281,9 +282,12 @@ view_choice read_view(const json& params)
         const std::string said = text(*name, "view");
         const auto* found = std::find_if(std::begin(views), std::end(views),
                                          [&](const auto& one) { return one.first == said; });
-        if (found == std::end(views))
-            bad_param("view", fmt::format("\"{}\" is not known", said),
-                      "one of full, bursts, percept, peaks");
+        if (found == std::end(views)) {
+            std::vector<std::string_view> known;
+            for (const auto& one : views)
+                known.push_back(one.first);
+            bad_param("view", fmt::format("\"{}\" is not known", said), detail::choice_hint(said, known));
+        }
         v.kind = found->second;
     }
     if (const json* bins = member(params, "bins")) {

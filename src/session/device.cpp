@@ -16,6 +16,7 @@
 #include "core/members.hpp"
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
+#include "files/setup_layers.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
@@ -182,6 +183,9 @@ drive_limits limits_over(const stream_options& asked, drive_limits l)
     l.window_s = asked.drive_window_s.value_or(l.window_s);
     return l;
 }
+
+static_assert(drive_limits{}.max_drive_s == detail::usual_drive_s &&
+              drive_limits{}.window_s == detail::usual_window_s);
 
 drive_limits settle_limits(const stream_options& o, const environment& e)
 {

@@ -223,9 +223,10 @@ array use_preset(array preset, environment& e)
         return configured;
     }
     if (config.array)
-        e.array_doubt = fmt::format("{}: the array of {} has other places: its limits, gains and channels do not "
-                                    "hold here",
-                                    preset.name, e.config_name);
+        e.array_doubt =
+            fmt::format("{}: the array of {} has other places: its limits, gains and channels do not "
+                        "hold here",
+                        preset.name, e.config_name);
     e.array_file.clear();
     config.output.channels.reset();
     config.calibration.reset();

@@ -150,7 +150,7 @@ class Presets(ToolTest):
         self.assertEqual(list(channels.values()), list(range(9)))
         self.assertEqual(says, "tactor: warning: palm-3x3: the array of eight.toml has other places: its limits, gains and channels do not hold here\n")
         self.assertIn("9 of 9 channels", self.ok("check", "--config", "eight.toml", "--array", "palm-3x3").stdout)
-        # Where no array is configured, the channels of [output] are the usual array's.
+        # The channels of [output] are the usual array's if no array is configured.
         self.write("output.toml", "[output]\nchannels = 16\n")
         for more, channels in (((), 16), (("--array", "palm-3x3"), 16), (("--array", "palm-2x4"), 8)):
             r = self.ok("check", "--config", "output.toml", *more)

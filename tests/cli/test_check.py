@@ -233,7 +233,7 @@ class Walk(ToolTest):
         self.assertIn("above its limit of -41 dBFS", self.walk([0, 1], "--max-dbfs", "-41", "--level-dbfs", "-40", status=2).stderr)
         self.refused(2, "check", "--max-dbfs", "-12")
         self.refused(2, "check", "--walk", "--max-dbfs", "1")
-        # What the guide shows is the head of a file that a walk has written, with one line more.
+        # The guide shows the head of a file that a walk has written, with one line more.
         self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "-o", "palm.toml", array=())
         for guide in ("start.md", "study.md"):
             shown = re.search(r"(?m)^    \[array\]\n    .*\n    max_dbfs = (-\d+) .*\n", (ROOT / "man/guide" / guide).read_text(encoding="utf-8"))

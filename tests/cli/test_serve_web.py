@@ -150,8 +150,33 @@ class Web(ServeTest):
         for origin, status in ((f"http://{s.address}", 200), ("http://pi.lan", 200), ("null", 403), ("http://evil.example", 403)):
             self.assertEqual(s.peer().request("/status", Origin=origin)[0], status, origin)
             self.assertEqual(s.peer().upgrade(Origin=origin), 101 if status == 200 else 403, origin)
+        # Each of several counts.
+        for origins, status in (((f"http://{s.address}",) * 2, 200), ((f"http://{s.address}", "http://evil.example"), 403),
+                                (("http://evil.example", f"http://{s.address}"), 403)):
+            p = s.peer()
+            lines = "".join(f"Origin: {origin}\r\n" for origin in origins)
+            p.send(f"GET /status HTTP/1.1\r\nHost: {s.address}\r\n{lines}\r\n".encode())
+            self.assertEqual(p.head()[0], status, origins)
         # A page of the called host, and no other.
         self.assertEqual(s.peer().request("http://pi.lan/status", Origin=f"http://{s.address}")[0], 403)
+
+    def test_what_is_refused_leaves_a_line_in_the_log(self):
+        log = self.dir / "serve.log"
+        s = self.serve("--tcp", "0", "--log", log, config="[serve]\nmax_clients = 1\nkept_clients = 0\nmax_message_bytes = 1024\n")
+        self.assertEqual(s.peer().request("/status", Origin="http://evil.example")[0], 403)
+        c = s.client()
+        c.ok("hello")
+        self.assertEqual(s.peer().upgrade(), 503)
+        self.assertIn("there is no place", s.client(tcp=True).next()["error"]["message"])
+        c.raw(b"x" * 2000 + b"\n")
+        while c.next() is not None:
+            pass
+        self.assertEqual(s.terminate()[0], 0)
+        lines = [line.partition(" warning ")[2] for line in log.read_text().splitlines() if "refused: " in line]
+        self.assertEqual(lines, [f'refused: a browser\'s request for the host "{s.address}" by a page of "http://evil.example" from 127.0.0.1',
+                                 "refused: a browser for which there is no place from 127.0.0.1",
+                                 "refused: a connection for which there is no place from 127.0.0.1",
+                                 "refused: a message that is too large from this computer"])
 
     def test_the_token_is_required(self):
         s = self.serve(config=self.token())

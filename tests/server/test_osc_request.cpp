@@ -96,6 +96,15 @@ TEST_CASE("stop has any values but those of a button's release; a stroke's numbe
         }
 }
 
+TEST_CASE("whole numbers are numbers of a stroke, whatever type a pad gives them")
+{
+    for (const values& v : {values{2_i, 20_i, 10_i}, {2.0, 20.0, 10.0}, {2.0, 20_i, 10.0}}) {
+        const osc_request r = read("/tactor/to", v);
+        CHECK(r.number == 2);
+        CHECK(r.params == json{{"x_mm", 20.0}, {"y_mm", 10.0}});
+    }
+}
+
 TEST_CASE("wrong values are refused by their names")
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -133,6 +142,19 @@ TEST_CASE("wrong values are refused by their names")
         {"/tactor/", {}, "address: it is not known"},
         {"/tactor/st*p", {}, "address: it is not known"},
         {"/tactor/hello", {}, "address: it is not known"},
+        // A pad sends its place alone, in parts of its size or in mm; others misspell, or send texts.
+        {"/tactor/to",
+         {0.25, 0.75},
+         "number: 0.25 is no whole number of -2147483648 to 2147483647 (the stroke's "
+         "number comes first: /tactor/begin 1, then /tactor/to 1 X Y in mm)"},
+        {"/tactor/to", {20.0, 10.0}, "y_mm: it is missing (the stroke's number comes first: "},
+        {"/tactor/to",
+         {"1", 20.0, 10.0},
+         "number: it is no number (i, h, f and d are taken; send a text as a number)"},
+        {"/tactor/beginn",
+         {1_i},
+         "address: it is not known (did you mean /tactor/begin? /tactor/ with play, "},
+        {"/2/play", {1_i}, "did you mean /tactor/play? "},
     };
     for (const auto& c : cases)
         CHECK_MESSAGE(has(refusal(c.address, c.given), c.says), c.address);

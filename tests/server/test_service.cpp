@@ -617,4 +617,79 @@ TEST_CASE("over a network hello comes first, and the token where one is owed")
     CHECK(rig.code(hasty, "status") == -32003);
 }
 
+TEST_CASE("a client that owes its token stops nothing")
+{
+    running_rig rig([](server::service_options& o, server::stream_options&) { o.token = "right"; });
+    const auto owner = rig.client();
+    const json n = rig.ok(owner, "play", with(stroke, "start", "armed"))["stroke"];
+    for (const server::client_kind k : {server::client_kind::web, server::client_kind::network}) {
+        const auto guest = rig.client(k);
+        rig.code(guest, "hello");
+        CHECK(rig.code(guest, "stop") == -32003);
+        rig.send(guest, {{"jsonrpc", "2.0"}, {"method", "stop"}});
+        rig.send(guest, json::array({rig.request(90, "stop"), rig.request(91, "status")}));
+        CHECK_FALSE(owner.box->find_end(n).has_value());
+    }
+    CHECK(rig.ok(owner, "fire")["count"] == 1);
+    CHECK(rig.find_end(owner, n)["state"] == "finished");
+}
+
+TEST_CASE("the log names a stroke, its level and its client, and what is refused")
+{
+    std::vector<std::string> log;
+    running_rig rig([&log](server::service_options& o, server::stream_options&) {
+        o.token = "right";
+        o.log = [&log](log_kind, std::string_view text) { log.emplace_back(text); };
+    });
+    const auto logged = [&](const std::string& begin) {
+        return std::count_if(log.begin(), log.end(),
+                             [&](const std::string& l) { return l.starts_with(begin); });
+    };
+    const auto a = rig.client(server::client_kind::web);
+    CHECK(rig.code(a, "hello") == -32003);
+    CHECK(logged("refused: no token from 192.168.1.7") == 1);
+    CHECK(rig.code(a, "hello", {{"token", "left"}}) == -32003);
+    CHECK(logged("refused: a wrong token from 192.168.1.7") == 1);
+    rig.ok(a, "hello", {{"token", "right"}, {"name", "pad"}});
+    const json quiet{{"stroke", "park2016-3"}, {"options", {{"level_dbfs", -24}}}, {"gain_db", -6}};
+    rig.find_end(a, rig.ok(a, "play", quiet)["stroke"]);
+    CHECK(logged("stroke 1 \"park2016-3\" at -30 dBFS of client 1 \"pad\" (192.168.1.7): began ") == 1);
+    const auto b = rig.client();
+    rig.ok(b, "level", {{"db", -3}});
+    rig.find_end(b, rig.ok(b, "drive", {{"tactor", 4}, {"duration_s", 0.1}})["stroke"]);
+    CHECK(logged("stroke 2 \"tactor 4\" at -15 dBFS of client 2 (this computer): began ") == 1);
+    const json live =
+        rig.ok(b, "begin", {{"timeout_s", 86400}, {"options", {{"level_dbfs", -20}}}})["stroke"];
+    rig.ok(b, "end", {{"stroke", live}});
+    rig.find_end(b, live);
+    CHECK(logged("stroke 3 \"live\" at -23 dBFS of client 2 (this computer): ") == 1);
+    const auto post = rig.client(server::client_kind::network);
+    CHECK_FALSE(rig.all->receive(post.number, "POST / HTTP/1.1"));
+    CHECK(logged("refused: a connection that does not begin with hello from 192.168.1.7") == 1);
+}
+
+TEST_CASE("what is nearly right is suggested, as by the tool")
+{
+    running_rig rig;
+    const auto c = rig.client();
+    const auto hint = [&](const char* method, const json& params) {
+        return rig.call(c, method, params)["error"]["data"]["hint"].get<std::string>();
+    };
+    const auto meant = [&](const char* method, const json& params) {
+        const std::string text = hint(method, params);
+        const std::size_t from = text.find('\'') + 1;
+        return text.starts_with("did you mean '") ? text.substr(from, text.find('\'', from) - from) : text;
+    };
+    CHECK(meant("plya", {}) == "play");
+    CHECK(meant("play", {{"stroke", "park2016_3"}}) == "park2016-3");
+    CHECK(meant("play", {{"strok", "park2016-3"}}) == "stroke");
+    CHECK(meant("plan", with(stroke, "options", {{"level-dbfs", -20}})) == "level_dbfs");
+    CHECK(meant("plan", with(stroke, "view", "burst")) == "bursts");
+    CHECK(meant("subscribe", {{"events", {"stroke"}}}) == "strokes");
+    CHECK(meant("export", {{"stroke", "park2016-1"}, {"as", "jsn"}}) == "json");
+    CHECK(hint("plan", with(stroke, "options", {{"algorithm", "continous"}}))
+              .starts_with("did you mean continuous?"));
+    CHECK(hint("status", {{"x", 1}}) == "it takes none");
+}
+
 } // namespace service_test

@@ -133,8 +133,8 @@ std::vector<finding> check_system(const system_facts& f, const system_needs& n);
 struct check_options {
     std::string format = "text";
     bool walk = false;
-    bool no_questions = false; ///< a walk only names each tactor
-    std::string output = {};   ///< empty: none
+    bool no_questions = false;           ///< a walk only names each tactor
+    std::string output = {};             ///< empty: none
     std::optional<double> max_dbfs = {}; ///< limit of all tactors, for the walk and the file
 
     bool json() const { return format == "json"; }

@@ -14,7 +14,6 @@
 #include "cli/play/play.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "core/bounds.hpp"
 #include "core/members.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
@@ -247,8 +246,7 @@ void write_channels(const std::string& name, const settings& s, const environmen
     study::write_new_output(name, text);
 }
 
-void conclude(const settings& s, const check_options& o, const environment& e,
-              const session::walk_verdict& v)
+void conclude(const settings& s, const check_options& o, const environment& e, const session::walk_verdict& v)
 {
     if (!v.problems.empty())
         throw error(error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
@@ -287,9 +285,9 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
 void check_usage(const settings& s, const check_options& o)
 {
     if (!o.walk && (o.no_questions || !o.output.empty() || o.max_dbfs))
-        refuse_option(o.no_questions       ? "--auto"
+        refuse_option(o.no_questions      ? "--auto"
                       : !o.output.empty() ? "--output"
-                                           : "--max-dbfs",
+                                          : "--max-dbfs",
                       "only a walk has it", "add --walk");
     if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
         refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing is played",

@@ -90,10 +90,11 @@ session::ceiling settle_ceiling(const environment& e, std::optional<double> aske
 void check_limits(const session::stream_options& asked, const environment& e)
 {
     const limit_settings said = e.config.limits.value_or(limit_settings{});
-    const auto refuse = [](const char* option, double value, double limit, const char* unit, const char* how) {
+    const auto refuse = [](const char* option, double value, double limit, const char* unit,
+                           const char* how) {
         refuse_option(option,
-                      fmt::format("{} {} lifts the limit of {} {} under [limits]", plain_number(value, 4), unit,
-                                  plain_number(limit, 4), unit),
+                      fmt::format("{} {} lifts the limit of {} {} under [limits]", plain_number(value, 4),
+                                  unit, plain_number(limit, 4), unit),
                       fmt::format("give that or {}, or change the file", how));
     };
     if (said.power_dbfs && asked.power_dbfs.value_or(*said.power_dbfs) > *said.power_dbfs)
@@ -227,12 +228,10 @@ void print_endpoints(const server::endpoints& at, const session::ceiling& highes
 {
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
     if (format == "json") {
-        const nlohmann::ordered_json all{{"event", "listening"},
-                                         {"socket", or_null(at.socket_path)},
-                                         {"tcp", or_null(at.tcp_address)},
-                                         {"osc", or_null(at.osc_address)},
-                                         {"http", or_null(http)},
-                                         {"max_level_dbfs", highest.dbfs}};
+        const nlohmann::ordered_json all{
+            {"event", "listening"},           {"socket", or_null(at.socket_path)},
+            {"tcp", or_null(at.tcp_address)}, {"osc", or_null(at.osc_address)},
+            {"http", or_null(http)},          {"max_level_dbfs", highest.dbfs}};
         fmt::print("{}\n", net::json_line(all));
     } else {
         for (const auto& [kind, address] : {std::pair("socket ", &at.socket_path),

@@ -57,6 +57,14 @@ int try_to_connect(const std::string& path, net::owned_fd& into)
     return 0;
 }
 
+// Returns true for "127.0.0.1:4001", "4001" and "http://pi:4003/".
+bool is_address(const std::string& text)
+{
+    const std::string port = text.substr(text.rfind(':') + 1);
+    return text.find("://") != std::string::npos ||
+           (!port.empty() && port.find_first_not_of("0123456789") == std::string::npos);
+}
+
 // Makes marks of the protocol's names of options: "{soa}" of "options.soa".
 std::string mark_options(const std::string& text)
 {
@@ -95,6 +103,10 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
         if (failed != ENOENT)
             code = failed;
     }
+    if (socket && code == ENOENT && is_address(*socket))
+        throw error(error_kind::not_available, "server at " + *socket, "it is no path of a Unix socket",
+                    "--socket takes the path that tactor serve prints; other programs use addresses, see "
+                    "tactor-protocol(7)");
     throw error(error_kind::not_available, fmt::format("server at {}", fmt::join(places, ", ")),
                 code == ENOENT ? "there is none" : std::strerror(code),
                 "start one with tactor serve, or name its socket with --socket PATH");
