@@ -140,6 +140,20 @@ TEST_CASE("a refused off is answered as such, and at its end the holder tries ag
     CHECK(ends(holder));
 }
 
+TEST_CASE(
+    "after an off that failed the holder takes the line for on, and tries again when the player is silent")
+{
+    fake_line line;
+    line.refuse_off(1);
+    amplifier::holder_limits limits = patient;
+    limits.silence_ms = 100;
+    const auto h = start(line, never, limits);
+    CHECK(h->set(true));
+    CHECK(next_record(line) == "on");
+    CHECK_FALSE(h->set(false));
+    CHECK(next_record(line) == "off"); // without a command
+}
+
 TEST_CASE("the holder keeps nothing of the player except the line")
 {
     std::ofstream other("/dev/null");

@@ -452,6 +452,71 @@ TEST_CASE("a line that refuses to go on is switched off, since it may have gone 
     }
 }
 
+TEST_CASE("a line that refuses to go on is switched off at once, and mutes nothing")
+{
+    amplifier_rig r;
+    r.line.works = false;
+    for (event_log seen; seen.empty() || seen.back() == "start"; seen = r.news())
+        r.play(r.options.period);
+    CHECK_FALSE(r.line.is_on);
+    CHECK(r.link.amplifier.off); // in the update in which it refused
+    CHECK(r.link.amplifier.mutes == 0);
+}
+
+TEST_CASE("the line stays off when the audio thread decides to end between two looks of the amplifier's")
+{
+    for (const int ends_at : {2, 3, 4}) {
+        CAPTURE(ends_at);
+        event_log log;
+        logging_line line(log);
+        engine::link link;
+        link.amplifier.status.store(
+            {.running = true, .stage = engine::stream_stage::running, .epoch = 1, .epoch_played = 1000});
+        int looks = 0;
+        bool stops = false; // what audio_loop::finish() does: it stops the DAC where the line is off
+        engine::amplifier_driver driver(link, line, {.amplifier = {.proof_frames = 1}}, [&] {
+            if (++looks == ends_at) {
+                link.amplifier.ending.store(true, std::memory_order_seq_cst);
+                stops = link.amplifier.off.load(std::memory_order_seq_cst);
+            }
+            return looks * ms;
+        });
+        driver.update();
+        CHECK((stops ? log.empty() : log == event_log{"on"}));
+        CHECK(stops == (ends_at < 4)); // the fourth look is after the line went on
+    }
+}
+
+TEST_CASE("the amplifier does not go on again before the audio thread has seen the mute")
+{
+    amplifier_rig r;
+    r.warm_up();
+    r.play(4800);
+    engine::stream_status before = r.status();
+    r.news();
+    r.line.is_on = false; // the next beat shows it
+    r.wait(60 * ms);
+    CHECK(r.news() == event_log{"off"});
+    // Stands for a wake-up that began before the mute and took long.
+    before.epoch_played += 10 * std::uint64_t{r.options.period};
+    r.link.amplifier.status.store(before);
+    r.driver.update();
+    CHECK(r.news().empty());
+    r.play(4800);
+    CHECK(r.news() == event_log{"on"});
+}
+
+TEST_CASE("time in which the amplifier's thread did not run is no stall of the audio thread")
+{
+    playing r;
+    r.now += 10'000 * ms; // SIGSTOP, or a debugger
+    r.driver.update();
+    CHECK(r.news().empty());
+    CHECK(r.link.count.stalls == 0);
+    r.play(4800);
+    CHECK(r.news().empty());
+}
+
 TEST_CASE("a lost line counts as on until it is switched off")
 {
     playing r;

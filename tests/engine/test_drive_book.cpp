@@ -20,6 +20,7 @@
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <tactor/player.hpp>
 
@@ -476,6 +477,32 @@ TEST_CASE("a lock that another process holds for a moment costs nothing")
     one.play(slow_rate * 4);
     CHECK(one.link.count.drives_cut == 0);
     CHECK(one.book.doubt().empty());
+}
+
+TEST_CASE("no link is followed, and no folder of another user is used")
+{
+    const folder here;
+    {
+        const runtime r(here.path());
+        CHECK(drive_time_fault("x") == "");
+        const auto precious = here.write("precious", "text");
+        for (const std::string target : {"precious", "nowhere"}) {
+            const auto link = here / ("tactor/drive-time-to-" + target);
+            std::filesystem::create_symlink(here / target, link);
+            const process one("to-" + target);
+            CHECK(one.book.doubt() ==
+                  link.string() +
+                      " cannot be read as a whole: each tactor counts as driven for as long as it may be");
+            CHECK(here.names() == std::vector<std::string>{"precious", "tactor"});
+            CHECK(here.bytes("precious") == "text");
+        }
+    }
+    const bool root = ::geteuid() == 0;
+    const std::string other = root ? here.path().string() : "/";
+    if (root)
+        REQUIRE(::chown(other.c_str(), 65534, static_cast<gid_t>(-1)) == 0);
+    const runtime r(other);
+    CHECK(drive_time_fault("x") == other + " is not a folder of this user");
 }
 
 TEST_CASE("a book that cannot be written is found out before anything sounds")

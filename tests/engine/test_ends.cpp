@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Ends of strokes: by themselves, cancelled, stopped, in any order with faults.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
+#include <poll.h>
 
 #include "has.hpp"
 #include "rig.hpp"
@@ -279,6 +287,91 @@ TEST_CASE("a continuous stroke whose drives stop coming fades before the last of
         // Its last frames are nearly silent.
         for (unsigned c = 0; c < s.channels(); ++c)
             CHECK(peak(r.channel(c, from + end - 6)) < 0.05 * 0.25);
+    }
+}
+
+namespace {
+
+/// Calls a function before it writes the first frames that sound.
+class first_sound_sink final : public forwarding_sink {
+public:
+    first_sound_sink(std::unique_ptr<sink> s, const std::function<void()>& sounds)
+        : forwarding_sink(std::move(s)), sounds_(sounds)
+    {
+    }
+    io_result write(std::span<const std::byte> frames) noexcept override
+    {
+        const auto heard = [](std::byte b) { return b != std::byte{0}; };
+        if (!sounded_ && std::any_of(frames.begin(), frames.end(), heard)) {
+            sounded_ = true;
+            sounds_();
+        }
+        return forwarding_sink::write(frames);
+    }
+
+private:
+    const std::function<void()>& sounds_;
+    bool sounded_ = false;
+};
+
+} // namespace
+
+TEST_CASE("the control thread is woken before the first sound, so that what may be driven is written first")
+{
+    std::function<void()> sounds;
+    rig_options o;
+    o.wrap = [&](std::unique_ptr<sink> s) {
+        return std::make_unique<first_sound_sink>(std::move(s), sounds);
+    };
+    rig r(o);
+    bool sounded = false;
+    bool woken = false;
+    sounds = [&] {
+        pollfd fd{.fd = r.link.to_control.fd(), .events = POLLIN, .revents = 0};
+        sounded = true;
+        woken = ::poll(&fd, 1, 0) == 1;
+    };
+    r.submit(tone(0.1));
+    for (int i = 0; i < 100 && !sounded; ++i) {
+        r.link.to_control.consume();
+        r.dac.advance_queued(r.options.period);
+        r.step();
+    }
+    CHECK(sounded);
+    CHECK(woken);
+}
+
+TEST_CASE("where two drives end together and no more come, the one that would go on is faded")
+{
+    constexpr engine::ticket score = engine::voices + 5;
+    const auto drive = [](std::uint32_t channel, std::uint64_t window) {
+        engine::command c{.what = engine::command::kind::drive, .score = score};
+        c.drive.cycles_per_frame = 250.0 / rate;
+        c.drive.window = window;
+        c.drive.length = 4800;
+        c.drive.score = score;
+        c.drive.drives = 1;
+        c.drive.drive[0] = {0.5, 0.5, channel};
+        return c;
+    };
+    for (const bool open_first : {true, false}) {
+        CAPTURE(open_first);
+        rig r;
+        r.link.commands.push(
+            {.what = engine::command::kind::begin, .score = score, .id = {1}, .length = 9600});
+        r.link.commands.push(drive(0, open_first ? 9600 : 4800));
+        r.link.commands.push(drive(1, open_first ? 4800 : 9600));
+        sleep_of_control(r, 100);
+        std::vector<engine::report> reports(1);
+        for (; r.link.reports.pop(reports.back()); reports.emplace_back()) {
+        }
+        reports.pop_back();
+        REQUIRE(reports.size() == 2);
+        CHECK(reports[1].state == state_kind::interrupted);
+        CHECK(reports[1].why == reason_kind::late);
+        const std::vector<double> x = r.channel(open_first ? 0 : 1);
+        CHECK(peak(x) > 0.4);
+        CHECK(largest_step(x) < 0.02); // 0.5 * 2 pi * 250 / 48000, and no end in full swing
     }
 }
 

@@ -256,6 +256,39 @@ COUNTING_TEST_CASE("the thread that sends pulses calls no heap")
     CHECK(line.calls == 0);
 }
 
+TEST_CASE("a pulse whose epoch ends while its sender waits for its time is not sent")
+{
+    // Time that jumps to where the sender sleeps, as an xrun begins another epoch.
+    class xrun_time final : public engine::pulse_time {
+    public:
+        explicit xrun_time(engine::link& l) : link_(l) {}
+        std::int64_t now() noexcept override { return t_; }
+        void sleep_until(std::int64_t time_ns) noexcept override
+        {
+            t_ = time_ns;
+            link_.sync_clock.store(clock_from(2, 1000));
+        }
+
+    private:
+        engine::link& link_;
+        std::int64_t t_ = 0;
+    };
+    engine::link link;
+    xrun_time time(link);
+    const auto state = std::make_shared<line_state>();
+    watched_line line(state);
+    const clock_line clock = clock_from(1, 0);
+    link.sync_clock.store(clock);
+    {
+        engine::trigger_thread t(link, line, 10 * us, {.name = "test-sync"}, &time);
+        t.add({1}, 48, clock); // due after 1 ms
+        pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
+        REQUIRE(::poll(&fd, 1, -1) == 1);
+        CHECK(t.stats().sent == 0);
+    }
+    CHECK(std::count(state->log.begin(), state->log.end(), true) == 0);
+}
+
 TEST_CASE("pulses come in order of their frames, without those of other epochs and ended strokes")
 {
     engine::pulse_board board;

@@ -51,6 +51,16 @@ def compiled(folder, name, *arguments):
 
 
 @pytest.fixture(scope="session")
+def felt_pcm(tmp_path_factory):
+    """ALSA's configuration of a PCM "felt": without a card, but no null device."""
+    folder = tmp_path_factory.mktemp("felt")
+    library = compiled(folder, "felt", ROOT / "tests/cli/felt_pcm.cpp", "-lasound")
+    file = folder / "asound.conf"
+    file.write_text(f'pcm_type.felt {{ lib "{library}" }}\npcm.felt {{ type felt }}\npcm.null {{ type null }}\n')
+    return file
+
+
+@pytest.fixture(scope="session")
 def fake_pcm(tmp_path_factory):
     """ALSA's plugin that is the fake DAC."""
     sources = [ROOT / "tests/python/fake_pcm.cpp", *sorted((ROOT / "tests/support").glob("fake_dac*.cpp"))]

@@ -307,19 +307,37 @@ def test_a_closed_player_is_reported(palm, short, endless):
         refused(call, tactor.StreamError)
 
 
-def test_drive_time_counts_on_from_player_to_player(palm, tmp_path, monkeypatch):
+def test_drive_time_counts_on_from_player_to_player(palm, felt_pcm, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    monkeypatch.setenv("ALSA_CONFIG_PATH", str(felt_pcm))
     tmp_path.chmod(0o700)
     still = tactor.Score(palm, tactor.plan(palm, tactor.Stroke.along(tactor.Path.svg("M 0 0 L 0.001 0"), duration=0.3), algorithm="continuous"))
 
+    def player(device="felt", **more):
+        return tactor.Player(device, palm, config=os.devnull, max_drive_s=0.5, drive_window_s=3600, **more)
+
     def count_cuts(**more):
-        with tactor.Player("null", palm, config=os.devnull, max_drive_s=0.5, drive_window_s=3600, **more) as p:
+        with player(**more) as p:
             p.play(still)
             return p.stats()["drives_cut"]
 
     assert [count_cuts(keep_drive_time=False) for _ in range(2)] == [0, 0]
+    assert [count_cuts(device="null") for _ in range(2)] == [0, 0]
+    assert not (tmp_path / "tactor").exists()
     assert [count_cuts() for _ in range(2)] == [0, 1]
-    assert [f.name for f in (tmp_path / "tactor").iterdir()] == ["drive-time-null"]
+    assert [f.name for f in (tmp_path / "tactor").iterdir()] == ["drive-time-felt"]
+    # Two at the same time count together, too.
+    monkeypatch.setenv("XDG_RUNTIME_DIR", "")
+    with pytest.warns(UserWarning, match="there is no runtime folder"), player() as one, player() as other:
+        one.play(still)
+        other.play(still)
+        assert (one.stats()["drives_cut"], other.stats()["drives_cut"]) == (0, 1)
+    # A file that is cut counts as the limit, once.
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    (tmp_path / "tactor/drive-time-felt").write_text("")
+    with pytest.warns(UserWarning, match="cannot be read as a whole: each tactor counts as driven for as long as it may be"), player() as p:
+        p.play(still)
+        assert p.stats()["drives_cut"] == 1
 
 
 def test_missing_devices_are_errors(palm):

@@ -215,7 +215,7 @@ void score_table::mute() noexcept
         entry& e = entries_[i];
         if (!e.used || e.fading || e.fade_wanted || e.base == never)
             continue;
-        if (e.base < mixer_.position() || e.live != nullptr || stopping_) {
+        if (e.base < mixer_.position() || stopping_) { // as each live stroke that has begun
             want_fade(e, state_kind::interrupted, reason_kind::muted);
         } else if (mixer_.fade_out(e.score, 0)) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
@@ -263,7 +263,7 @@ void score_table::interrupt(reason_kind why, int code, std::uint64_t played, boo
             continue;
         if (give_back && e.base == never)
             continue; // a live stroke that waits for its first point continues to wait
-        if (give_back && !e.fade_wanted && e.live == nullptr && e.base >= mixer_.position()) {
+        if (give_back && !e.fade_wanted && e.base >= mixer_.position()) { // no live stroke that has begun
             link_.reports.push({.what = report::kind::returned, .score = e.score});
             forget(e);
             continue;

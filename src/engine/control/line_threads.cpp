@@ -121,8 +121,9 @@ void amplifier_driver::apply() noexcept
     const bool ready_before = link_.amplifier.ready.load(std::memory_order_relaxed);
     if (!amplifier_.ready())
         link_.amplifier.ready.store(false, std::memory_order_release);
+    const std::int64_t now = clock_(); // beat() may have blocked
     if (trying()) {
-        if (clock_() - tried_ns_ >= options_.retry_ns)
+        if (now - tried_ns_ >= options_.retry_ns)
             try_off();
     } else if (amplifier_.line() && line_state_ == line_state::off)
         switch_on();
@@ -358,8 +359,13 @@ std::optional<pulse_board::seen> pulse_board::next(const clock_line& line) const
     return first;
 }
 
-trigger_thread::trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t)
-    : link_(l), line_(line), emitter_(line, pulse_ns, real_time()), thread_(t, [this] { run(); })
+trigger_thread::trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t,
+                               pulse_time* time)
+    : link_(l),
+      line_(line),
+      time_(time != nullptr ? *time : real_time()),
+      emitter_(line, pulse_ns, time_),
+      thread_(t, [this] { run(); })
 {
 }
 
@@ -406,7 +412,7 @@ std::int64_t trigger_thread::step() noexcept
     if (!line.valid())
         return no_clock_ns;
     const std::int64_t due = line.time_at(p->what.frame);
-    const std::int64_t wait_ns = due - real_time().now() - pulse_lead_ns;
+    const std::int64_t wait_ns = due - time_.now() - pulse_lead_ns;
     if (wait_ns > 0)
         return std::min(wait_ns, longest_wait_ns);
     const bool in_time = emitter_.await(due);

@@ -228,9 +228,10 @@ private:
 /// with another thread. The members are for the control side, one caller at a time.
 class trigger_thread {
 public:
-    /// Starts the thread, which reads link::sync_clock for the due times.
-    /// \throws std::system_error when no thread can be started.
-    trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t);
+    /// Starts the thread, which reads link::sync_clock for the due times. `time`: CLOCK_MONOTONIC but in
+    /// tests. \throws std::system_error when no thread can be started.
+    trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t,
+                   pulse_time* time = nullptr);
     /// Ends the thread; the line is off afterwards.
     ~trigger_thread();
     trigger_thread(const trigger_thread&) = delete;
@@ -253,6 +254,7 @@ private:
     pulse_board board_;
     pulse_plan plan_{board_}; ///< used by the control side
     rt::triple_buffer<pulse_stats> stats_;
+    pulse_time& time_;
     pulse_emitter emitter_;
     rt::event_fd wake_;
     std::atomic<bool> over_{false};

@@ -36,6 +36,7 @@ struct device_answers {
     std::optional<unsigned> rate = {};
     std::optional<snd_pcm_uframes_t> period_frames = {};
     std::optional<snd_pcm_uframes_t> buffer_frames = {};
+    std::optional<snd_pcm_sframes_t> delay = {};
 };
 
 const device_answers* answers = nullptr;
@@ -63,6 +64,13 @@ extern "C" {
 int snd_pcm_info_get_card(const snd_pcm_info_t* info)
 {
     return answers != nullptr ? answers->card : real(snd_pcm_info_get_card, "snd_pcm_info_get_card")(info);
+}
+
+snd_pcm_sframes_t snd_pcm_status_get_delay(const snd_pcm_status_t* s)
+{
+    return answers != nullptr && answers->delay
+               ? *answers->delay
+               : real(snd_pcm_status_get_delay, "snd_pcm_status_get_delay")(s);
 }
 
 int snd_pcm_hw_params_is_batch(const snd_pcm_hw_params_t* p)
@@ -199,6 +207,25 @@ bool within(const std::string& text, const std::string& part)
 }
 
 } // namespace
+
+TEST_CASE("the played position never goes back, whatever delay a driver reports")
+{
+    stream s(false);
+    s.dac.advance_queued(96);
+    const stream_position p = s.out->position();
+    REQUIRE(p.valid);
+    REQUIRE(p.played == 96);
+    const device_says it({.delay = static_cast<snd_pcm_sframes_t>(p.written) - 40});
+    CHECK(s.out->position().played == 96);
+}
+
+TEST_CASE("the drive time of a PCM on a card is kept under the card's place")
+{
+    alsa_options o{.channels = 2};
+    CHECK(open_alsa(o)->setup().device.empty()); // the null device
+    const device_says it({.card = 30});
+    CHECK(open_alsa(o)->setup().device == "hw:CARD=30,DEV=0,SUBDEV=0");
+}
 
 TEST_CASE("every result of a write has its meaning")
 {
