@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 import re
 import statistics
 
@@ -149,6 +150,11 @@ class Tasks(ExperimentTest):
                 self.assertGreater(one["ci"]["pse"][1], one["pse"])
         self.assertAlmostEqual(runs["there"]["dprime"]["mean"], 2, delta=0.8)
         self.assertAlmostEqual(runs["same"]["dprime"]["mean"], 2, delta=1)
+        same = runs["same"]["dprime"]
+        self.assertEqual([same[k] for k in ("t", "p", "p_signflip", "d", "d_ci")], [None] * 5)
+        self.assertEqual((same["likelihood_ratio"]["p"], same["likelihood_ratio"]["studies"]), (1 / 2001, 2000))
+        self.assertIsNone(runs["there"]["dprime"]["likelihood_ratio"])
+        self.check_likelihood_ratio(same)
         self.assertAlmostEqual(runs["size"]["exponent"]["mean"], 0.6, delta=0.1)
         self.assertEqual(set(runs["stairs"]["by"]), {"park:east", "soft:east"})
         wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
@@ -161,6 +167,18 @@ class Tasks(ExperimentTest):
         self.assertIn("stairs: jnd: the answers do not determine it: " + ", ".join(f"sub-{c}" for c in steps), told.stderr)
         self.check_picture(runs)
         self.check_report(runs)
+
+    def check_likelihood_ratio(self, same):
+        """The ratio is G of each participant's table, from the rates that are printed: 20 different and 20 equal pairs."""
+        g = 0
+        for p in same["participants"].values():
+            hits, alarms = (round(p[k] * 21 - 0.5) for k in ("hits", "false_alarms"))
+            part = lambda k, of: k * math.log(k / of) if k else 0
+            one = sum(part(k, 20) for k in (hits, 20 - hits, alarms, 20 - alarms)) - sum(part(k, 40) for k in (hits + alarms, 40 - hits - alarms))
+            g += 2 * one if hits > alarms else 0
+        self.assertAlmostEqual(same["likelihood_ratio"]["value"], g, delta=1e-9)
+        self.assertIn(f", likelihood ratio {g:.2f}, p < 0.001", self.ok("analyze", "study").stdout)
+        self.assertIn(f"Likelihood ratio of d' against 0: 2 ln = {g:.4g}, p = ", self.ok("report", "study").stdout)
 
     def check_picture(self, runs):
         """Each participant's answers are points of their size, and d' is a bar."""

@@ -228,9 +228,14 @@ void print_measures(const study::run_analysis& r)
             say(stdout, "  {}\n", c.name);
         for (std::size_t k = 0; k < c.figures.size(); ++k) {
             const auto& [figure, t] = c.figures[k];
+            std::string test;
+            if (k == 0 && c.difference)
+                test = fmt::format(", likelihood ratio {:.2f}, {}", c.difference->likelihood_ratio,
+                                   p_clause(c.difference->p));
+            else if (k == 0 && t.t && study::measured_against(r.run))
+                test = ", " + t_text(t);
             say(stdout, "  {:<22} {:>8} (se {}), 95 % {}{}\n", figure_text(r.run, figure, k == 0),
-                value_text(t.mean), value_text(t.se), interval_text(t.ci),
-                k == 0 && t.t && study::measured_against(r.run) ? ", " + t_text(t) : "");
+                value_text(t.mean), value_text(t.se), interval_text(t.ci), test);
         }
         if (!c.name.empty())
             continue;

@@ -58,7 +58,9 @@ std::string comparison_text(const study::run_outline& r)
 {
     if (find_task(r.task).measures) {
         const auto against = study::measured_against(r);
-        return against ? fmt::format("{}, t against {}", study::list_measures(r, {}).front().first, *against)
+        return against ? fmt::format("{}, {} against {}", study::list_measures(r, {}).front().first,
+                                     r.task == study::task_kind::same_different ? "likelihood ratio" : "t",
+                                     *against)
                        : "no standard: nothing to compare with";
     }
     if (r.task == study::task_kind::choose)

@@ -227,6 +227,9 @@ json dprime_json(const measured_condition& c, const std::vector<std::string>& co
     for (const auto& [figure, t] : c.figures)
         if (figure == "dprime")
             j.update(test_json(t));
+    j["likelihood_ratio"] = nullptr;
+    if (const auto& d = c.difference)
+        j["likelihood_ratio"] = {{"value", d->likelihood_ratio}, {"p", d->p}, {"studies", d->studies}};
     return j;
 }
 

@@ -73,6 +73,15 @@ measured_condition measure_condition(const run_outline& run, const std::string& 
         c.figures.emplace_back(
             figure, test_mean(values[figure], is_main ? measured_against(run).value_or(0.0) : 0.0));
     }
+    if (run.task == task_kind::same_different) {
+        std::vector<difference_counts> answers;
+        for (const person_measures& m : c.people)
+            if (m.detected)
+                answers.push_back(m.detected->counts);
+        c.difference = test_difference(answers, fmt::format("{}/{}", run.name, name));
+        t_test& dprime = c.figures.front().second;
+        dprime = {.n = dprime.n, .mean = dprime.mean, .se = dprime.se, .ci = dprime.ci};
+    }
     return c;
 }
 
@@ -93,11 +102,12 @@ person_measures measure_trials(const run_outline& run, const std::vector<trial>&
         return static_cast<std::size_t>(std::ranges::count_if(
             trials, [&](const trial& t) { return t.signal == signal && (t.positive || !positive); }));
     };
-    const std::size_t signals = count(true, false);
-    const std::size_t others = count(false, false);
-    const std::size_t false_alarms = count(false, true);
-    if (signals > 0 && others > 0) {
-        detection d{corrected_rate(count(true, true), signals), corrected_rate(false_alarms, others)};
+    const difference_counts all{count(true, true), count(true, false), count(false, true),
+                                count(false, false)};
+    const std::size_t others = all.same;
+    if (all.different > 0 && others > 0) {
+        detection d{
+            corrected_rate(all.hits, all.different), corrected_rate(all.false_alarms, others), {}, all};
         d.found = run.task == task_kind::detect ? yes_no(d.hits, d.false_alarms)
                                                 : same_different(d.hits, d.false_alarms);
         m.detected = d;
@@ -106,7 +116,7 @@ person_measures measure_trials(const run_outline& run, const std::vector<trial>&
         return m;
     m.blocks = make_blocks(trials);
     if (others > 0)
-        m.guess = std::min(most_guess, static_cast<double>(false_alarms) / static_cast<double>(others));
+        m.guess = std::min(most_guess, static_cast<double>(all.false_alarms) / static_cast<double>(others));
     const psychometric_family family{kind, m.guess};
     m.fit = fit_psychometric(m.blocks, family);
     if (m.fit && !seed.empty())

@@ -22,6 +22,7 @@ struct detection {
     double hits = 0.0;
     double false_alarms = 0.0;
     sensitivity found = {};
+    difference_counts counts = {}; ///< of the answers; detect: to a stimulus and to none
 };
 
 /// Estimates of one value.
@@ -63,6 +64,7 @@ struct measured_condition {
     std::string name = {};                                         ///< METHOD:MOTION; empty: all trials
     std::vector<person_measures> people = {};                      ///< by participant
     std::vector<std::pair<std::string_view, t_test>> figures = {}; ///< over participants, as list_measures()
+    std::optional<difference_test> difference = {}; ///< same-different: in place of t and p of d'
 };
 
 /// A participant's trials that count.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -111,23 +112,46 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
     }
 }
 
-// Returns a participant's value in the main comparison of a run.
-std::optional<double> compare_trials(const run_outline& run, const std::vector<trial>& trials)
+// A participant in the main comparison of a run.
+struct compared_person {
+    std::optional<double> value = {};
+    std::optional<difference_counts> counts = {}; ///< same-different
+};
+
+compared_person compare_trials(const run_outline& run, const std::vector<trial>& trials)
 {
-    if (find_task(run.task).measures)
-        return list_measures(run, measure_trials(run, trials, sigmoid::normal, "")).front().second;
-    const auto cells = compute_cells(run, trials);
-    return cells ? compared_value(run, *cells) : std::nullopt;
+    if (!find_task(run.task).measures) {
+        const auto cells = compute_cells(run, trials);
+        return {cells ? compared_value(run, *cells) : std::nullopt};
+    }
+    const person_measures m = measure_trials(run, trials, sigmoid::normal, "");
+    compared_person p{list_measures(run, m).front().second};
+    if (run.task == task_kind::same_different && m.detected)
+        p.counts = m.detected->counts;
+    return p;
 }
 
-// Tests one study. `values` are by participant; one without a value lacks a cell and is left out, as in the
+// Tests one study by its first participants. One without a value lacks a cell and is left out, as in the
 // analysis.
-void count_study(power_at& at, const std::vector<std::optional<double>>& values, const run_outline& run)
+void count_study(power_at& at, const std::vector<compared_person>& people, const run_outline& run,
+                 std::string_view seed)
 {
     std::vector<double> there;
-    for (std::size_t i = 0; i < at.participants; ++i)
-        if (values[i])
-            there.push_back(*values[i]);
+    std::vector<difference_counts> counts;
+    for (const compared_person& p : std::span(people).first(at.participants)) {
+        if (p.value)
+            there.push_back(*p.value);
+        if (p.counts)
+            counts.push_back(*p.counts);
+    }
+    if (run.task == task_kind::same_different) {
+        const auto difference = test_difference(counts, seed);
+        const std::size_t found = difference && difference->p < significant_p ? 1 : 0;
+        at.significant += found;
+        at.for_last += found;
+        at.untested += difference ? 0 : 1;
+        return;
+    }
     const double against = find_task(run.task).measures ? measured_against(run).value_or(0.0) : chance(run);
     const t_test t = quick_test_mean(there, against, rounding_in(run));
     if (!t.p)
@@ -336,7 +360,7 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
             if (p.at.empty())
                 continue;
             const run_definition& run = d.runs[p.run];
-            std::vector<std::optional<double>> values;
+            std::vector<compared_person> compared;
             for (std::size_t i = 0; i < most; ++i) {
                 std::vector<trial> trials;
                 for (std::size_t n = 0; n < sessions.size(); ++n) {
@@ -344,10 +368,10 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                     answer_all(who, {s, sessions[n], run, stimuli, who.code}, d, run);
                     trials.insert(trials.end(), who.trials.begin(), who.trials.end());
                 }
-                values.push_back(compare_trials(run.outline, trials));
+                compared.push_back(compare_trials(run.outline, trials));
             }
             for (power_at& at : p.at)
-                count_study(at, values, run.outline);
+                count_study(at, compared, run.outline, fmt::format("{}/{}", s.seed, run.outline.name));
         }
     }
     return all;

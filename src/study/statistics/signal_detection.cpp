@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/policies/policy.hpp>
 #include <boost/math/tools/roots.hpp>
 
+#include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
@@ -23,6 +25,55 @@ double z(double rate)
 {
     return boost::math::quantile(normal(), rate);
 }
+
+// Returns the log-likelihood of k of n answers at their own rate.
+double log_likelihood(std::size_t k, std::size_t n)
+{
+    const auto part = [n](std::size_t count) {
+        const auto c = static_cast<double>(count);
+        return count > 0 ? c * std::log(c / static_cast<double>(n)) : 0.0;
+    };
+    return part(k) + part(n - k);
+}
+
+// Returns 2 ln of the likelihood ratio of a participant. With hits above false alarms the model has a d' and
+// a criterion for any two rates; else d' = 0 is the likeliest.
+double likelihood_ratio(const difference_counts& c)
+{
+    if (c.hits * c.same <= c.false_alarms * c.different)
+        return 0.0;
+    return 2.0 * (log_likelihood(c.hits, c.different) + log_likelihood(c.false_alarms, c.same) -
+                  log_likelihood(c.hits + c.false_alarms, c.different + c.same));
+}
+
+// The likelihood ratios of a participant whose answers "different" fall on any pairs.
+class drawn_ratios {
+public:
+    explicit drawn_ratios(const difference_counts& c)
+    {
+        const std::size_t answers = c.hits + c.false_alarms;
+        const std::size_t most = std::min(answers, c.different);
+        double chance = 1.0; // relative to that of the fewest hits: hypergeometric
+        double sum = 0.0;
+        for (std::size_t hits = answers - std::min(answers, c.same); hits <= most; ++hits) {
+            const std::size_t others = answers - hits;
+            ratios_.push_back(likelihood_ratio({hits, c.different, others, c.same}));
+            up_to_.push_back(sum += chance);
+            chance *= static_cast<double>((c.different - hits) * others) /
+                      static_cast<double>((hits + 1) * (c.same - others + 1));
+        }
+    }
+
+    double draw(random_numbers& r) const
+    {
+        const auto at = std::ranges::upper_bound(up_to_, r.unit() * up_to_.back());
+        return at == up_to_.end() ? ratios_.back() : ratios_[static_cast<std::size_t>(at - up_to_.begin())];
+    }
+
+private:
+    std::vector<double> ratios_ = {}; ///< by hits
+    std::vector<double> up_to_ = {};  ///< chance of so many hits or fewer, times a constant
+};
 
 } // namespace
 
@@ -54,6 +105,30 @@ sensitivity same_different(double hits, double false_alarms)
     const auto [low, high] = boost::math::tools::toms748_solve(
         off, 0.0, most, boost::math::tools::eps_tolerance<double>(48), steps);
     return {(low + high) / 2.0, c};
+}
+
+std::optional<difference_test> test_difference(std::span<const difference_counts> people,
+                                               std::string_view seed)
+{
+    constexpr std::size_t studies = 2000;
+    if (people.empty())
+        return {};
+    double found = 0.0;
+    std::vector<drawn_ratios> drawn;
+    for (const difference_counts& c : people) {
+        found += likelihood_ratio(c);
+        drawn.emplace_back(c);
+    }
+    random_numbers r(seed);
+    std::size_t as_large = 1;
+    for (std::size_t i = 0; i < studies; ++i) {
+        double sum = 0.0;
+        for (const drawn_ratios& one : drawn)
+            sum += one.draw(r);
+        // Rounding must not make equal answers differ.
+        as_large += sum >= found - 1e-9 * (1.0 + found) ? 1 : 0;
+    }
+    return difference_test{found, static_cast<double>(as_large) / static_cast<double>(studies + 1), studies};
 }
 
 std::optional<double> stevens_exponent(std::span<const double> values, std::span<const double> estimates)
