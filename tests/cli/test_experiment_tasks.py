@@ -82,12 +82,13 @@ class Tasks(ExperimentTest):
             more = (r["response"] == "2") == (r["method_1"] == "standard")
             tracks.setdefault(r["track"], []).append((float(r["value"]), more))
         self.assertEqual([tracks[t][0][0] for t in "1234"], [200, 40, 200, 40])
-        for trials in tracks.values():
+        for track, trials in tracks.items():
             value, in_row, up, reversals = trials[0][0], 0, None, 0
             for shown, more in trials:
                 self.assertEqual(shown, value)
-                in_row = in_row + 1 if more else 0
-                if more and in_row < 2:
+                counts = more == (track in "13")  # every second track is mirrored
+                in_row = in_row + 1 if counts else 0
+                if counts and in_row < 2:
                     continue
                 in_row, reversals, up = 0, reversals + (up is not None and up != (not more)), not more
                 value = min(200, max(40, value + (40, 20)[min(1, reversals // 2)] * (1 if up else -1)))
@@ -163,8 +164,9 @@ class Tasks(ExperimentTest):
         self.assertIn("# glmer(positive ~ value + ", tsv)
         told = self.ok("analyze", "study", "-o", "a.svg")
         self.assertIn("pse against -24", told.stdout)
-        steps = runs["stairs"]["psychometric"]["participants"]
-        self.assertIn("stairs: jnd: the answers do not determine it: " + ", ".join(f"sub-{c}" for c in steps), told.stderr)
+        steps = [c for c, p in runs["words"]["psychometric"]["participants"].items() if p["jnd"] is None]
+        self.assertNotEqual(steps, [])
+        self.assertIn("words: jnd: the answers do not determine it: " + ", ".join(f"sub-{c}" for c in steps), told.stderr)
         self.check_picture(runs)
         self.check_report(runs)
 
@@ -212,7 +214,8 @@ class Tasks(ExperimentTest):
         report = self.ok("report", "study").stdout
         for text in ("chosen by the answers from -40 to -8; standard -24", "Trials without a stimulus, called none, with silence that is as long: 20 %",
                      "slopes (standard deviations of the normal) of 0.8, 1.692, 3.578, 7.566, 16 and lapses of 0, 0.02, 0.04",
-                     "staircases (Levitt 1971) from 200, 40: a step down after 2 positive answers in a row", "steps of 40, 20, the next",
+                     "staircases (Levitt 1971) from 200, 40: a step down after 2 positive answers in a row",
+                     "every second track the other way round, up after 2 negative answers in a row, which leads to 29.3 %", "steps of 40, 20, the next",
                      "| east | park | level\\_dbfs -60 to -8 (35 values) |", "| 35 plans | all |", "| east | park | length\\_mm 20, speed\\_mm\\_s 100 |",
                      "Stimulus called standard: by the same method, with level\\_dbfs of -24", "- Watson, A. B.", "- Levitt, H.", "- Stevens, S. S."):
             self.assertIn(text, report)
@@ -270,6 +273,7 @@ class Tasks(ExperimentTest):
                 ("bayes", 'procedure = "quest"', 'procedure = "quest"\nsteps = [4]', "steps"),
                 ("stairs", 'procedure = "1up2down"', 'procedure = "2up"', "procedure"), ("stairs", "steps = [40, 20]", "steps = [50, 20]", "steps"),
                 ("stairs", "tracks = 2", "tracks = 2\nstart = [50, 60, 70]", "start"), ("stairs", "tracks = 2", "lapse = 0.1", "lapse"),
+                ("stairs", "tracks = 2", "tracks = 3", "tracks"), ("stairs", "tracks = 2", "tracks = 1", "tracks"),
                 ("felt", "catch = 0.2", "catch = 1", "catch"), ("same", "trials = 40", "trials = 40\ncatch = 0.1", "catch"),
                 ("same", "trials = 40", 'trials = 40\nmethods = ["park"]', "[[run]]"), ("same", "trials = 40", 'trials = 40\nvary = "soa"', "vary"),
                 ("size", "values = [-40", 'choices = ["a", "b"]\nvalues = [-40', "choices"),

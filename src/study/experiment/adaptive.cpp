@@ -7,8 +7,9 @@ namespace tactor::study {
 
 void value_staircase::answer(bool positive)
 {
-    in_row_ = positive ? in_row_ + 1 : 0;
-    if (positive && in_row_ < down_)
+    const bool counts = positive != mirrored_;
+    in_row_ = counts ? in_row_ + 1 : 0;
+    if (counts && in_row_ < needed_)
         return;
     in_row_ = 0;
     const bool up = !positive;
@@ -27,8 +28,10 @@ adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
     };
     const adaptive_options& a = run_.adaptive;
     const std::vector<double>& values = run_.outline.values;
+    const unsigned of_condition = (track - 1) % a.tracks;
     if (a.down > 0)
-        return insert(value_staircase(a.down, a.steps, a.start[(track - 1) % a.tracks], values.size() - 1));
+        return insert(value_staircase(a.down, of_condition % 2 == 1, a.steps, a.start[of_condition],
+                                      values.size() - 1));
     const quest_grid grid{values, values, {}, a.slopes, a.lapses};
     return insert(quest(grid, [](double x, const psychometric& p) { return normal_chance(x, p, 0.0); }));
 }

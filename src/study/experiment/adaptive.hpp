@@ -16,12 +16,14 @@
 namespace tactor::study {
 
 /// A transformed up-down staircase (Levitt 1971) on a list of values. A number of positive answers in a row
-/// makes one step down, a negative one a step up. From every second reversal on the next step counts.
+/// makes one step down, a negative one a step up; a mirrored one goes up after so many negative answers, and
+/// down after a positive one. From every second reversal on the next step counts.
 class value_staircase {
 public:
-    /// `down`, above 0: positive answers for a step down. `top`: the greatest place.
-    value_staircase(unsigned down, std::vector<std::size_t> steps, std::size_t start, std::size_t top)
-        : down_(down), steps_(std::move(steps)), at_(start), top_(top)
+    /// `in_row`, above 0: answers for the step that needs several. `top`: the greatest place.
+    value_staircase(unsigned in_row, bool mirrored, std::vector<std::size_t> steps, std::size_t start,
+                    std::size_t top)
+        : needed_(in_row), mirrored_(mirrored), steps_(std::move(steps)), at_(start), top_(top)
     {
     }
 
@@ -29,7 +31,8 @@ public:
     void answer(bool positive);
 
 private:
-    unsigned down_;
+    unsigned needed_;
+    bool mirrored_;
     std::vector<std::size_t> steps_;
     std::size_t at_;
     std::size_t top_;

@@ -62,8 +62,8 @@ struct method_variants {
 
 /// Procedure of an adaptive run. Values are places in those of the run.
 struct adaptive_options {
-    unsigned down = 0; ///< positive answers in a row after which a staircase goes down; 0: QUEST+
-    unsigned tracks = 1;
+    unsigned down = 0;   ///< positive answers in a row after which a staircase goes down; 0: QUEST+
+    unsigned tracks = 1; ///< the staircase of every second one is mirrored
     std::vector<std::size_t> start = {}; ///< by track
     std::vector<std::size_t> steps = {}; ///< of a staircase; the next from every second reversal on
     std::vector<double> slopes = {};     ///< of QUEST+: standard deviations of the normal

@@ -13,6 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "core/trajectory/impl.hpp"
+#include "core/words.hpp"
 #include "options/option.hpp"
 #include "options/settle.hpp"
 
@@ -137,7 +138,15 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     for (std::size_t i = 0; i < count; ++i)
         o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
     set_steps(t, a, steps, step);
-    a.tracks = t.whole("tracks", 1, most_tracks).value_or(1);
+    // A staircase that needs several answers for a step stays on one side of the pse: the fit would place it
+    // there, and find a jnd that is too small.
+    const bool one_sided = a.down > 1;
+    a.tracks = t.whole("tracks", 1, most_tracks).value_or(one_sided ? 2 : 1);
+    if (one_sided && a.tracks % 2 != 0)
+        t.fail("tracks",
+               fmt::format("{} of procedure \"{}\" would ask on one side of the pse more than on the other",
+                           counted(a.tracks, "track"), name),
+               "an even number: every second track is mirrored");
     const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
     if (start.size() > 1 && start.size() != a.tracks)
         t.fail("start", fmt::format("start has {} values", start.size()), "one, or one for each track");

@@ -89,12 +89,15 @@ std::string describe_procedure(const run_definition& r)
     std::vector<double> start;
     for (const std::size_t place : a.start)
         start.push_back(values[place]);
-    return text +
-           fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
-                       "after each other answer, which leads to {:.1f} % positive answers; steps of {}, "
-                       "the next from every second reversal on",
-                       list(start), counted(a.down, "positive answer"), 100.0 * std::pow(0.5, 1.0 / a.down),
-                       list(steps));
+    const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
+    const std::string mirrored =
+        fmt::format("; every second track the other way round, up after {} in a row, which leads to {:.1f} %",
+                    counted(a.down, "negative answer"), 100.0 - led_to);
+    return text + fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
+                              "after each other answer, which leads to {:.1f} % positive answers{}; steps of "
+                              "{}, the next from every second reversal on",
+                              list(start), counted(a.down, "positive answer"), led_to,
+                              a.down > 1 ? mirrored : "", list(steps));
 }
 
 // Lists the motions that were mirrored for the hand that wore the array.
