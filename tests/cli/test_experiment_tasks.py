@@ -161,7 +161,12 @@ class Tasks(ExperimentTest):
         wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
         self.assertAlmostEqual(float(wide[0]["values.pse"]), runs["values"]["psychometric"]["participants"]["01"]["pse"])
         tsv = self.ok("analyze", "study", "--format", "tsv").stdout
-        self.assertIn("# glmer(positive ~ value + ", tsv)
+        for line in ('positive ~ I(value + 24) + (1 + I(value + 24) | participant), family = binomial("probit"), data = subset(d, run == "values"))',
+                     "positive ~ I(value - 12) + (1 + I(value - 12) | participant), ",  # words: the middle
+                     "positive ~ I(value - 100) * method + (1 + I(value - 100) + method | participant), ",
+                     "positive ~ signal + (1 + signal | participant), ",
+                     "log(estimate) ~ I(value + 20) + (1 + I(value + 20) | participant), "):
+            self.assertIn(line, tsv)
         told = self.ok("analyze", "study", "-o", "a.svg")
         self.assertIn("pse against -24", told.stdout)
         steps = [c for c, p in runs["words"]["psychometric"]["participants"].items() if p["jnd"] is None]

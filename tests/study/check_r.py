@@ -201,6 +201,30 @@ def check_measures(tool, folder):
     return [f"coefficient {c}, not {truth}" for c, (truth, near) in zip(found, TRUTHS) if not abs(c / truth - 1) < near]
 
 
+# The effect of a method at the standard, and at the value 0.
+METHODS = studies.measures("palm-3x3", studies.run("values", "constant", 160, question="Which was stronger?", vary="level_dbfs",
+                                                   values=[-32, -28, -24, -20, -16], standard=-24))
+ERRORS = COMMANDS + """
+for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
+for (line in c(said[4], gsub("I(value + 24)", "value", said[4], fixed = TRUE))) {
+  b <- coef(summary(suppressMessages(suppressWarnings(eval(parse(text = line))))))["method1", ]
+  cat("method", b[["Estimate"]], b[["Std. Error"]], "\n")
+}
+"""
+
+
+def check_method_errors(tool, folder):
+    """A method is compared at the standard: at the value 0 its error is far larger."""
+    (folder / "methods.toml").write_text(METHODS)
+    for code in ("01", "02", "03", "04", "05", "06"):
+        run(tool, "experiment", folder / "methods.toml", "--participant", code, "-o", folder / "methods", "--simulate", "seed=1,jnd=4")
+    found = [list(map(float, line.split()[1:])) for line in fit(tool, folder / "methods", ERRORS).splitlines() if line.startswith("method")]
+    (effect, error), (_, at_zero) = found
+    print(f"effect of a method: {effect:.3f}, standard error {error:.3f}, at the value 0 {at_zero:.3f}")
+    bad = [] if abs(effect) < 3 * error else [f"methods that are alike differ: {effect} (se {error})"]
+    return bad + ([] if at_zero > 2 * error else [f"the error at 0 is {at_zero}, at the standard {error}"])
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -217,6 +241,7 @@ def main():
                 if name == "simulated":
                     cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
                     cases["measures, models"] = lambda: check_measures(tool, folder)
+                    cases["measures, methods"] = lambda: check_method_errors(tool, folder)
             else:
                 print(f"SKIPPED: {name}, models: lme4 is not here")
                 skipped += 1

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -330,6 +331,18 @@ std::string write_worth_model(const study::run_outline& r, const std::string& fa
                        factors == "1" ? "" : " + worth:" + factors, json(r.name).dump(), others);
 }
 
+// Writes the values of a run less the standard, or the middle of them: effects of methods and groups are
+// those there. Estimates follow the logarithm of a value that is no level.
+std::string write_value(const study::run_outline& r)
+{
+    const double low = r.values.front();
+    const double high = r.values.back();
+    if (r.task == task_kind::estimate && !r.on_db_axis)
+        return fmt::format("log(value / {})", plain_number(r.standard.value_or(std::sqrt(low * high)), 12));
+    const double at = r.standard.value_or(0.5 * (low + high));
+    return fmt::format("I(value {} {})", at < 0.0 ? '+' : '-', plain_number(std::abs(at), 12));
+}
+
 // The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
 // difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
 std::string write_model(const study::run_outline& r, const std::vector<study::group_outline>& groups)
@@ -339,25 +352,25 @@ std::string write_model(const study::run_outline& r, const std::vector<study::gr
         motion = motion == "1" ? "group" : "(group * motion)";
     const bool has_method =
         r.task != task_kind::choose && r.task != task_kind::same_different && r.methods.size() > 1;
-    const char* people = has_method             ? "(1 + method | participant)"
-                         : r.motions.size() > 1 ? "(1 + motion | participant)"
-                                                : "(1 | participant)";
     std::vector<std::string> factors;
     // The slope over the values, or over whether there was a signal, is what the run is about. The method of
     // a trial without a stimulus is "none", which says it, too.
-    if (r.task == task_kind::estimate && !r.on_db_axis)
-        factors.emplace_back("log(value)");
-    else if (!r.vary.empty())
-        factors.emplace_back("value");
+    if (!r.vary.empty())
+        factors.push_back(write_value(r));
     else if (r.task == task_kind::same_different || (r.catches && !has_method))
         factors.emplace_back("signal");
+    std::vector<std::string> people{"1"};
+    people.insert(people.end(), factors.begin(), factors.end());
+    if (has_method || r.motions.size() > 1)
+        people.emplace_back(has_method ? "method" : "motion");
     if (has_method)
         factors.emplace_back("method");
     if (motion != "1" || factors.empty())
         factors.push_back(motion);
     // R reads the texts of JSON.
-    const std::string rest = fmt::format("{} + {}{}, ", fmt::join(factors, " * "),
-                                         r.task == task_kind::choose ? "order + " : "", people);
+    const std::string rest =
+        fmt::format("{} + {}({} | participant), ", fmt::join(factors, " * "),
+                    r.task == task_kind::choose ? "order + " : "", fmt::join(people, " + "));
     const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
     switch (r.task) {
     case task_kind::choose:
