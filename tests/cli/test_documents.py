@@ -145,6 +145,8 @@ RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema
 # Commands, by how they begin, that are not run here, and why.
 NOT_RUN = {
     "sudo ": "needs root and changes the system",
+    "TACTOR_SOAK=whole nice build/tests/study/test-study ": "simulates for minutes what the suite simulates for seconds",
+    "build/tests/study/test-study ": "the suite runs it",
     "/usr/bin/python3 -m venv": "the lane tests/lanes/python makes one",
     "~/tactor-venv/bin/pip ": "the lane tests/lanes/python installs the package",
     "tactor play STROKE --array both.toml ": "tests/machines/rtp.py plays the array over PipeWire",

@@ -187,6 +187,26 @@ class Tasks(ExperimentTest):
         self.assertIn(f", likelihood ratio {g:.2f}, p < 0.001", self.ok("analyze", "study").stdout)
         self.assertIn(f"Likelihood ratio of d' against 0: 2 ln = {g:.4g}, p = ", self.ok("report", "study").stdout)
 
+    def test_simulated_observers_lapse_to_either_key(self):
+        rates = {}
+        for code in ("01", "02", "03", "04"):
+            self.hold(tasks("values", "felt", "there", "same"), code, spec="seed=1,jnd=0.1,dprime=10,lapse=0.4")
+            for r in self.rows("values", code):
+                more = (r["response"] == "2") == (r["method_1"] == "standard")
+                if float(r["value"]) != -24:
+                    rates.setdefault(("values", float(r["value"]) > -24), []).append(more)
+            for run in ("felt", "there"):
+                for r in self.rows(run, code):
+                    if r["method_1"] == "none" or r.get("value", "n/a") == "n/a" or float(r["value"]) == -30:
+                        rates.setdefault((run, r["method_1"] != "none"), []).append(r["response"] == "1")
+            for r in self.rows("same", code):
+                if r["method_1"] != r["method_2"]:
+                    rates.setdefault(("same", True), []).append(r["response"] == "2")
+        self.assertEqual(len(rates), 7)
+        for (run, more), answers in rates.items():  # either key, in 40 % of the trials
+            expected = 0.8 if more else 0.2
+            self.assertAlmostEqual(sum(answers) / len(answers), expected, delta=4 * (0.16 / len(answers)) ** 0.5, msg=run)
+
     def check_picture(self, runs):
         """Each participant's answers are points of their size, and d' is a bar."""
         panels = {p.get("data-title"): p for p in Svg(self.dir / "a.svg").all("curves")}

@@ -155,19 +155,19 @@ std::vector<plot::spot> sample_function(const study::psychometric& p, const stud
 std::optional<plot::curve> make_mean_function(const study::run_analysis& r,
                                               const study::measured_condition& c, const plot::curve_axis& x)
 {
-    const double quartile = r.function == study::sigmoid::normal ? study::normal_quartile : std::log(3.0);
     std::vector<double> slopes;
     std::vector<double> guesses;
     for (const study::person_measures& m : c.people)
         if (m.fit && !m.fit->step) {
-            slopes.push_back(m.fit->jnd ? *m.fit->jnd / quartile : m.fit->parameters.slope);
+            slopes.push_back(m.fit->parameters.slope);
             guesses.push_back(m.guess);
         }
     if (slopes.empty())
         return {};
     return plot::curve{.thick = true,
-                       .line = sample_function({*c.figures.front().second.mean, study::mean(slopes)},
-                                               {r.function, study::mean(guesses)}, x)};
+                       .line =
+                           sample_function({*c.figures.front().second.mean, study::mean(slopes)},
+                                           study::find_family(r.run, r.function, study::mean(guesses)), x)};
 }
 
 plot::curve make_person_curve(const study::run_analysis& r, const study::person_measures& m,
@@ -175,7 +175,7 @@ plot::curve make_person_curve(const study::run_analysis& r, const study::person_
 {
     plot::curve one;
     if (m.fit)
-        one.line = sample_function(m.fit->parameters, {r.function, m.guess}, x);
+        one.line = sample_function(m.fit->parameters, study::find_family(r.run, r.function, m.guess), x);
     for (const study::answer_block& b : m.blocks)
         one.dots.push_back(
             {{b.x, 100.0 * static_cast<double>(b.k) / static_cast<double>(b.n)}, static_cast<double>(b.n)});

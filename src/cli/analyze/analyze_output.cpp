@@ -246,8 +246,7 @@ void print_measures(const study::run_analysis& r)
             for (const auto& [figure, value] : study::list_measures(r.run, c.people[i]))
                 row += fmt::format("  {} {}", figure, value_text(value));
             if (const auto& b = c.people[i].bootstrap; b.p_gof)
-                row += fmt::format("  {} {}  fit p {}", c.figures.front().first,
-                                   interval_text(r.run.task == task_kind::detect ? b.threshold : b.pse),
+                row += fmt::format("  {} {}  fit p {}", c.figures.front().first, interval_text(b.threshold),
                                    p_text(b.p_gof));
             say(stdout, "    sub-{:<{}}{}\n", r.codes[i], w, row);
         }

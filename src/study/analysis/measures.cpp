@@ -87,6 +87,11 @@ measured_condition measure_condition(const run_outline& run, const std::string& 
 
 } // namespace
 
+psychometric_family find_family(const run_outline& run, sigmoid kind, double guess) noexcept
+{
+    return run.task == task_kind::detect ? psychometric_family{kind, guess} : two_answers(kind);
+}
+
 person_measures measure_trials(const run_outline& run, const std::vector<trial>& trials, sigmoid kind,
                                std::string_view seed)
 {
@@ -117,10 +122,18 @@ person_measures measure_trials(const run_outline& run, const std::vector<trial>&
     m.blocks = make_blocks(trials);
     if (others > 0)
         m.guess = std::min(most_guess, static_cast<double>(all.false_alarms) / static_cast<double>(others));
-    const psychometric_family family{kind, m.guess};
+    const psychometric_family family = find_family(run, kind, m.guess);
     m.fit = fit_psychometric(m.blocks, family);
     if (m.fit && !seed.empty())
         m.bootstrap = bootstrap_psychometric(m.blocks, family, *m.fit, seed);
+    if (!m.fit || run.task == task_kind::detect)
+        return m;
+    m.pse = m.fit->parameters.threshold;
+    const double quartile = find_quartile(kind);
+    if (!m.fit->step)
+        m.jnd = m.fit->parameters.slope * quartile;
+    if (const auto& slope = m.bootstrap.slope)
+        m.jnd_ci = interval{slope->first * quartile, slope->second * quartile};
     return m;
 }
 
@@ -130,7 +143,7 @@ std::vector<named_measure> list_measures(const run_outline& run, const person_me
     if (run.task == task_kind::estimate)
         all.emplace_back("exponent", m.exponent);
     else if (run.task == task_kind::constant || run.task == task_kind::adaptive)
-        all = {{"pse", m.fit ? m.fit->pse : std::nullopt}, {"jnd", m.fit ? m.fit->jnd : std::nullopt}};
+        all = {{"pse", m.pse}, {"jnd", m.jnd}};
     else if (!run.vary.empty())
         all.emplace_back("threshold", m.fit ? std::optional(m.fit->parameters.threshold) : std::nullopt);
     if (run.task == task_kind::same_different || run.catches) {

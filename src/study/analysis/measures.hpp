@@ -38,10 +38,16 @@ struct person_measures {
     double guess = 0.0;                    ///< detect: share of catch trials with a yes
     std::optional<psychometric_fit> fit = {};
     psychometric_bootstrap bootstrap = {};
+    std::optional<double> pse = {}; ///< constant, adaptive: the threshold of the fit
+    std::optional<double> jnd = {}; ///< the same; none where the answers rise in one step
+    std::optional<interval> jnd_ci = {};
     std::optional<detection> detected = {};
     std::optional<double> exponent = {};
     std::vector<value_estimate> estimates = {}; ///< by value, ascending; empty without an exponent
 };
+
+/// Returns the family of a run's psychometric functions; `guess`: share of catch trials with a yes.
+psychometric_family find_family(const run_outline& run, sigmoid kind, double guess) noexcept;
 
 /// Measures trials of a participant. The bootstrap draws from `seed`; empty: there is none.
 person_measures measure_trials(const run_outline& run, const std::vector<trial>& trials, sigmoid kind,

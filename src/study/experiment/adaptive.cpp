@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "study/statistics/psychometric_fit.hpp"
+
 namespace tactor::study {
 
 void value_staircase::answer(bool positive)
@@ -33,7 +35,8 @@ adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
         return insert(value_staircase(a.down, of_condition % 2 == 1, a.steps, a.start[of_condition],
                                       values.size() - 1));
     const quest_grid grid{values, values, {}, a.slopes, a.lapses};
-    return insert(quest(grid, [](double x, const psychometric& p) { return normal_chance(x, p, 0.0); }));
+    return insert(quest(
+        grid, [](double x, const psychometric& p) { return chance(x, p, two_answers(sigmoid::normal)); }));
 }
 
 std::size_t adaptive_tracks::next(unsigned track)

@@ -260,27 +260,13 @@ bool simulated_observer::feels_more(double value, random_numbers& r) const
     const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
     const double pse = simulation_.pse.value_or(o.standard.value_or(0.5 * (least + greatest)));
     const double jnd = simulation_.jnd.value_or(0.1 * (greatest - least));
-    return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, simulation_.lapse}, 0.0);
+    return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
 }
 
 unsigned simulated_observer::measure(const planned_trial& t, random_numbers& r) const
 {
     const run_outline& o = run_.outline;
-    if (o.task == task_kind::same_different) {
-        // Differs if what is felt is further apart than this, in units of d'.
-        constexpr double criterion = std::numbers::sqrt2;
-        const double apart = t.method_1 != *t.method_2 ? simulation_.dprime : 0.0;
-        return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;
-    }
     const std::optional<double> value = find_value(definition_, t);
-    if (o.task == task_kind::detect) {
-        if (definition_.methods[t.method_1].silent && !o.vary.empty())
-            return r.unit() < simulation_.lapse ? 1 : 2;
-        if (value)
-            return feels_more(*value, r) ? 1 : 2;
-        const double felt = definition_.methods[t.method_1].silent ? 0.0 : simulation_.dprime;
-        return felt + r.normal() > 0.5 * simulation_.dprime ? 1 : 2;
-    }
     if (o.task == task_kind::estimate) {
         constexpr double modulus = 100.0; // of the standard, or of the middle value
         const double middle = o.standard.value_or(o.values[o.values.size() / 2]);
@@ -288,6 +274,22 @@ unsigned simulated_observer::measure(const planned_trial& t, random_numbers& r) 
         const double number =
             modulus * std::pow(ratio, simulation_.exponent) * std::exp(simulation_.sigma * r.normal());
         return static_cast<unsigned>(std::clamp(std::round(number), 1.0, double{most_estimate}));
+    }
+    if (simulation_.lapse > 0.0 && r.unit() < simulation_.lapse)
+        return 1 + r.below(2);
+    if (o.task == task_kind::same_different) {
+        // Differs if what is felt is further apart than this, in units of d'.
+        constexpr double criterion = std::numbers::sqrt2;
+        const double apart = t.method_1 != *t.method_2 ? simulation_.dprime : 0.0;
+        return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;
+    }
+    if (o.task == task_kind::detect) {
+        if (definition_.methods[t.method_1].silent && !o.vary.empty())
+            return 2;
+        if (value)
+            return feels_more(*value, r) ? 1 : 2;
+        const double felt = definition_.methods[t.method_1].silent ? 0.0 : simulation_.dprime;
+        return felt + r.normal() > 0.5 * simulation_.dprime ? 1 : 2;
     }
     const bool more = feels_more(*value, r);
     const bool standard_first = definition_.methods[t.method_1].name == standard_name;

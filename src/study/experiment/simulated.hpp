@@ -26,7 +26,7 @@ struct simulation {
     // Truth of tasks that measure.
     std::optional<double> pse = {}; ///< value with an even chance; none: the standard, or the middle value
     std::optional<double> jnd = {}; ///< half the distance from 25 to 75 %; none: a tenth of the values' range
-    double lapse = 0.0;             ///< chance of a negative answer to the greatest values
+    double lapse = 0.0;             ///< share of trials in which either key is pressed, each as often
     double dprime = 1.0;
     double exponent = 1.0; ///< of the estimates; sigma is the noise of their logarithm
 

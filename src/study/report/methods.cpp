@@ -415,9 +415,11 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["worths"] = has_run(has_worths);
     all["has_cells"] = has_run([](const run_outline& r) { return !find_task(r.task).measures; });
-    all["has_functions"] = has_run([](const run_outline& r) {
-        return find_task(r.task).measures && r.task != task_kind::estimate && !r.vary.empty();
-    });
+    all["has_comparisons"] = has_run(
+        [](const run_outline& r) { return r.task == task_kind::constant || r.task == task_kind::adaptive; });
+    all["has_thresholds"] =
+        has_run([](const run_outline& r) { return r.task == task_kind::detect && !r.vary.empty(); });
+    all["has_functions"] = all["has_comparisons"] || all["has_thresholds"];
     all["has_differences"] =
         has_run([](const run_outline& r) { return r.task == task_kind::same_different; });
     all["has_dprime"] = all["has_differences"] || has_run([](const run_outline& r) { return r.catches; });

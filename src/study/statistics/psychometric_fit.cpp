@@ -43,16 +43,6 @@ double normal_quantile(double share)
     return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * share, in_double());
 }
 
-// Returns the x where F is `level`, if any.
-std::optional<double> find_x(double level, const psychometric& p, const psychometric_family& f)
-{
-    const double s = (level - f.guess) / (1.0 - f.guess - p.lapse);
-    if (s <= 0.0 || s >= 1.0)
-        return {};
-    const double z = f.kind == sigmoid::normal ? normal_quantile(s) : std::log(s / (1.0 - s));
-    return p.threshold + p.slope * z;
-}
-
 // The stimuli are -1 to 1 here: z = a + b x.
 struct point {
     double a;
@@ -85,15 +75,16 @@ likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_
     const double height = 1.0 - f.guess - p.lapse;
     for (const auto& [x, trials, answers] : blocks) {
         const sigmoid_value s = evaluate(f.kind, p.a + p.b * x);
-        const double yes = std::max(f.guess + height * s.below, 1e-150);
-        const double no = std::max(p.lapse + height * s.above, 1e-150);
+        const double lapse_yes = f.lapses_to_yes * p.lapse;
+        const double yes = std::max(f.guess + lapse_yes + height * s.below, 1e-150);
+        const double no = std::max(p.lapse - lapse_yes + height * s.above, 1e-150);
         const auto n = static_cast<double>(trials);
         const auto k = static_cast<double>(answers);
         all.log += k * std::log(yes) + (n - k) * std::log(no);
         const double score = k / yes - (n - k) / no;
         const double weight = expected ? n / (yes * no) : k / (yes * yes) + (n - k) / (no * no);
         const double bent = expected ? 0.0 : score;
-        const std::array<double, 3> by{height * s.slope, height * s.slope * x, -s.below};
+        const std::array<double, 3> by{height * s.slope, height * s.slope * x, f.lapses_to_yes - s.below};
         const double aa = height * s.bend;
         const std::array<std::array<double, 3>, 3> second{
             {{aa, aa * x, -s.slope}, {aa * x, aa * x * x, -s.slope * x}, {-s.slope, -s.slope * x, 0.0}}};
@@ -210,18 +201,13 @@ double saturated(const std::vector<answer_block>& blocks)
     return sum;
 }
 
-psychometric_fit describe(const scaled_blocks& blocks, const psychometric_family& f, const summit& best)
+psychometric_fit describe(const scaled_blocks& blocks, const summit& best)
 {
     psychometric_fit fit;
     fit.parameters = {blocks.middle - blocks.half * best.at.a / best.at.b, blocks.half / best.at.b,
                       best.at.lapse};
     fit.step = best.step;
     fit.deviance = std::max(0.0, 2.0 * (saturated(blocks.all) - best.log));
-    if (f.guess > 0.0)
-        return fit;
-    fit.pse = find_x(0.5, fit.parameters, f);
-    if (const auto high = find_x(0.75, fit.parameters, f))
-        fit.jnd = (*high - *find_x(0.25, fit.parameters, f)) / 2.0;
     return fit;
 }
 
@@ -247,7 +233,13 @@ std::optional<interval> percentiles(std::vector<double> values, std::size_t time
 
 double chance(double x, const psychometric& p, const psychometric_family& f)
 {
-    return f.guess + (1.0 - f.guess - p.lapse) * evaluate(f.kind, (x - p.threshold) / p.slope).below;
+    return f.guess + f.lapses_to_yes * p.lapse +
+           (1.0 - f.guess - p.lapse) * evaluate(f.kind, (x - p.threshold) / p.slope).below;
+}
+
+double find_quartile(sigmoid kind) noexcept
+{
+    return kind == sigmoid::normal ? normal_quartile : std::log(3.0);
 }
 
 std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> blocks,
@@ -272,10 +264,7 @@ std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> b
     const auto best = find_summit(scaled.all, f, starts);
     if (!best)
         return {};
-    psychometric_fit fit = describe(scaled, f, *best);
-    if (fit.step)
-        fit.jnd.reset();
-    return fit;
+    return describe(scaled, *best);
 }
 
 psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> blocks,
@@ -292,10 +281,9 @@ psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> bloc
     for (const double lapse : {0.0, f.most_lapse / 2.0, f.most_lapse})
         starts.push_back({(scaled.middle - threshold) / slope, scaled.half / slope, lapse});
     std::vector<double> thresholds;
-    std::vector<double> pses;
-    std::vector<double> jnds;
+    std::vector<double> slopes;
     double as_large = 1.0;
-    double less_jnd = 0.5;
+    double less_slope = 0.5;
     for (std::size_t i = 0; i < times; ++i) {
         for (std::size_t j = 0; j < blocks.size(); ++j) {
             const double yes = chance(blocks[j].x, fit.parameters, f);
@@ -306,25 +294,18 @@ psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> bloc
         const auto best = find_summit(scaled.all, f, starts);
         if (!best)
             continue;
-        const psychometric_fit again = describe(scaled, f, *best);
+        const psychometric_fit again = describe(scaled, *best);
         thresholds.push_back(again.parameters.threshold);
-        if (again.pse)
-            pses.push_back(*again.pse);
-        if (again.jnd && fit.jnd) {
-            jnds.push_back(*again.jnd);
-            less_jnd += *again.jnd < *fit.jnd ? 1.0 : 0.0;
-        }
+        slopes.push_back(again.parameters.slope);
+        less_slope += again.parameters.slope < slope ? 1.0 : 0.0;
         // Rounding must not make equal answers fit better.
         as_large += again.deviance >= fit.deviance - 1e-9 * (1.0 + fit.deviance) ? 1.0 : 0.0;
     }
-    const auto share = [](double count, const std::vector<double>& all) {
-        return count / static_cast<double>(all.size() + 1);
-    };
+    const auto share = [&](double count) { return count / static_cast<double>(thresholds.size() + 1); };
     result.threshold = percentiles(thresholds, times);
-    result.pse = percentiles(pses, times);
-    result.jnd = percentiles(jnds, times, normal_quantile(share(less_jnd, jnds)));
+    result.slope = percentiles(slopes, times, normal_quantile(share(less_slope)));
     if (result.threshold)
-        result.p_gof = share(as_large, thresholds);
+        result.p_gof = share(as_large);
     result.failed = times - thresholds.size();
     return result;
 }

@@ -1,0 +1,549 @@
+// SPDX-License-Identifier: MIT
+// Tests the statistics of the tasks that measure with the answers of observers that are no model of src: a
+// cumulative normal by std::erfc, lapses to either key, and faults that no fit knows of. Prints what each
+// fault does to each figure, as tactor-analyze(1) has them; with more studies, for minutes:
+//   TACTOR_SOAK=whole nice build-tests/tests/study/test-study -sf="*observers*"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "rounds.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/experiment/adaptive.hpp"
+#include "study/statistics/psychometric_fit.hpp"
+#include "study/statistics/signal_detection.hpp"
+#include "study/statistics/tests.hpp"
+
+namespace tactor::study::test_observers {
+namespace {
+
+double phi(double z)
+{
+    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+// Faults of somebody who answers by two keys, in standard deviations of what they feel.
+struct faults {
+    std::string_view name = "none";
+    double lapse = 0.0;  ///< share of trials in which either key is pressed
+    double bias = 0.0;   ///< towards the second key
+    double drift = 0.0;  ///< of what is felt, from the first trial to the last
+    double serial = 0.0; ///< towards the key that was pressed last
+};
+// The suite has the first two.
+constexpr faults all_faults[] = {
+    {},
+    {.name = "lapses of 4 %", .lapse = 0.04},
+    {.name = "bias of half a deviation", .bias = 0.5},
+    {.name = "drift of one deviation", .drift = 1.0},
+    {.name = "pull of the last answer", .serial = 0.3},
+};
+
+std::span<const faults> faults_to_try()
+{
+    return std::span(all_faults).first(test::whole() ? std::size(all_faults) : 2);
+}
+
+class second_observer {
+public:
+    second_observer(const faults& f, std::uint64_t seed) : f_(f), engine_(seed) {}
+
+    double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+    double normal()
+    {
+        return std::sqrt(-2.0 * std::log(1.0 - unit())) * std::cos(2.0 * std::numbers::pi * unit());
+    }
+
+    // Returns true for the second key. `felt` speaks for it, and drifts in the direction `way`. `part`: place
+    // of the trial in the session, 0 to 1.
+    bool presses_second(double felt, double part, double way = 1.0)
+    {
+        const double drifted = f_.drift * (part - 0.5) * way;
+        bool second = unit() < phi(felt + drifted + f_.bias + f_.serial * last_);
+        if (f_.lapse > 0.0 && unit() < f_.lapse)
+            second = unit() < 0.5;
+        last_ = second ? 1.0 : -1.0;
+        return second;
+    }
+
+    // Returns true if the comparison of a pair is chosen.
+    bool chooses_comparison(double x_in_deviations, bool standard_first, double part)
+    {
+        const double way = standard_first ? 1.0 : -1.0;
+        return presses_second(way * x_in_deviations, part, way) == standard_first;
+    }
+
+    // Returns true for "different".
+    bool tells_different(double dprime, double criterion, double part)
+    {
+        const double felt = std::abs(dprime + normal() - normal()) - criterion;
+        bool different = felt + f_.drift * (part - 0.5) + f_.bias + f_.serial * last_ > 0.0;
+        if (f_.lapse > 0.0 && unit() < f_.lapse)
+            different = unit() < 0.5;
+        last_ = different ? 1.0 : -1.0;
+        return different;
+    }
+
+private:
+    faults f_;
+    std::mt19937_64 engine_;
+    double last_ = 0.0;
+};
+
+constexpr double jnd = 2.0;
+constexpr double deviation = jnd / 0.6744897501960817;
+constexpr double pse = 30.0;
+
+// Figures of simulated studies whose participants all have this pse and jnd.
+struct outcome {
+    int studies = 0;
+    int false_alarms = 0; ///< t tests of the pse with p < 0.05
+    int people = 0;
+    int jnds = 0;
+    double pse_sum = 0.0; ///< less the truth
+    double pse_squares = 0.0;
+    double jnd_sum = 0.0;
+    int intervals = 0;
+    int hold_pse = 0;
+    int hold_jnd = 0;
+
+    void add(const person_measures& m)
+    {
+        ++people;
+        if (m.pse) {
+            pse_sum += *m.pse - pse;
+            pse_squares += (*m.pse - pse) * (*m.pse - pse);
+        }
+        if (m.jnd) {
+            ++jnds;
+            jnd_sum += *m.jnd;
+        }
+        if (m.bootstrap.threshold && m.jnd_ci) {
+            const auto holds = [](const interval& i, double v) { return i.first <= v && v <= i.second; };
+            ++intervals;
+            hold_pse += holds(*m.bootstrap.threshold, pse) ? 1 : 0;
+            hold_jnd += holds(*m.jnd_ci, jnd) ? 1 : 0;
+        }
+    }
+    void test(const std::vector<double>& pses)
+    {
+        ++studies;
+        const t_test t = quick_test_mean(pses, pse);
+        false_alarms += t.p && *t.p < 0.05 ? 1 : 0;
+    }
+    // In jnds.
+    double bias() const { return pse_sum / people / jnd; }
+    double bias_se() const { return std::sqrt(pse_squares) / people / jnd; }
+    double jnd_ratio() const { return jnd_sum / jnds / jnd; }
+    double false_share() const { return static_cast<double>(false_alarms) / studies; }
+
+    void print(std::string_view what) const
+    {
+        fmt::print(
+            "{}: {:.1f} % of {} t tests of the pse are false; pse off by {:+.3f} jnd, jnd {:.2f} of the "
+            "truth",
+            what, 100.0 * false_share(), studies, bias(), jnd_ratio());
+        if (intervals > 0)
+            fmt::print("; of {} intervals {:.1f} % hold the pse, {:.1f} % the jnd", intervals,
+                       100.0 * hold_pse / intervals, 100.0 * hold_jnd / intervals);
+        fmt::print("\n");
+    }
+};
+
+run_outline make_run(task_kind task)
+{
+    return {.name = "run",
+            .file_name = "run",
+            .task = task,
+            .motions = {"m"},
+            .methods = {"a"},
+            .vary = "length_mm",
+            .standard = pse};
+}
+
+constexpr std::size_t per_value = 20;
+const std::vector<double> about_the_pse{-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0};
+
+std::vector<trial> hold_constant(second_observer& who, const std::vector<double>& offsets)
+{
+    std::vector<trial> all;
+    std::vector<bool> first;
+    for (std::size_t i = 0; i < per_value; ++i)
+        for (const double x : offsets) {
+            all.push_back({.value = pse + x});
+            first.push_back(i % 2 == 0);
+        }
+    std::vector<std::size_t> order(all.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    for (std::size_t i = order.size() - 1; i > 0; --i)
+        std::swap(order[i], order[static_cast<std::size_t>(who.unit() * static_cast<double>(i + 1))]);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        trial& t = all[order[i]];
+        t.positive = who.chooses_comparison((t.value - pse) / deviation, first[order[i]],
+                                            static_cast<double>(i) / static_cast<double>(order.size() - 1));
+    }
+    return all;
+}
+
+// The first participant of each study has a bootstrap, if `seed` is given.
+outcome constant_studies(const faults& f, std::size_t people, int studies, const std::vector<double>& offsets,
+                         bool bootstrap = false)
+{
+    const run_outline run = make_run(task_kind::constant);
+    outcome o;
+    for (int study = 0; study < studies; ++study) {
+        std::vector<double> pses;
+        for (std::size_t i = 0; i < people; ++i) {
+            second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
+            const person_measures m =
+                measure_trials(run, hold_constant(who, offsets), sigmoid::normal,
+                               bootstrap && i == 0 ? std::to_string(study) : std::string());
+            o.add(m);
+            if (m.pse)
+                pses.push_back(*m.pse);
+        }
+        o.test(pses);
+    }
+    return o;
+}
+
+// A run with values 1 apart, 13 on both sides of the pse.
+run_definition make_adaptive(unsigned down, unsigned tracks)
+{
+    run_definition r;
+    r.outline = make_run(task_kind::adaptive);
+    for (int i = -13; i <= 13; ++i)
+        r.outline.values.push_back(pse + i);
+    r.adaptive = {.down = down, .tracks = tracks, .steps = {4, 2, 1}, .lapses = {0.0, 0.02, 0.04}};
+    for (unsigned i = 0; i < tracks; ++i)
+        r.adaptive.start.push_back(i % 2 == 0 ? r.outline.values.size() - 1 : 0);
+    for (int i = 0; i < 5; ++i)
+        r.adaptive.slopes.push_back(0.65 * std::pow(20.0, i / 4.0)); // a fortieth to a half of the range
+    return r;
+}
+
+outcome adaptive_studies(const faults& f, const run_definition& r, std::size_t people, int studies,
+                         bool bootstrap = false)
+{
+    constexpr std::size_t trials = 60;
+    outcome o;
+    for (int study = 0; study < studies; ++study) {
+        std::vector<double> pses;
+        for (std::size_t i = 0; i < people; ++i) {
+            second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
+            adaptive_tracks tracks(r);
+            std::vector<trial> all;
+            for (std::size_t k = 0; k < trials; ++k) {
+                const auto track = static_cast<unsigned>(k % r.adaptive.tracks + 1);
+                const double x = r.outline.values[tracks.next(track)];
+                const bool more =
+                    who.chooses_comparison((x - pse) / deviation, who.unit() < 0.5,
+                                           static_cast<double>(k) / static_cast<double>(trials - 1));
+                tracks.answer(track, more);
+                all.push_back({.value = x, .positive = more});
+            }
+            const person_measures m = measure_trials(
+                r.outline, all, sigmoid::normal, bootstrap && i == 0 ? std::to_string(study) : std::string());
+            o.add(m);
+            if (m.pse)
+                pses.push_back(*m.pse);
+        }
+        o.test(pses);
+    }
+    return o;
+}
+
+TEST_CASE("two answers of equal standing have lapses at both ends")
+{
+    const psychometric_family f = two_answers(sigmoid::normal);
+    std::vector<answer_block> blocks;
+    for (const double x : {-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0}) {
+        const double share = 0.08 / 2.0 + (1.0 - 0.08) * phi((x - 0.4) / 1.7);
+        CHECK(chance(x, {0.4, 1.7, 0.08}, f) == doctest::Approx(share).epsilon(1e-12));
+        blocks.push_back({x, 100000000, static_cast<std::size_t>(std::lround(share * 1e8))});
+    }
+    const auto fit = *fit_psychometric(blocks, f);
+    CHECK(fit.parameters.threshold == doctest::Approx(0.4).epsilon(1e-5));
+    CHECK(fit.parameters.slope == doctest::Approx(1.7).epsilon(1e-5));
+    CHECK(fit.parameters.lapse == doctest::Approx(0.08).epsilon(1e-4));
+    CHECK(fit.deviance < 1e-3);
+
+    const run_outline run = make_run(task_kind::constant);
+    std::vector<trial> trials;
+    for (const answer_block& b : blocks)
+        for (std::size_t i = 0; i < 1000; ++i)
+            trials.push_back({.value = b.x, .positive = i < (b.k + 50000) / 100000});
+    const person_measures m = measure_trials(run, trials, sigmoid::normal, "");
+    CHECK(*m.pse == doctest::Approx(0.4).epsilon(0.01));
+    CHECK(*m.jnd == doctest::Approx(0.6744897501960817 * 1.7).epsilon(0.01));
+}
+
+TEST_CASE("the t test of the pse is false in one study of twenty, with lapses and without")
+{
+    for (const std::size_t people : {12U, 24U})
+        for (const double lapse : {0.0, 0.08}) {
+            const outcome o =
+                constant_studies({.lapse = lapse}, people, test::rounds(40, 1000), about_the_pse);
+            o.print(fmt::format("constant, {} observers, lapses of {} %", people, 100.0 * lapse));
+            CHECK(std::abs(o.bias()) < 3.5 * o.bias_se());
+            CHECK(o.false_share() < (test::whole() ? 0.07 : 0.15));
+            if (test::whole())
+                CHECK(o.false_share() > 0.03);
+        }
+}
+
+TEST_CASE("faults that the fit does not know of: constant stimuli, observers of a second kind")
+{
+    for (const faults& f : faults_to_try()) {
+        const outcome o = constant_studies(f, 12, test::rounds(40, 500), about_the_pse);
+        o.print(fmt::format("constant, 12 people, {}", f.name));
+        CHECK(std::abs(o.bias()) < 4.0 * o.bias_se());
+        CHECK(o.jnd_ratio() > 0.85);
+        CHECK(o.jnd_ratio() < 1.10);
+        const outcome one = constant_studies(f, 1, test::rounds(4, 150), about_the_pse, true);
+        one.print(fmt::format("constant, intervals, {}", f.name));
+        CHECK(one.hold_pse >= one.intervals * 9 / 10 - 1);
+    }
+}
+
+TEST_CASE("values that lie on one side of the pse: observers without faults")
+{
+    const outcome o = constant_studies({}, 24, test::rounds(20, 1000), {-3.0, -1.0, 0.0, 1.0, 3.0, 6.0, 9.0});
+    o.print("constant, 24 people, values from -3 to 9");
+    CHECK(std::abs(o.bias()) < 0.05);
+}
+
+TEST_CASE("staircases that are mirrored leave the pse where it is: observers of a second kind")
+{
+    for (const unsigned down : {1U, 2U, 3U})
+        for (const faults& f : faults_to_try()) {
+            const run_definition r = make_adaptive(down, 2);
+            const outcome o = adaptive_studies(f, r, 12, test::rounds(20, 400));
+            o.print(fmt::format("1up{}down, 12 people, {}", down, f.name));
+            if (f.drift == 0.0) { // a staircase asks at other times than values in random order do
+                CHECK(std::abs(o.bias()) < 4.0 * o.bias_se());
+                CHECK(o.false_share() < (test::whole() ? 0.08 : 0.26));
+            }
+            CHECK(o.jnd_ratio() > 0.7);
+            CHECK(o.jnd_ratio() < 1.1);
+            if (test::whole() && &f == all_faults)
+                adaptive_studies(f, r, 1, 150, true)
+                    .print(fmt::format("1up{}down, intervals, {}", down, f.name));
+        }
+}
+
+TEST_CASE("QUEST+ leaves the pse where it is: observers of a second kind")
+{
+    const run_definition r = make_adaptive(0, 2);
+    for (const faults& f : faults_to_try()) {
+        if (!test::whole() && f.lapse > 0.0)
+            continue;
+        const outcome o = adaptive_studies(f, r, 12, test::rounds(2, 200));
+        o.print(fmt::format("QUEST+, 12 people, {}", f.name));
+        if (f.drift == 0.0)
+            CHECK(std::abs(o.bias()) < 4.0 * o.bias_se());
+        CHECK(o.jnd_ratio() > 0.75);
+        if (test::whole() && &f == all_faults)
+            adaptive_studies(f, r, 1, 150, true).print(fmt::format("QUEST+, intervals, {}", f.name));
+    }
+}
+
+// Returns a participant's trials of detect, half of them without a stimulus, or of same-different. With
+// values: of detect, whose stimuli are felt more the greater they are.
+std::vector<trial> hold_signals(second_observer& who, task_kind task, double dprime, bool by_value,
+                                double catches)
+{
+    constexpr std::size_t trials = 120;
+    std::vector<trial> all;
+    for (std::size_t k = 0; k < trials; ++k) {
+        const double part = static_cast<double>(k) / (trials - 1);
+        trial t{.signal = who.unit() >= catches};
+        t.value = by_value ? about_the_pse[static_cast<std::size_t>(who.unit() * 7.0)] : 0.0;
+        if (task == task_kind::same_different)
+            t.positive = who.tells_different(t.signal ? dprime : 0.0, 1.4, part);
+        else
+            t.positive = who.presses_second(
+                by_value ? (t.signal ? t.value / deviation : -9.0) : (t.signal ? 0.5 : -0.5) * dprime, part);
+        all.push_back(t);
+    }
+    return all;
+}
+
+TEST_CASE("faults and d', thresholds, exponents and choices: observers of a second kind")
+{
+    const int people = test::rounds(120, 2000);
+    for (const faults& f : faults_to_try()) {
+        std::map<std::string_view, double> sums;
+        double chosen = 0.0;
+        for (int i = 0; i < people; ++i) {
+            second_observer who(f, static_cast<std::uint64_t>(i));
+            run_outline run{.name = "run", .file_name = "run", .task = task_kind::detect};
+            run.catches = true;
+            const auto measure = [&](task_kind task, double dprime, bool by_value) {
+                run.task = task;
+                run.vary = by_value ? "length_mm" : "";
+                return measure_trials(run, hold_signals(who, task, dprime, by_value, 0.5), sigmoid::normal,
+                                      "");
+            };
+            const auto yes_no = measure(task_kind::detect, 1.5, false);
+            sums["detect, d' of 1.5"] += yes_no.detected->found.dprime / people;
+            sums["detect, c of 0"] += yes_no.detected->found.c / people;
+            const auto fit = measure(task_kind::detect, 0.0, true).fit;
+            sums["detect, threshold of 0, in jnds"] += fit ? fit->parameters.threshold / jnd / people : 0.0;
+            sums["same-different, d' of 2"] +=
+                measure(task_kind::same_different, 2.0, false).detected->found.dprime / people;
+            std::vector<double> values;
+            std::vector<double> numbers;
+            double last = 0.0;
+            for (int k = 0; k < 40; ++k) {
+                values.push_back(
+                    std::array{5.0, 10.0, 20.0, 40.0}[static_cast<std::size_t>(who.unit() * 4.0)]);
+                const double felt = 0.6 * std::log(values.back() / 14.1);
+                // In deviations of the noise of 0.2; who lapses names any number.
+                const double off = 0.2 * (f.bias + f.drift * (k / 39.0 - 0.5)) + f.serial * (last - felt);
+                last = who.unit() < f.lapse ? 2.0 * who.unit() - 1.0 : felt + off + 0.2 * who.normal();
+                numbers.push_back(std::exp(last));
+            }
+            sums["exponent of 0.6"] += *stevens_exponent(values, numbers) / people;
+            for (int k = 0; k < 40; ++k) { // the better method is felt half a deviation better
+                const double way = who.unit() < 0.5 ? 1.0 : -1.0;
+                chosen += who.presses_second(0.5 * way, k / 39.0, 0.0) == (way > 0.0) ? 2.5 / people : 0.0;
+            }
+        }
+        for (const auto& [figure, sum] : sums)
+            fmt::print("{}: {:.3f} with {}\n", figure, sum, f.name);
+        fmt::print("choose, 69.1 %: {:.1f} % with {}\n", chosen, f.name);
+        if (f.lapse == 0.0 && f.bias == 0.0 && f.drift == 0.0 && f.serial == 0.0) {
+            CHECK(sums["detect, d' of 1.5"] == doctest::Approx(1.5).epsilon(0.06));
+            CHECK(std::abs(sums["detect, threshold of 0, in jnds"]) < 0.15);
+            CHECK(sums["same-different, d' of 2"] == doctest::Approx(2.0).epsilon(0.06));
+            CHECK(sums["exponent of 0.6"] == doctest::Approx(0.6).epsilon(0.02));
+        }
+    }
+}
+
+TEST_CASE("d' of detect leans below 0 where few trials have no stimulus: observers who feel nothing")
+{
+    run_outline run{.name = "run", .file_name = "run", .task = task_kind::detect};
+    run.catches = true;
+    for (const double catches : {0.5, 0.2})
+        for (const double yes : {0.02, 0.1, 0.3}) {
+            const int studies = test::rounds(40, 1000);
+            int found = 0;
+            double sum = 0.0;
+            for (int study = 0; study < studies; ++study) {
+                std::vector<double> all;
+                for (std::size_t i = 0; i < 12; ++i) {
+                    second_observer who({}, static_cast<std::uint64_t>(study) * 1000 + i);
+                    std::vector<trial> own(40);
+                    for (std::size_t k = 0; k < own.size(); ++k) {
+                        own[k].signal = static_cast<double>(k) >= catches * 40.0;
+                        own[k].positive = who.unit() < yes;
+                    }
+                    all.push_back(measure_trials(run, own, sigmoid::normal, "").detected->found.dprime);
+                    sum += all.back();
+                }
+                const t_test t = quick_test_mean(all, 0.0);
+                found += t.p && *t.p < 0.05 ? 1 : 0;
+            }
+            fmt::print("detect, 12 people, 40 trials, catch {}, yes in {} %: {:.1f} % of t tests are false, "
+                       "d' {:+.2f}\n",
+                       catches, 100.0 * yes, 100.0 * found / studies, sum / studies / 12.0);
+            if (catches == 0.5)
+                CHECK(found <= studies * 14 / 100);
+        }
+}
+
+TEST_CASE("a mirrored staircase is the other one upside down")
+{
+    const auto walk = [](bool mirrored, std::string_view answers) {
+        value_staircase s(2, mirrored, {4, 2, 1}, 10, 20);
+        std::vector<std::size_t> places;
+        for (const char a : answers) {
+            s.answer(a == '+');
+            places.push_back(s.place());
+        }
+        return places;
+    };
+    CHECK(walk(false, "++--+++-") == std::vector<std::size_t>{10, 6, 10, 14, 14, 12, 12, 14});
+    CHECK(walk(true, "--++---+") == std::vector<std::size_t>{10, 14, 10, 6, 6, 8, 8, 6});
+}
+
+TEST_CASE("the likelihood ratio of same-different answers is that of the counts")
+{
+    // G of a table of two rows: 2 sum of observed ln (observed / expected).
+    const difference_counts one{30, 40, 18, 40};
+    const double expected = 2.0 * (30 * std::log(30 / 24.0) + 10 * std::log(10 / 16.0) +
+                                   18 * std::log(18 / 24.0) + 22 * std::log(22 / 16.0));
+    const auto found = *test_difference(std::vector{one}, "a");
+    CHECK(found.likelihood_ratio == doctest::Approx(expected).epsilon(1e-12));
+    // Fisher's exact p of 30 hits or more among 48 answers: 0.00582 (by hand, from binomial coefficients).
+    double tail = 0.0;
+    double all = 0.0;
+    for (int hits = 8; hits <= 40; ++hits) {
+        const double chance = std::exp(-std::lgamma(hits + 1) - std::lgamma(41 - hits) -
+                                       std::lgamma(49 - hits) - std::lgamma(hits - 7));
+        all += chance;
+        tail += hits >= 30 ? chance : 0.0;
+    }
+    CHECK(std::abs(found.p - tail / all) < 4.0 * std::sqrt(tail / all / 2000.0) + 1.0 / 2001.0);
+    CHECK(found.studies == 2000);
+    CHECK(found.p == test_difference(std::vector{one}, "a")->p);
+    CHECK(found.p != test_difference(std::vector{one}, "b")->p);
+    // Fewer hits than false alarms say nothing against d' = 0.
+    CHECK(test_difference(std::vector<difference_counts>{{10, 40, 18, 40}}, "a")->likelihood_ratio == 0.0);
+    CHECK(test_difference(std::vector<difference_counts>{{10, 40, 18, 40}}, "a")->p == 1.0);
+    for (const difference_counts& edge : {difference_counts{0, 40, 0, 40}, {40, 40, 40, 40}, {5, 5, 0, 30}}) {
+        const auto t = *test_difference(std::vector{edge}, "a");
+        CHECK(t.p == doctest::Approx(edge.different == 5 ? 1.0 / 2001.0 : 1.0).epsilon(0.01));
+    }
+    CHECK(!test_difference({}, "a"));
+}
+
+TEST_CASE("of studies without a difference 3 to 7 % find one, by observers of a second kind")
+{
+    constexpr std::size_t trials = 40;
+    for (const faults& f : faults_to_try())
+        for (const std::size_t people : {8U, 12U, 24U})
+            for (const double criterion : {1.0, 2.5}) {
+                const int studies = test::rounds(f.lapse > 0.0 ? 20 : 60, 1000);
+                int found = 0;
+                for (int study = 0; study < studies; ++study) {
+                    std::vector<difference_counts> all(people);
+                    for (std::size_t i = 0; i < people; ++i) {
+                        second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
+                        for (std::size_t k = 0; k < trials; ++k) {
+                            const bool differ = who.unit() < 0.5;
+                            const bool told =
+                                who.tells_different(0.0, criterion, static_cast<double>(k) / (trials - 1));
+                            (differ ? all[i].different : all[i].same) += 1;
+                            (differ ? all[i].hits : all[i].false_alarms) += told ? 1 : 0;
+                        }
+                    }
+                    found += test_difference(all, std::to_string(study))->p < 0.05 ? 1 : 0;
+                }
+                fmt::print("same-different, no difference, {} people, criterion {}, {}: {:.1f} % of {}\n",
+                           people, criterion, f.name, 100.0 * found / studies, studies);
+                CHECK(found <= (test::whole() ? studies * 7 / 100 : studies / 8 + 1));
+                if (test::whole())
+                    CHECK(found >= studies * 3 / 100);
+            }
+}
+
+} // namespace
+} // namespace tactor::study::test_observers
