@@ -310,6 +310,55 @@ class Tasks(ExperimentTest):
             line = 1 + [x.split(" =")[0] for x in text.splitlines()].index(at or "[[run]]")
             self.assertIn(f"tasks.toml:{line}:", told, (run, new, told))
 
+    def test_a_key_that_cannot_be_planned_is_named_where_it_stands(self):
+        head = '[experiment]\nname = "soa"\narray = "palm-3x3"\nlevel = { dbfs = -18 }\n' + toml("motion", "across", path="M 2 20 H 38", duration=1)
+        soa = dict(question="?", vary="soa_s", trials=8)
+        adaptive = toml("run", "quest", task="adaptive", procedure="quest", range=[0.05, 0.13], standard=0.09, **soa)
+        plain = toml("run", "which", task="rate", attribute="uniformity", trials=2)
+        for text, line, says in (
+                (toml("method", "a") + adaptive, "range", 'soa_s = 0.1 of motion "across" by method "a": soa_s: 0.1 s is out of bounds'),
+                (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.2], standard=0.07, **soa), "values", "soa_s = 0.2 of motion"),
+                (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.06], standard=0.2, **soa), "standard", "soa_s = 0.2 of motion"),
+                (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" by method "a": soa: 0.01 s is out of bounds'),
+                (toml("method", "a", soa_s=0.01) + plain, "soa_s", 'motion "across" by method "a": soa_s: 0.01 s is out of bounds')):
+            self.write("tasks.toml", head + text)
+            told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says]).stderr
+            self.assertIn(f"tasks.toml:{1 + [x.split(' =')[0] for x in (head + text).splitlines()].index(line)}:", told)
+        # No value mends a motion that leaves the array.
+        text = head.replace("H 38", "H 380") + toml("method", "a") + adaptive.replace("0.13", "0.09")
+        self.write("tasks.toml", text)
+        told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=["leaves the array"]).stderr
+        self.assertIn(f"tasks.toml:{1 + text.splitlines().index('[[motion]]')}:", told)
+
+    def test_the_dry_run_shows_values_and_counts_trials_by_value(self):
+        self.write("tasks.toml", TASKS)
+        told = {r["name"]: r for r in json.loads(self.ok("experiment", "tasks.toml", "--dry-run", "--format", "json").stdout)["runs"]}
+        for name, run in told.items():
+            values = [t["value"] for t in run["trials"]]
+            stated = {v["value"]: v["trials"] for v in run["values"]}
+            if name in ("values", "words", "felt", "size"):
+                self.assertEqual(stated, {v: values.count(v) for v in set(values)})
+                own = TASKS.partition(f'name = "{name}"')[2].partition("values = [")[2].partition("]")[0]
+                self.assertEqual({v for v in stated if v is not None}, {float(v) for v in own.split(",")})
+            else:
+                self.assertEqual((stated, set(values)), ({}, {None}), name)
+            self.assertEqual({t["track"] for t in run["trials"]}, {"bayes": {1}, "stairs": {1, 2, 3, 4}}.get(name, {None}), name)
+        said = " ".join(self.ok("experiment", "tasks.toml", "--dry-run").stdout.split())
+        self.assertIn("level_dbfs: -36 in 20 trials, -32 in 20 trials, -28 in 20 trials,", said)
+        self.assertIn("level_dbfs: none in 10 trials, -60 in 10 trials,", said)
+        self.assertRegex(said, r"\d+ east park standard (-36|-32|-28|-24|-20|-16|-12) 0\.")
+        self.assertRegex(said, r"\d+ east park standard track \d 0\.")
+
+    def test_figures_have_the_digits_of_their_values(self):
+        run = toml("run", "taps", task="constant", question="?", methods=["park"], vary="soa_s", values=[0.06, 0.07, 0.08, 0.09], standard=0.075, trials=80)
+        text = measures("desk.toml", run)
+        for code in ("01", "02"):
+            self.hold(text, code, spec=f"seed={code},pse=0.075,jnd=0.004")
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["taps"]["psychometric"]
+        said = self.ok("analyze", "study").stdout
+        self.assertRegex(said, rf"\n  pse against 0\.075 +{told['mean']['pse']:.4f} \(se 0\.\d{{4}}\), 95 % -?0\.\d{{4}} \.\.\. 0\.\d{{4}}")
+        self.assertIn(f"jnd {told['participants']['01']['jnd']:.4f}", said)
+
     def test_the_shipped_studies_run_from_definition_to_figure(self):
         experiments = ROOT / "examples/experiments"
         for name, spec, groups, sessions, check in (

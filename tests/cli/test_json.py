@@ -29,7 +29,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova"}}
+            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
@@ -78,6 +78,8 @@ MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_
             + studies.run("some", "detect", 8, catch=0.5)
             + studies.run("same", "same-different", 16, methods=["park", "soft"])
             + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20]))
+
+TRACKS = studies.run("climb", "adaptive", 12, question="?", vary="length_mm", procedure="1up1down", range=[4, 8], standard=6)
 
 LINE = FELT.replace('task = "identify"', 'task = "rate"\nattribute = "even"\nquestion = "?"\nscale = "vas"\nlabels = ["no", "yes"]')
 
@@ -165,7 +167,7 @@ class Schemas(ToolTest):
         self.write("line.toml", LINE)
         self.write("grouped.toml", FELT.replace("name", "sessions = 2\nname", 1) + '[[group]]\nname = "a"\n')
         self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a", "--session", "1")
-        self.write("measured.toml", MEASURED)
+        self.write("measured.toml", MEASURED + TRACKS)
         for code in "123":
             self.ok("experiment", "measured.toml", "--participant", code, "-o", "measured", "--simulate", f"seed={code},jnd=4,sigma=0.2,dprime=1")
         studies.grouped(self.dir / "compared")
@@ -185,7 +187,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

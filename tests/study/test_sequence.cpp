@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -23,6 +22,7 @@
 #include "core/sha256.hpp"
 #include "folder.hpp"
 #include "has.hpp"
+#include "sequences.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
@@ -33,17 +33,6 @@ namespace tactor::study::test_sequence {
 namespace {
 
 constexpr std::uint64_t seeds = 10000;
-
-experiment_definition with_run(const std::string& run, unsigned motions = 4, unsigned methods = 2)
-{
-    std::string text = "[experiment]\nname = \"e\"\n";
-    for (unsigned i = 1; i <= motions; ++i)
-        text += fmt::format("[[motion]]\nname = \"m{}\"\npath = \"M0 0H{}\"\n", i, 10 * i);
-    text += "[[method]]\nname = \"a\"\nalgorithm = \"tactile-brush\"\n[[method]]\nname = \"b\"\n";
-    for (unsigned i = 3; i <= methods; ++i)
-        text += fmt::format("[[method]]\nname = \"{}\"\n", i);
-    return read_definition(text + "[[run]]\nname = \"r\"\n" + run, "e.toml", {});
-}
 
 std::string order_text(std::size_t n, const std::string& code)
 {
@@ -75,20 +64,6 @@ std::vector<std::size_t> list_runs(const std::vector<run_sequence>& all)
 }
 
 const std::string rate_24 = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 24\n";
-
-// Returns the probability of counts so far from equal, if all are equally likely.
-double p_of_equal(const std::vector<double>& counts)
-{
-    double sum = 0.0;
-    for (const double c : counts)
-        sum += c;
-    const double expected = sum / static_cast<double>(counts.size());
-    double chi2 = 0.0;
-    for (const double c : counts)
-        chi2 += (c - expected) * (c - expected) / expected;
-    const boost::math::chi_squared d(static_cast<double>(counts.size() - 1));
-    return boost::math::cdf(boost::math::complement(d, chi2));
-}
 
 TEST_CASE("four runs come in the paper's Williams square")
 {
@@ -354,22 +329,6 @@ TEST_CASE("orders are the same on every machine")
     CHECK(practice == "109 019 319 209 009 109 219 319 010 110 201 301 010 101 301 210 ");
     CHECK(detail::sha256_text(text) == "866bef5c522d737ae0444c7727c23b761f1c856c82d5569e5061dbc08b59e25e");
     CHECK(default_seed("abc") == 0xba7816bf);
-}
-
-TEST_CASE("an impossible order is refused, and one motion is no order")
-{
-    const std::string many = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 200\n";
-    has(caught_message([&] { make_run(with_run(many, 2), 0, "01", 1); }), "several runs with fewer trials");
-    CHECK(make_run(with_run(many, 1), 0, "01", 1).trials.size() == 200);
-}
-
-TEST_CASE("long runs try fewer orders, so that the refusal comes soon")
-{
-    static_assert(most_draws(1) == 1000000);
-    static_assert(most_draws(200) == 1000000);
-    static_assert(most_draws(10000) == 20000);
-    const std::string many = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 10000\n";
-    has(caught_message([&] { make_run(with_run(many, 2), 0, "01", 1); }), "no order of 10000 trials");
 }
 
 TEST_CASE("random rests are in their range, the same each time, and leave the order as it is")

@@ -25,9 +25,9 @@ namespace {
 using json = nlohmann::ordered_json;
 using study::task_kind;
 
-std::string value_text(std::optional<double> v)
+std::string value_text(std::optional<double> v, int decimals = 2)
 {
-    return v ? fmt::format("{:.2f}", *v) : "-";
+    return v ? fmt::format("{:.{}f}", *v, decimals) : "-";
 }
 
 std::string p_text(std::optional<double> p)
@@ -40,9 +40,9 @@ std::string p_clause(std::optional<double> p)
     return !p ? "p -" : *p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", *p);
 }
 
-std::string interval_text(const std::optional<study::interval>& i)
+std::string interval_text(const std::optional<study::interval>& i, int decimals = 2)
 {
-    return i ? fmt::format("{:.2f} ... {:.2f}", i->first, i->second) : "-";
+    return i ? fmt::format("{:.{}f} ... {:.{}f}", i->first, decimals, i->second, decimals) : "-";
 }
 
 std::string interval_text(const std::optional<study::interval>& i, const study::interval& possible)
@@ -218,6 +218,17 @@ std::string figure_text(const study::run_outline& run, std::string_view figure, 
     return is_main && against ? fmt::format("{} against {}", name, *against) : name;
 }
 
+// Returns the decimals of a figure: of one in the unit of the values as many as a hundredth of their range
+// has, two at least.
+int count_decimals(const study::run_outline& run, std::string_view figure)
+{
+    constexpr int usual = 2;
+    if (figure != "pse" && figure != "jnd" && figure != "threshold")
+        return usual;
+    const double range = run.values.back() - run.values.front();
+    return std::max(usual, usual - static_cast<int>(std::floor(std::log10(range))));
+}
+
 void print_measures(const study::run_analysis& r)
 {
     if (!r.run.vary.empty())
@@ -229,6 +240,7 @@ void print_measures(const study::run_analysis& r)
             say(stdout, "  {}\n", c.name);
         for (std::size_t k = 0; k < c.figures.size(); ++k) {
             const auto& [figure, t] = c.figures[k];
+            const int decimals = count_decimals(r.run, figure);
             std::string test;
             if (k == 0 && c.difference)
                 test = fmt::format(", likelihood ratio {:.2f}, {}", c.difference->likelihood_ratio,
@@ -236,7 +248,7 @@ void print_measures(const study::run_analysis& r)
             else if (k == 0 && t.t && study::measured_against(r.run))
                 test = ", " + t_text(t);
             say(stdout, "  {:<22} {:>8} (se {}), 95 % {}{}\n", figure_text(r.run, figure, k == 0),
-                value_text(t.mean), value_text(t.se), interval_text(t.ci), test);
+                value_text(t.mean, decimals), value_text(t.se, decimals), interval_text(t.ci, decimals), test);
         }
         if (!c.name.empty())
             continue;
@@ -244,9 +256,11 @@ void print_measures(const study::run_analysis& r)
         for (std::size_t i = 0; i < r.codes.size(); ++i) {
             std::string row;
             for (const auto& [figure, value] : study::list_measures(r.run, c.people[i]))
-                row += fmt::format("  {} {}", figure, value_text(value));
+                row += fmt::format("  {} {}", figure, value_text(value, count_decimals(r.run, figure)));
             if (const auto& b = c.people[i].bootstrap; b.p_gof)
-                row += fmt::format("  {} {}  fit p {}", c.figures.front().first, interval_text(b.threshold),
+                row += fmt::format("  {} {}  fit p {}", c.figures.front().first,
+                                   interval_text(b.threshold,
+                                                 count_decimals(r.run, c.figures.front().first)),
                                    p_text(b.p_gof));
             say(stdout, "    sub-{:<{}}{}\n", r.codes[i], w, row);
         }

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <tactor/render.hpp>
@@ -29,6 +32,24 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+// Returns the value of a trial; none for one of a track, which the answers choose.
+std::optional<double> find_planned_value(const study::prepared_experiment& p, const study::planned_trial& t)
+{
+    return t.track > 0 ? std::nullopt : study::find_value(p.definition, t);
+}
+
+// Counts the trials of a run by value, those without a stimulus first; empty if the run has no values.
+std::map<std::optional<double>, std::size_t> count_values(const study::prepared_experiment& p,
+                                                          const study::run_sequence& s)
+{
+    std::map<std::optional<double>, std::size_t> counts;
+    const study::run_outline& r = p.definition.runs[s.run].outline;
+    if (!r.vary.empty() && r.task != study::task_kind::adaptive)
+        for (const study::planned_trial& t : s.trials)
+            ++counts[find_planned_value(p, t)];
+    return counts;
+}
+
 json trials_json(const study::prepared_experiment& p, const std::vector<study::planned_trial>& trials)
 {
     json all = json::array();
@@ -38,6 +59,8 @@ json trials_json(const study::prepared_experiment& p, const std::vector<study::p
                        {"motion", r.motion},
                        {"method_1", r.method_1},
                        {"method_2", files::or_null(r.method_2)},
+                       {"value", files::or_null(find_planned_value(p, t))},
+                       {"track", t.track > 0 ? json(t.track) : json(nullptr)},
                        {"duration_s", r.duration_s},
                        {"rest_s", t.rest_s},
                        {"plan_1", r.plan_1},
@@ -63,6 +86,9 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
     j["duration_s"] = t.total_s;
     j["waits"] = t.waits;
     j["waits_s"] = t.waits_s;
+    j["values"] = json::array();
+    for (const auto& [value, trials] : count_values(p, s))
+        j["values"].push_back({{"value", files::or_null(value)}, {"trials", trials}});
     j["practice"] = trials_json(p, s.practice);
     j["trials"] = trials_json(p, s.trials);
     return j;
@@ -221,8 +247,13 @@ void print_dry_run_text(const study::prepared_experiment& p)
             counted(q.items.size(), "item"));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
         const study::trial_row r = study::planned_row(p, t, {});
-        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,
-            r.method_2.empty() ? "-" : r.method_2, r.duration_s);
+        const std::optional<double> v = find_planned_value(p, t);
+        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>8} {:>7.3f}\n", place, r.motion, r.method_1,
+            r.method_2.empty() ? "-" : r.method_2,
+            v             ? plain_number(*v)
+            : t.track > 0 ? fmt::format("track {}", t.track)
+                          : "-",
+            r.duration_s);
     };
     const std::vector<study::run_time> times = study::session_times(p);
     for (std::size_t i = 0; i < p.runs.size(); ++i) {
@@ -231,7 +262,14 @@ void print_dry_run_text(const study::prepared_experiment& p)
         say(stdout, "\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(), r.outline.name,
             to_string(r.outline.task), r.animation ? ", animation" : "", counted(s.trials.size(), "trial"),
             time_text(times[i]), r.outline.question);
-        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7}\n", "trial", "motion", "method_1", "method_2", "s");
+        std::vector<std::string> values;
+        for (const auto& [value, trials] : count_values(p, s))
+            values.push_back(
+                fmt::format("{} in {}", value ? plain_number(*value) : "none", counted(trials, "trial")));
+        if (!values.empty())
+            say(stdout, "{}", wrapped(r.outline.vary + ": ", fmt::format("{}", fmt::join(values, ", "))));
+        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>8} {:>7}\n", "trial", "motion", "method_1", "method_2",
+            "value", "s");
         for (const study::planned_trial& t : s.practice)
             row(t, "practice");
         for (std::size_t k = 0; k < s.trials.size(); ++k)

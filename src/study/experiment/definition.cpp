@@ -333,13 +333,13 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     options::wishes w;
     w.place = options::in_method;
     if (!d.level_dbfs)
-        w.render.sl_db = d.sl_db;                 // until the method gives its own
-    std::map<std::size_t, std::string_view> keys; // by row
+        w.render.sl_db = d.sl_db; // until the method gives its own
+    std::map<std::size_t, written_key> keys;
     for (const toml_table::said_key& k : t.entries()) {
         if (k.key == "name" || std::find(stroke_keys.begin(), stroke_keys.end(), k.key) != stroke_keys.end())
             continue;
         const options::option& o = find_method_option(k);
-        if (!keys.emplace(options::index(o), k.key).second)
+        if (!keys.emplace(options::index(o), written_key{std::string(k.key), t.where(k.key)}).second)
             t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
         at_key(t, k.key,
                [&] { give_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder); });
@@ -347,12 +347,12 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     try {
         options::settle(w);
     } catch (const error& e) {
-        at_key(t, keys.at(options::index(*options::find(e.field()))), [&e] { throw error(e); });
+        at_key(t, keys.at(options::index(*options::find(e.field()))).key, [&e] { throw error(e); });
     }
     std::optional<stroke> drawn;
     if (folder != nullptr)
         drawn = read_stroke(t, *folder, w.duration_s, w.speed_mm_s);
-    return {name_in(t, "name"), std::move(w), std::move(drawn), t.where()};
+    return {name_in(t, "name"), std::move(w), std::move(drawn), t.where(), std::move(keys)};
 }
 
 // Refuses a run with too few motions or methods for its task.
@@ -449,12 +449,12 @@ std::vector<std::string> read_choices(const toml_table& t, const run_outline& o,
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
                                    std::vector<method_definition>& variants)
 {
-    t.only({"name",           "task",      "attribute", "question", "animation",
-            "trials",         "practice",  "scale",     "labels",   "choices",
-            "break_s",        "motions",   "methods",   "blocks",   "simulate_as",
-            "min_response_s", "vary",      "values",    "standard", "trials_per_value",
-            "catch",          "procedure", "start",     "steps",    "range",
-            "tracks",         "slope",     "lapse"});
+    t.only({"name",           "task",      "attribute", "question",    "animation",
+            "trials",         "practice",  "scale",     "labels",      "choices",
+            "break_s",        "motions",   "methods",   "blocks",      "simulate_as",
+            "min_response_s", "vary",      "values",    "standard",    "trials_per_value",
+            "catch",          "procedure", "start",     "steps",       "range",
+            "tracks",         "slope",     "lapse",     "max_in_a_row"});
     run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
@@ -478,6 +478,8 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");
     r.practice = t.whole("practice", 0, most_trials).value_or(0);
+    r.max_in_a_row =
+        t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // 1: catch trials have no order
     const std::vector<std::string>& labels = r.outline.labels;
     if (r.outline.visual && labels.size() != 2)
         t.fail(t.has("labels") ? "labels" : "scale",

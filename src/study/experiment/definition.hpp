@@ -36,12 +36,19 @@ struct motion_definition {
     source_place where = {};
 };
 
+/// A key as the definition writes it.
+struct written_key {
+    std::string key; ///< with its unit or without
+    source_place where;
+};
+
 /// [[method]]: how a motion is planned, and how it sounds.
 struct method_definition {
     std::string name;
-    options::wishes options = {};     ///< options that it gives, and defaults
-    std::optional<stroke> drawn = {}; ///< stroke in place of the motion's
-    source_place where = {};
+    options::wishes options = {};                 ///< options that it gives, and defaults
+    std::optional<stroke> drawn = {};             ///< stroke in place of the motion's
+    source_place where = {};                      ///< of a variant with a value: that of the run's values
+    std::map<std::size_t, written_key> keys = {}; ///< options that its table gives, by row
     std::optional<std::size_t> made_of =
         {};                           ///< method of which a run made it: variation.hpp; none: it stands there
     std::optional<double> value = {}; ///< of a run that varies one
@@ -85,6 +92,7 @@ struct run_definition {
     std::map<std::size_t, method_variants> variants = {}; ///< by method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
     adaptive_options adaptive = {};
+    unsigned max_in_a_row = 3; ///< trials of one motion, where a block has several
     std::string blocks = {}; ///< methods or motions: the trials of each stand together; empty: all are mixed
     source_place where = {};
 };

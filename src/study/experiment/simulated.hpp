@@ -98,7 +98,7 @@ struct run_power {
 /// Simulates the studies of the part and tests each. Study k (from 0) has the participants 01, 02, ... whose
 /// observers have the seed of `observer` plus k, and hold all sessions. A study of n has the first n
 /// participants of a larger one. Void trials come again. Calls `go_on` before each study, and returns nothing
-/// if it returns false. \throws error (bad_input) as simulated_observer and make_run() do.
+/// if it returns false. \throws error (bad_input) as simulated_observer does.
 std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
                                                      const stimulus_set& stimuli, const power_request& r,
                                                      const std::function<bool()>& go_on);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "options/option.hpp"
 #include "options/settle.hpp"
 #include "session/piece.hpp"
+#include "study/experiment/trial_order.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/random/random.hpp"
 #include "synth/score/joined.hpp"
@@ -92,22 +94,58 @@ std::vector<planned_trial> list_measured_cells(const run_definition& r)
     return cells;
 }
 
+std::size_t count_catches(const run_definition& r, std::size_t trials)
+{
+    return static_cast<std::size_t>(std::llround(r.catch_share * static_cast<double>(trials)));
+}
+
+void add_catches(std::vector<planned_trial>& all, const run_definition& r, std::size_t n)
+{
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t method = r.methods[i / r.motions.size() % r.methods.size()];
+        all.push_back({r.motions[i % r.motions.size()], *r.variants.at(method).silent});
+    }
+}
+
 // Draws n trials of a task that measures: each cell equally often, and of the rest different cells. With
 // catch trials, these are a part of the n.
 std::vector<planned_trial> draw_measured(const run_definition& r, std::size_t n, random_numbers& numbers)
 {
     std::vector<planned_trial> cells = list_measured_cells(r);
-    const auto catches = static_cast<std::size_t>(std::llround(r.catch_share * static_cast<double>(n)));
+    const std::size_t catches = count_catches(r, n);
     std::vector<planned_trial> all;
     for (std::size_t i = 0; i < n - catches; ++i) {
         if (i == n - catches - (n - catches) % cells.size())
             shuffle(std::span(cells), numbers);
         all.push_back(cells[i % cells.size()]);
     }
-    for (std::size_t i = 0; i < catches; ++i) {
-        const std::size_t method = r.methods[i / r.motions.size() % r.methods.size()];
-        all.push_back({r.motions[i % r.motions.size()], *r.variants.at(method).silent});
+    add_catches(all, r, catches);
+    return all;
+}
+
+// Draws the trials of such a run again, fewer than there are cells, so that the motions take turns, and those
+// of each method, too.
+std::vector<planned_trial> draw_by_turns(const experiment_definition& d, const run_definition& r,
+                                         random_numbers& numbers)
+{
+    std::vector<planned_trial> cells = list_measured_cells(r);
+    shuffle(std::span(cells), numbers);
+    // The turn of a cell: the number of earlier cells with its motion and method, then of those with its
+    // motion that have the same number.
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> cells_before;
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> turns_before;
+    std::multimap<std::pair<std::size_t, std::size_t>, planned_trial> turns;
+    for (const planned_trial& t : cells) {
+        const std::size_t method = d.methods[t.method_1].made_of.value_or(t.method_1);
+        const std::size_t turn = cells_before[{t.motion, method}]++;
+        turns.emplace(std::pair(turn, turns_before[{t.motion, turn}]++), t);
     }
+    const std::size_t catches = count_catches(r, r.outline.trials);
+    std::vector<planned_trial> all;
+    for (const auto& [turn, t] : turns)
+        if (all.size() < r.outline.trials - catches)
+            all.push_back(t);
+    add_catches(all, r, catches);
     return all;
 }
 
@@ -168,17 +206,6 @@ void draw_rests(std::vector<planned_trial>& trials, const rest_range& range, ran
     }
 }
 
-bool too_many_in_a_row(const std::vector<planned_trial>& trials)
-{
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-        row = i > 0 && trials[i].motion == trials[i - 1].motion ? row + 1 : 1;
-        if (row > most_in_a_row)
-            return true;
-    }
-    return false;
-}
-
 // Returns the order of n runs or blocks; `row` is from 0. Draws nothing unless it is random.
 std::vector<std::size_t> make_order(std::string_view order, std::size_t n, std::size_t row, random_numbers& r)
 {
@@ -204,19 +231,15 @@ bool is_in_block(const experiment_definition& d, const planned_trial& t, const r
     return r.blocks.empty() || t.motion == r.motions[i];
 }
 
-// Draws the order of the trials in a block.
-void shuffle_block(std::vector<planned_trial>& block, const run_definition& r, random_numbers& numbers)
+// Parts the trials of a run by block.
+std::vector<std::vector<planned_trial>> part_blocks(const experiment_definition& d, const run_definition& r,
+                                                    const std::vector<planned_trial>& trials)
 {
-    std::size_t draws = 0;
-    do {
-        if (++draws > most_draws(r.outline.trials))
-            throw error(
-                error_kind::bad_input, r.where,
-                fmt::format("no order of {} trials was found in which no motion comes {} times in a row",
-                            r.outline.trials, most_in_a_row + 1),
-                "several runs with fewer trials");
-        shuffle(std::span(block), numbers);
-    } while (r.motions.size() > 1 && r.blocks != "motions" && too_many_in_a_row(block));
+    std::vector<std::vector<planned_trial>> blocks(count_blocks(r));
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        std::ranges::copy_if(trials, std::back_inserter(blocks[i]),
+                             [&](const planned_trial& t) { return is_in_block(d, t, r, i); });
+    return blocks;
 }
 
 constexpr double longest_stimulus_s = 600.0;
@@ -376,17 +399,21 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     const run_definition& r = d.runs[run];
     random_numbers numbers(fmt::format("{}/{}", session_seed(seed, d, code), r.outline.name));
     run_sequence s{run};
-    const std::vector<planned_trial> drawn = draw_balanced(r, r.outline.trials, numbers);
+    const bool mixes_motions = r.motions.size() > 1 && r.blocks != "motions";
+    auto blocks = part_blocks(d, r, draw_balanced(r, r.outline.trials, numbers));
+    if (mixes_motions &&
+        !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
+        blocks = part_blocks(d, r, draw_by_turns(d, r, numbers));
     // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
     const std::size_t runs = square_rows(d.order, d.runs.size());
     for (const std::size_t i :
          make_order(d.order, count_blocks(r), own_row / runs + own_row % runs, numbers)) {
-        std::vector<planned_trial> block;
-        std::ranges::copy_if(drawn, std::back_inserter(block),
-                             [&](const planned_trial& t) { return is_in_block(d, t, r, i); });
-        shuffle_block(block, r, numbers);
-        s.trials.insert(s.trials.end(), block.begin(), block.end());
+        if (mixes_motions)
+            order_trials(blocks[i], r.max_in_a_row, numbers);
+        else
+            shuffle(std::span(blocks[i]), numbers);
+        s.trials.insert(s.trials.end(), blocks[i].begin(), blocks[i].end());
     }
     s.practice = draw_balanced(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
@@ -549,9 +576,7 @@ stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const
         for (const std::size_t motion : r.motions)
             for (const std::size_t method : list_played(r))
                 if (find(motion, method) == nullptr) {
-                    all_.push_back(make(d.motions[motion], d.methods[method], faces));
-                    all_.back().motion = motion;
-                    all_.back().method = method;
+                    all_.push_back(make(d, motion, method, r.outline.vary, faces));
                     warn_of_same(d);
                 }
 }
@@ -567,9 +592,11 @@ void stimulus_set::warn_of_same(const experiment_definition& d)
                                             d.methods[last.method].name));
 }
 
-stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method,
-                            const layout& faces)
+stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_at, std::size_t method_at,
+                            std::string_view vary, const layout& faces)
 {
+    const motion_definition& motion = d.motions[motion_at];
+    const method_definition& method = d.methods[method_at];
     try {
         session::piece one{.strokes = {choose_stroke(motion, method)}};
         session::place_strokes(one, faces, method.options);
@@ -577,7 +604,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         if (played.motion.duration_s() > longest_stimulus_s)
             throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
         session::plan_stroke(one, 0, array_, faces, method.options);
-        stimulus s;
+        stimulus s{motion_at, method_at};
         s.plan = one.plans.front().plan;
         s.render = choose_render(options_, method.options);
         const score sounds(array_, one.plans, s.render);
@@ -599,10 +626,26 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
     } catch (const error& e) {
         if (e.kind() != error_kind::bad_input)
             throw;
-        throw error(e.kind(), motion.where,
-                    fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
-                                method.where.line, detail::plain(e.subject()), e.why()),
-                    in_definition_words(e.hint(), method.has_level()));
+        const options::option* const option = options::find(e.field());
+        const std::string hint = in_definition_words(e.hint(), method.has_level());
+        if (method.value) {
+            if (option == nullptr || option != options::find(vary))
+                make(d, motion_at, *method.made_of, {}, faces); // throws what no value of the run mends
+            throw error(e.kind(), method.where,
+                        fmt::format("{} = {} of motion \"{}\" by method \"{}\": {}: {}", vary, *method.value,
+                                    motion.name, d.methods[*method.made_of].name, detail::plain(e.subject()),
+                                    e.why()),
+                        hint);
+        }
+        const std::string of = fmt::format("motion \"{}\" by method \"{}\"", motion.name, method.name);
+        if (option != nullptr)
+            if (const auto at = method.keys.find(options::index(*option)); at != method.keys.end())
+                throw error(e.kind(), at->second.where,
+                            fmt::format("{}: {}: {}", of, at->second.key, e.why()), hint);
+        throw error(
+            e.kind(), motion.where,
+            fmt::format("{} (line {}): {}: {}", of, method.where.line, detail::plain(e.subject()), e.why()),
+            hint);
     }
 }
 

@@ -6,7 +6,6 @@
 /// display.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -42,20 +41,11 @@ struct run_sequence {
     friend bool operator==(const run_sequence&, const run_sequence&) = default;
 };
 
-/// Most trials with the same motion in a row.
-inline constexpr std::size_t most_in_a_row = 3;
-
 /// Gives a trial of an adaptive run a value, by its place in those of the run.
 void set_value(planned_trial& t, const run_definition& r, std::size_t place);
 
 /// Returns the value of a trial's comparison; none: the run varies nothing, or the trial has no stimulus.
 std::optional<double> find_value(const experiment_definition& d, const planned_trial& t);
-
-/// Returns how many orders of so many trials make_run() draws before it gives up: a second or two.
-constexpr std::size_t most_draws(std::size_t trials) noexcept
-{
-    return std::min(std::size_t{1000000}, std::size_t{200000000} / std::max(trials, std::size_t{1}));
-}
 
 /// Returns the seed for a participant without one: the first four bytes of the code's SHA-256.
 std::uint64_t default_seed(std::string_view code);
@@ -80,13 +70,11 @@ std::size_t default_row(const experiment_definition& d, std::string_view code);
 
 /// Draws the trials of one run from the generator that session_seed() and "/run" seed: each motion with each
 /// method, or with each pair of methods in each order, equally often as far as their number allows.
-/// `row` orders the blocks; none: default_row().
-/// \throws error (bad_input) if every order drawn has a motion four times in a row.
+/// No motion comes more than max_in_a_row times in a row. `row` orders the blocks; none: default_row().
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
                       std::uint64_t seed, std::optional<std::size_t> row = {});
 
 /// Draws all runs, in the participant's order; a random one is from the generator that session_seed() seeds.
-/// Throws as above.
 std::vector<run_sequence> make_sequence(const experiment_definition& d, std::string_view code,
                                         std::uint64_t seed, std::optional<std::size_t> row = {});
 
@@ -257,8 +245,9 @@ class stimulus_set {
 public:
     /// Plans, predicts and checks all stimuli; keeps each warning of the planner once, and warns of methods
     /// that make one stimulus of a motion. `o`: the session's, for what a method does not give.
-    /// \throws error (bad_input) with the motion's or method's line: it cannot be planned, or a level is too
-    ///         high.
+    /// \throws error (bad_input) with the line of what the definition says there, a run's values, an option
+    /// of
+    ///         a method, or else the motion: it cannot be planned, or a level is too high.
     stimulus_set(const experiment_definition& d, const array& a, const render_options& o);
 
     /// Returns a stimulus that a run asks for.
@@ -276,7 +265,9 @@ public:
 
 private:
     const stimulus* find(std::size_t motion, std::size_t method) const noexcept;
-    stimulus make(const motion_definition& motion, const method_definition& method, const layout& faces);
+    /// `vary`: what the values of the run are of, if it has any.
+    stimulus make(const experiment_definition& d, std::size_t motion, std::size_t method,
+                  std::string_view vary, const layout& faces);
     void warn_of_same(const experiment_definition& d);
 
     array array_;

@@ -224,6 +224,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
     const auto vary = [&](const method_definition& base, double value, std::string_view key) {
         method_definition m = base;
         m.value = value;
+        m.where = t.where(key);
         if (const options::option* option = find_number(o.vary)) {
             try {
                 options::give(m.options, *option, options::read_value(*option, value));

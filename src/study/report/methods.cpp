@@ -429,7 +429,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
             for (const run_definition& r : s.design->runs)
                 if (r.outline.task == task_kind::adaptive)
                     all[r.adaptive.down == 0 ? "has_quest" : "has_staircases"] = true;
-    all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
+    all["ordered"] = own;
     all["sessions"] = json::array();
     for (const session_facts& s : f.sessions)
         all["sessions"].push_back(describe_session(s));

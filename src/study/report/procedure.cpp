@@ -176,6 +176,9 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
         {"blocks", fact([](const run_definition& r) {
              return r.blocks.empty() ? "none" : fmt::format("the {}, ordered like the runs", r.blocks);
          })},
+        {"in_a_row", fact([](const run_definition& r) {
+             return r.motions.size() > 1 ? fmt::format("{}", r.max_in_a_row) : "no limit";
+         })},
         {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
         {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
 }

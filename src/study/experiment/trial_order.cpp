@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "study/experiment/trial_order.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace tactor::study {
+namespace {
+
+/// Trials that are to come, behind a row of one motion.
+struct rest_of_order {
+    std::vector<std::size_t> left = {}; ///< number of trials by motion
+    std::size_t all = 0;                ///< sum of `left`
+    std::size_t last = 0;               ///< motion of the row
+    std::size_t row = 0;                ///< its length
+
+    explicit rest_of_order(std::span<const planned_trial> trials) : all(trials.size())
+    {
+        for (const planned_trial& t : trials) {
+            left.resize(std::max(left.size(), t.motion + 1));
+            ++left[t.motion];
+        }
+    }
+
+    void take(std::size_t motion)
+    {
+        row = motion == last ? row + 1 : 1;
+        last = motion;
+        --left[motion];
+        --all;
+    }
+
+    // Returns true if the trials have an order. Each trial of another motion parts two rows, so that a motion
+    // has room for one row more than there are such trials.
+    bool has_order(std::size_t most) const
+    {
+        bool has = row <= most;
+        for (std::size_t m = 0; m < left.size(); ++m)
+            has = has && left[m] + (m == last ? row : 0) <= most * (all - left[m] + 1);
+        return has;
+    }
+};
+
+bool has_longer_row(std::span<const planned_trial> trials, std::size_t most)
+{
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        row = i > 0 && trials[i].motion == trials[i - 1].motion ? row + 1 : 1;
+        if (row > most)
+            return true;
+    }
+    return false;
+}
+
+// Returns the share of random orders without a longer row, for motions that are equally likely at each place.
+double share_without_rows(std::size_t trials, std::size_t motions, std::size_t most)
+{
+    const double again = 1.0 / static_cast<double>(motions);
+    std::vector<double> ends(most, 0.0); // shares of the orders that end with a row of 1, 2, ...
+    ends.front() = 1.0;
+    const auto sum = [&ends] { return std::accumulate(ends.begin(), ends.end(), 0.0); };
+    for (std::size_t i = 1; i < trials; ++i) {
+        const double other = sum() * (1.0 - again);
+        std::shift_right(ends.begin(), ends.end(), 1);
+        for (double& share : ends)
+            share *= again;
+        ends.front() = other;
+    }
+    return sum();
+}
+
+// Builds an order from its beginning. At each place comes the first of the shuffled trials with which those
+// that are left still have an order.
+void build_order(std::span<planned_trial> trials, std::size_t most)
+{
+    rest_of_order rest(trials);
+    for (; !trials.empty(); trials = trials.subspan(1)) {
+        const auto next = std::ranges::find_if(trials, [&](const planned_trial& t) {
+            rest_of_order then = rest;
+            then.take(t.motion);
+            return then.has_order(most);
+        });
+        rest.take(next->motion);
+        std::iter_swap(trials.begin(), next);
+    }
+}
+
+} // namespace
+
+bool has_order(std::span<const planned_trial> trials, std::size_t most)
+{
+    return rest_of_order(trials).has_order(most);
+}
+
+void order_trials(std::span<planned_trial> trials, std::size_t most, random_numbers& numbers)
+{
+    // Draws whole orders where one of so many fits: all that fit are then equally likely.
+    const std::size_t draws =
+        std::min(std::size_t{1000000}, std::size_t{200000000} / std::max(trials.size(), std::size_t{1}));
+    const auto motions = static_cast<std::size_t>(
+        std::ranges::count_if(rest_of_order(trials).left, [](std::size_t n) { return n > 0; }));
+    const double share = share_without_rows(trials.size(), std::max(motions, std::size_t{1}), most);
+    for (std::size_t i = 0; share * static_cast<double>(draws) >= 1.0 && i < draws; ++i) {
+        shuffle(trials, numbers);
+        if (!has_longer_row(trials, most))
+            return;
+    }
+    shuffle(trials, numbers);
+    build_order(trials, most);
+}
+
+} // namespace tactor::study
