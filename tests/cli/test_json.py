@@ -285,5 +285,41 @@ class Schemas(ToolTest):
             self.assertEqual(told["stroke"]["name"], "K\ufffdnstler")
 
 
+class Examples(ToolTest):
+    """What ships, through every command that prints JSON of it."""
+
+    def valid(self, *args):
+        told = json.loads(self.ok(*args, "--format", "json").stdout)
+        errors = [f"{join_keys(e.absolute_path)}: {e.message[:200]}" for e in jsonschema.Draft202012Validator(SCHEMAS[told["schema"]]).iter_errors(told)]
+        self.assertEqual(errors, [], args)
+        return told
+
+    def test_strokes_and_arrays(self):
+        strokes = [f for f in sorted((ROOT / "examples/strokes").iterdir()) if f.suffix in (".toml", ".csv", ".svg")]
+        self.assertGreater(len(strokes), 10)
+        for stroke in strokes:
+            array = "palm-2x4" if "2x4" in stroke.name else "palm-3x3"
+            self.valid("plan", stroke, "--array", array, "--fit")
+            self.valid("compare", stroke, "--array", array, "--fit", "--spread", "2")
+        arrays = [*sorted((ROOT / "examples/arrays").glob("*.toml")), *sorted((ROOT / "examples/rtp").glob("*.toml")), ROOT / "examples/tactor.toml"]
+        self.assertGreater(len(arrays), 8)
+        for array in arrays:
+            self.valid("plan", "--shape", "circle", "--fit", "--array", array, "--algorithm", "continuous")
+            self.assertEqual(json.loads(self.run_tool("check", "--array", array, "-D", "null", "--format", "json").stdout)["schema"], "tactor-check/1")
+
+    def test_experiments(self):
+        specs = {"numerosity": "jnd=0.14", "speed-jnd": "pse=76,jnd=14"}
+        for file in sorted((ROOT / "examples/experiments").glob("*.toml")):
+            text = file.read_text(encoding="utf-8")
+            group = re.findall(r'^\[\[group\]\]\nname = "(.*)"', text, re.M)[:1]
+            of = [*(("--group", *group) if group else ())]
+            session = ["--session", "1"] if re.search("^sessions = ", text, re.M) else []
+            spec = f"seed=1,{specs.get(file.stem, 'sigma=2')}"
+            self.valid("experiment", file, "--dry-run", *of, *session)
+            self.valid("experiment", file, "--power", "2", "--studies", "1", "--simulate", spec, *of)
+            self.ok("experiment", file, "--participant", "01", "-o", file.stem, "--simulate", spec, *of, *session)
+            self.valid("analyze", file.stem)
+
+
 if __name__ == "__main__":
     main()
