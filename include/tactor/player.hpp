@@ -95,6 +95,7 @@ struct stroke_report {
     std::optional<live_delay> delay = {}; ///< live strokes only, after a point has sounded
     std::uint64_t held_points = 0;        ///< live strokes only: points above intensity 1, which sounded as 1
     std::uint64_t outside_points = 0;     ///< live strokes only: points outside the array, moved to its edge
+    std::string doubt = {}; ///< live strokes only: the unit that its points are likely in, if not millimetres
 };
 
 /// End of a stream.

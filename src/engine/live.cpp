@@ -15,6 +15,7 @@
 #include <tactor/error.hpp>
 
 #include "core/bounds.hpp"
+#include "core/trajectory/units.hpp"
 #include "plan/job.hpp"
 #include "rt/clock.hpp"
 #include "synth/mix/mixer.hpp"
@@ -71,6 +72,26 @@ void live_voice::fail(std::string why) noexcept
 {
     failure_ = std::move(why);
     request(action::fail);
+}
+
+void live_voice::count_way(point p, std::int64_t at_ns) noexcept
+{
+    if (!newest_)
+        begun_ns_ = at_ns;
+    const double way_mm = newest_ ? distance_mm(*newest_, p) : 0.0;
+    newest_ = p;
+    length_mm_.store(length_mm_.load(std::memory_order_relaxed) + way_mm, std::memory_order_relaxed);
+    farthest_mm_.store(
+        std::max({farthest_mm_.load(std::memory_order_relaxed), std::abs(p.x_mm), std::abs(p.y_mm)}),
+        std::memory_order_relaxed);
+    moving_s_.store(1e-9 * static_cast<double>(at_ns - begun_ns_), std::memory_order_relaxed);
+}
+
+std::string live_voice::doubt() const
+{
+    return detail::doubt_units({length_mm_.load(std::memory_order_relaxed),
+                                moving_s_.load(std::memory_order_relaxed),
+                                farthest_mm_.load(std::memory_order_relaxed), detail::pace_source::live});
 }
 
 void live_voice::wait(std::uint64_t frames) noexcept
@@ -447,6 +468,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
         return false;
     }
     voice.draft().at_ns = stamp;
+    voice.count_way(p, stamp);
     voice.publish();
     points.fetch_add(1, std::memory_order_relaxed);
     limited_points.fetch_add(limited ? 1 : 0, std::memory_order_relaxed);

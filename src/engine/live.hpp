@@ -83,6 +83,8 @@ public:
     /// Counts a point whose intensity was above 1, and a point outside the array.
     void count_held() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
     void count_outside() noexcept { outside_points_.fetch_add(1, std::memory_order_relaxed); }
+    /// Counts the way to a point with this time stamp, ns.
+    void count_way(point p, std::int64_t at_ns) noexcept;
 
     /// Ends the stroke as interrupted, for this reason. Call it once.
     void fail(std::string why) noexcept;
@@ -91,6 +93,8 @@ public:
     void request(action w) noexcept;
     std::uint64_t held_points() const noexcept { return held_points_.load(std::memory_order_relaxed); }
     std::uint64_t outside_points() const noexcept { return outside_points_.load(std::memory_order_relaxed); }
+    /// Returns a warning if the points are likely in another unit than millimetres; else empty.
+    std::string doubt() const;
     /// Returns why it failed. Only for a caller that knows that it failed.
     const std::string& failure() const noexcept { return failure_; }
     bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
@@ -155,6 +159,11 @@ private:
     std::atomic<bool> closed_{false};
     std::atomic<std::uint64_t> held_points_{0};
     std::atomic<std::uint64_t> outside_points_{0};
+    std::atomic<double> length_mm_{0.0};
+    std::atomic<double> farthest_mm_{0.0};
+    std::atomic<double> moving_s_{0.0};
+    std::optional<point> newest_ = {}; ///< of the producer; so is the time of its first point
+    std::int64_t begun_ns_ = 0;
     std::string failure_;
 
     ticket ticket_ = 0;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,8 +13,11 @@
 #include <tactor/error.hpp>
 #include <tactor/phantom.hpp>
 
+#include "core/access.hpp"
 #include "core/bounds.hpp"
 #include "core/refused.hpp"
+#include "core/trajectory/impl.hpp"
+#include "core/trajectory/units.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"
 
@@ -80,6 +84,25 @@ void warn_of_short_travel(double pitch_mm, plan& p)
             fmt::format("its path of {:.4g} mm is shorter than a fifth of the {:.4g} mm between "
                         "tactors: it may not be felt to move",
                         p.stroke_length_mm, pitch_mm));
+}
+
+/// Warns of a movement whose numbers are likely in another unit.
+void warn_of_units(const stroke& s, plan& p)
+{
+    constexpr int parts = 100;
+    detail::travel t{p.stroke_length_mm, p.stroke_duration_s};
+    if (const auto* drawn = std::get_if<detail::drawn_path>(&detail::access::of(s.motion).law);
+        drawn != nullptr && drawn->moves)
+        t.moving_s *= drawn->moves->moving_s() / drawn->moves->total_s();
+    for (int i = 0; i <= parts; ++i) {
+        const point at = s.motion.position(p.stroke_duration_s * i / parts);
+        t.farthest_mm = std::max({t.farthest_mm, std::abs(at.x_mm), std::abs(at.y_mm)});
+    }
+    constexpr double same = 1e-6;
+    if (s.speed_mm_s && std::abs(*s.speed_mm_s * t.moving_s - t.length_mm) <= same * t.length_mm)
+        t.source = detail::pace_source::speed;
+    if (std::string text = detail::doubt_units(t); !text.empty())
+        p.warnings.push_back(std::move(text));
 }
 
 /// gaussian takes 0.6 of the pitch, the distance to the nearest tactor, whatever the direction.
@@ -356,6 +379,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     }
     p.conflicts = find_conflicts(p.bursts);
     pass_on(j, p);
+    warn_of_units(s, p);
     warn_of_short_travel(l.pitch_mm(), p);
     warn_of_wide_faces(l, *j.model, p);
     warn_of_faces(l, o, bursts.missed, p);

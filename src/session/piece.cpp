@@ -34,8 +34,10 @@ void set_pace(stroke& s, const options::wishes& o)
     const std::optional<double> speed = o.speed_mm_s || !s.usual_pace ? o.speed_mm_s : o.usual_speed_mm_s;
     if (o.duration_s)
         s.motion = s.motion.with_duration(*o.duration_s);
-    else if (speed)
+    else if (speed) {
         s.motion = s.motion.with_speed(*speed);
+        s.speed_mm_s = speed;
+    }
 }
 
 } // namespace

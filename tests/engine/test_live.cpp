@@ -13,6 +13,7 @@
 
 #include "caught.hpp"
 #include "engine/live.hpp"
+#include "has.hpp"
 #include "rig.hpp"
 
 namespace live_test {
@@ -239,6 +240,26 @@ TEST_CASE("outside the array the nearest point plays and is counted, or is an er
         stroke->voice.request(engine::live_voice::action::end);
     r.play_out();
     CHECK(r.end({1}).outside_points == 2);
+}
+
+TEST_CASE("points in metres are reported when the stroke ends, points of a finger are not")
+{
+    for (const bool metres : {true, false}) {
+        live_rig r;
+        for (const double x : {5.0, 20.0, 35.0})
+            CHECK(r.live->to({metres ? x / 1000.0 : x, 0.0}, 1.0));
+        r.play(9600);
+        CHECK(r.finish().doubt ==
+              (metres
+                   ? "all its places are within 0.035 mm of (0, 0): if they are metres, multiply them by 1000"
+                   : ""));
+    }
+    // 40 mm to and fro at 8 m/s for two seconds.
+    live_rig r;
+    for (std::int64_t i = 0; i <= 400; ++i)
+        CHECK(r.live->to({i % 2 == 0 ? 0.0 : 40.0, 0.0}, 1.0, 1 + i * 5'000'000));
+    r.play(9600);
+    CHECK(has(r.finish().doubt, "8000 mm/s, faster than a hand: if its places are micrometres"));
 }
 
 TEST_CASE("a point is held at its channel's limit, and counted")

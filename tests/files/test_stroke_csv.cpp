@@ -237,15 +237,6 @@ TEST_CASE("the greatest intensity of a recorder's scale is 1")
         CHECK(caught_message([&] { return read(most); }).starts_with("intensity_max: "));
 }
 
-TEST_CASE("a long stroke of few points is asked for its unit of time")
-{
-    const stroke s = recorded("t_s,x_mm,y_mm\n0,0,0\n3700,1,1\n7400,2,2\n");
-    REQUIRE(s.warnings.size() == 1);
-    CHECK(s.warnings[0] == "dir/finger.csv:4: only 3 points in 7400 s: times are in seconds; if these are "
-                           "milliseconds, divide them by 1000");
-    CHECK(recorded("t_s,x_mm,y_mm\n0,0,0\n3600,1,1\n").warnings.empty());
-}
-
 TEST_CASE("very many lines are read unchanged")
 {
     const int lines = test::rounds(200'000, 1'000'000);

@@ -393,6 +393,44 @@ TEST_CASE("a path that is short compared with the tactors' distance is warned of
     CHECK(make_plan(palm, timed({{0.0, {10.0, 10.0}}, {1.0, {10.0, 10.0}}})).warnings.empty());
 }
 
+TEST_CASE("a movement that no hand makes is asked for its unit, with the factor")
+{
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    const auto warning = [&](const stroke& s) {
+        const std::vector<std::string> all = make_plan(palm, s, o).warnings;
+        return all.empty() ? std::string() : all.front();
+    };
+    const auto recorded = [&](std::vector<timed_point> points) {
+        return warning(make_stroke(trajectory::timed(std::move(points))));
+    };
+    // 42.43 mm, the diagonal of 30 mm: in milliseconds, in metres, in micrometres.
+    CHECK(
+        recorded({{0, {5, 5}}, {1000, {35, 35}}}) ==
+        "it moves 42.43 mm in 1000 s, 0.0424 mm/s, slower than a hand: if its times are milliseconds, divide "
+        "them by 1000");
+    CHECK(recorded({{0, {0.005, 0.005}}, {1, {0.035, 0.02}}}) ==
+          "all its places are within 0.035 mm of (0, 0): if they are metres, multiply them by 1000");
+    CHECK(recorded({{0, {0, 0}}, {0.005, {40, 0}}}) ==
+          "it moves 40 mm in 0.005 s, 8000 mm/s, faster than a hand: if its places are micrometres, divide "
+          "them by 1000");
+    // 1 mm/s and 5 m/s are those of a hand; so is a minute of rest, or a finger that rests on one place.
+    CHECK(recorded({{0, {0, 0}}, {39.9, {40, 0}}}).empty());
+    CHECK(recorded({{0, {0, 0}}, {0.008, {40, 0}}}).empty());
+    CHECK(recorded({{0, {0, 20}}, {60, {40, 20}}}).empty());
+    CHECK(has(recorded({{0, {0, 20}}, {60.1, {40, 20}}}), "slower"));
+    CHECK(recorded({{0, {0, 0}}, {1000, {0, 0}}}).empty());
+    // A speed has its own factor; rests take no part.
+    stroke slow = along("M 0 0 H 40", 40.0 / 0.03);
+    slow.speed_mm_s = 0.03;
+    CHECK(warning(slow) == "it moves 40 mm in 1333 s, 0.03 mm/s, slower than a hand: if its speed is in m/s, "
+                           "multiply it by 1000");
+    movement with_rest;
+    with_rest.duration_s = 1000.0;
+    with_rest.rests = {{0.5, 990.0, 1.0}};
+    CHECK(warning(moving("M 0 0 H 40", with_rest)).empty());
+}
+
 TEST_CASE("a stroke's choice wins over the common one")
 {
     stroke s = along("M 0 10 L 40 30", 1.4);

@@ -164,6 +164,8 @@ std::string describe(const stroke_outcome& s, unsigned rate)
     if (s.report && s.report->outside_points != 0)
         text += fmt::format("; {} outside the array moved to its edge",
                             counted(s.report->outside_points, "point"));
+    if (s.report && !s.report->doubt.empty())
+        text += "; " + s.report->doubt;
     return text;
 }
 

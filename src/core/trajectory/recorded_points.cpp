@@ -19,10 +19,6 @@ constexpr double farthest_time_s = 1e10;
 constexpr std::size_t most_points = 10'000'000;
 constexpr double edge_of_gap_s = 1e-6;
 
-// Longer strokes with fewer points are most likely in milliseconds.
-constexpr double long_s = 3600.0;
-constexpr double sparse_s = 30.0; // between two points
-
 } // namespace
 
 recorded_points::recorded_points(double intensity_max, find_place where, std::string_view unit)
@@ -141,11 +137,6 @@ void recorded_points::warn()
         warnings_.push_back(fmt::format("{}: repeats the time of the {} before, as {} {}s do in all; the "
                                         "last of equal times counts",
                                         repeated_.first, unit_, repeated_.count, unit_));
-    const double length_s = points_.back().t_s;
-    if (length_s > long_s && static_cast<double>(points_.size()) < length_s / sparse_s)
-        warnings_.push_back(fmt::format("{}: only {} points in {}: times are in seconds; if these are "
-                                        "milliseconds, divide them by 1000",
-                                        here(), points_.size(), seconds_text(length_s)));
 }
 
 std::vector<timed_point> recorded_points::take()

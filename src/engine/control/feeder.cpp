@@ -494,7 +494,8 @@ void feeder::over(const active& a, const report& r)
                        .started_ns = {},
                        .delay = {},
                        .held_points = 0,
-                       .outside_points = 0};
+                       .outside_points = 0,
+                       .doubt = {}};
     if (r.started)
         done.started_ns = r.started_ns;
     if (r.delay.points != 0)
@@ -513,6 +514,7 @@ void feeder::report_end(stroke_report r)
         if (const auto found = live->find(r.id); found != live->end()) {
             r.held_points = found->second->held_points();
             r.outside_points = found->second->outside_points();
+            r.doubt = found->second->doubt();
         }
     gains_.erase(r.id);
     reports_.push_back(std::move(r));

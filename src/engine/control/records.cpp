@@ -606,6 +606,8 @@ void stream_log::look_at_end(const stroke_report& r) noexcept
         if (r.outside_points != 0)
             add(log_kind::warning, fmt::format("live stroke {}: {} outside the array moved to its edge",
                                                r.id.number, counted(r.outside_points, "point")));
+        if (!r.doubt.empty())
+            add(log_kind::warning, fmt::format("live stroke {}: {}", r.id.number, r.doubt));
     } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }
