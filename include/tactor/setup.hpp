@@ -28,6 +28,14 @@ struct output_settings {
     std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 
+/// [sync.codes]: numbers of the events of one kind.
+struct code_numbering {
+    std::optional<unsigned> first = {}; ///< none: the next after those of the kind before
+    /// Parts that give events numbers of their own: run, motion, method, value, interval, answer. None: those
+    /// that are usual for the kind.
+    std::optional<std::vector<std::string>> by = {};
+};
+
 /// [sync] code: numbers that mark what happens in a study with people.
 struct code_settings {
     std::optional<unsigned> channel = {}; ///< spare PCM channel of the pulse codes
@@ -36,9 +44,11 @@ struct code_settings {
     std::vector<unsigned> offsets = {};   ///< its lines, least significant bit first; eight at most
     double pulse_s = 0.005;               ///< time for which the lines show a number
     bool lsl = false;                     ///< markers to the Lab Streaming Layer
-    unsigned stimulus = 10;               ///< number of an event in the definition's first condition
-    unsigned answer = 20;
-    unsigned made_void = 30;
+    code_numbering stimulus = {};
+    code_numbering standard = {}; ///< stimuli with the standard's value
+    code_numbering caught = {};   ///< trials without a stimulus
+    code_numbering answer = {};
+    code_numbering made_void = {};
     source_place where = {};
 };
 

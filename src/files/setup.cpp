@@ -2,6 +2,7 @@
 #include <tactor/setup.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -11,9 +12,11 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
+#include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/setup_layers.hpp"
 #include "files/text_file.hpp"
@@ -405,6 +408,31 @@ void read_code(const toml_table& t, code_settings& c)
     }
 }
 
+// Reads the numbers of one kind of event: the first, or a table.
+code_numbering read_numbering(const toml_table& t, std::string_view key)
+{
+    constexpr unsigned greatest = 255;
+    code_numbering n;
+    if (const toml::node* node = t.node(key); node == nullptr || !node->is_table()) {
+        n.first = t.whole(key, 1, greatest);
+        return n;
+    }
+    const toml_table own = *t.table(key, std::string(key), "{ first = 10, by = [\"motion\", \"method\"] }");
+    own.only({"first", "by"});
+    n.first = own.whole("first", 1, greatest);
+    constexpr std::array<std::string_view, 6> parts{"run", "motion", "method", "value", "interval", "answer"};
+    if (!own.has("by"))
+        return n;
+    n.by.emplace();
+    for (const std::string& part : own.texts("by", parts.size())) {
+        if (std::ranges::count(parts, part) == 0)
+            own.fail("by", fmt::format("by has {}", detail::quoted(part)),
+                     fmt::format("some of {}", fmt::join(parts, ", ")));
+        n.by->push_back(part);
+    }
+    return n;
+}
+
 void read_sync(const toml_table& t, located_setup& out)
 {
     t.only({"out", "channel", "in", "code", "codes"});
@@ -425,12 +453,14 @@ void read_sync(const toml_table& t, located_setup& out)
     if (const auto code = t.table("code", "code", "code = { channel } or { chip, offsets }"))
         read_code(*code, s.code.emplace());
     if (const auto numbers = t.table("codes", "[sync.codes]", "[sync.codes] stimulus = 10")) {
-        numbers->only({"stimulus", "answer", "void"});
+        numbers->only({"stimulus", "standard", "catch", "answer", "void"});
         if (!s.code)
             t.fail("codes", "nothing sends these numbers", "code = { channel }, or { chip, offsets }");
-        s.code->stimulus = numbers->whole("stimulus", 1, 255).value_or(s.code->stimulus);
-        s.code->answer = numbers->whole("answer", 1, 255).value_or(s.code->answer);
-        s.code->made_void = numbers->whole("void", 1, 255).value_or(s.code->made_void);
+        s.code->stimulus = read_numbering(*numbers, "stimulus");
+        s.code->standard = read_numbering(*numbers, "standard");
+        s.code->caught = read_numbering(*numbers, "catch");
+        s.code->answer = read_numbering(*numbers, "answer");
+        s.code->made_void = read_numbering(*numbers, "void");
     }
     if (s.code && s.channel && s.code->channel == s.channel)
         t.fail("channel", fmt::format("channel {} is that of the code, too", *s.channel),

@@ -126,9 +126,20 @@ void add_lines(lines& out, const setup& u)
         code += fmt::format(", chip = {}, offsets = [{}]", toml_string(c.chip), fmt::join(c.offsets, ", "));
     out.add_value("code", "{ " + code + " }");
     out.begin_table("[sync.codes]");
-    out.add("stimulus", c.stimulus);
-    out.add("answer", c.answer);
-    out.add("void", c.made_void);
+    for (const auto& [key, n] : {std::pair("stimulus", &c.stimulus),
+                                 {"standard", &c.standard},
+                                 {"catch", &c.caught},
+                                 {"answer", &c.answer},
+                                 {"void", &c.made_void}}) {
+        if (!n->by) {
+            out.add(key, n->first);
+            continue;
+        }
+        const std::string first = n->first ? fmt::format("first = {}, ", *n->first) : "";
+        const char* const quote = n->by->empty() ? "" : "\"";
+        out.add_value(key,
+                      fmt::format("{{ {}by = [{}{}{}] }}", first, quote, fmt::join(*n->by, "\", \""), quote));
+    }
 }
 
 std::string value_text(const written_value& d)

@@ -8,6 +8,7 @@ import subprocess
 
 from experiments import DESK, SHORT, SMALL, PersonTest, contents, read_table
 from harness import ROOT, main
+import studies
 
 RATE = 48000
 LEAD = 9 * 96  # frames of a code
@@ -27,33 +28,43 @@ class Codes(PersonTest):
     def events(self, task):
         return read_table(self.dir / f"study/sub-01/beh/sub-01_task-{task}_events.tsv")
 
-    def check(self, task, motions, methods):
+    def levels(self, task):
+        return json.loads((self.dir / f"study/task-{task}_events.json").read_text())["code"]["Levels"]
+
+    def check(self, run, task):
         """Compares the events of a run with its table, each row's stimuli and the answer or void."""
         events = iter(self.events(task))
+        levels = self.levels(task)
         for row in self.rows("01", task):
-            for i in (1, 2) if row["frame_2"] != "n/a" else (1,):
+            pair = row["frame_2"] != "n/a"
+            for i in (1, 2) if pair else (1,):
                 e = next(events)
-                place = motions.index(row["motion"]) * len(methods) + methods.index(row[f"method_{i}"])
-                self.assertEqual((e["trial"], e["attempt"], e["event"], e["code"], int(e["frame"])),
-                                 (row["trial"], row["attempt"], "stimulus", str(10 + place), int(row[f"frame_{i}"]) - LEAD))
+                what = f'stimulus, motion "{row["motion"]}", method "{row[f"method_{i}"]}"' + f", interval {i}" * pair
+                self.assertEqual((e["trial"], e["attempt"], e["event"], levels[e["code"]], int(e["frame"])),
+                                 (row["trial"], row["attempt"], "stimulus", what, int(row[f"frame_{i}"]) - LEAD))
                 later = (int(row[f"frame_{i}"]) - int(row["frame_1"])) / RATE
                 self.assertAlmostEqual(float(e["onset"]), float(row["onset"]) + later, 5)
             e = next(events)
-            place = motions.index(row["motion"]) * len(methods) + methods.index(row["method_1"])
-            self.assertEqual((e["trial"], e["attempt"], e["event"], e["code"], e["duration"]),
-                             (row["trial"], row["attempt"], *(("void", str(30 + place)) if row["void"] == "true" else ("answer", str(20 + place))),
-                              "0.000000"))
+            answer = f'answer, run "{run}", answer ' + (f'"{row["response"]}"' if run == "what" else row["response"])
+            self.assertEqual((e["trial"], e["attempt"], e["event"], levels[e["code"]], e["duration"]),
+                             (row["trial"], row["attempt"], *(("void", "void") if row["void"] == "true" else ("answer", answer)), "0.000000"))
             self.assertGreaterEqual(int(e["frame"]), int(row["frame_1"]) + round(float(row["duration"]) * RATE))
         self.assertEqual(list(events), [])
 
     def test_simulated_sessions_record_events_and_resume_with_them(self):
         self.simulate("01", "--array", "array.toml", spec="seed=2,void=0.3")
-        for task in ("whichone", "howgood", "what"):
-            self.check(task, ["to the right", "down"], ["brush", "park"])
+        for run, task in (("which-one", "whichone"), ("how good", "howgood"), ("what", "what")):
+            self.check(run, task)
             described = json.loads((self.dir / f"study/task-{task}_events.json").read_text())
             self.assertEqual(list(described), COLUMNS)
-            self.assertEqual(described["code"]["Levels"]["23"], 'answer, motion "down" by method "park"')
-        self.assertEqual(self.session()["codes"], {"stimulus": 10, "answer": 20, "void": 30, "channel": 15, "bit_ms": 2.0})
+            # Pairs: 2 motions by 2 methods in 2 intervals; alone: 2 by 2; answers: 2, 7 and 2 motions; void.
+            levels = described["code"]["Levels"]
+            self.assertEqual(list(levels), [str(n) for n in range(1, 8 + 4 + 2 + 7 + 2 + 1 + 1)])
+            self.assertEqual(len(set(levels.values())), len(levels))
+            self.assertEqual(levels, self.session()["codes"]["numbers"])
+        listed = self.ok("experiment", "small.toml", "--dry-run", "--array", "array.toml").stdout
+        self.assertEqual([line for line in listed.splitlines() if line.startswith("code ")], [f"code {n}: {text}" for n, text in levels.items()])
+        self.assertEqual({k: v for k, v in self.session()["codes"].items() if k != "numbers"}, {"channel": 15, "bit_ms": 2.0})
         self.assertIn("Codes of stimuli, answers and void trials for a recorder: channel 15 (bits of 2 ms, exact to the sample).",
                       self.ok("report", "study").stdout)
         whole = contents(self.dir / "study")
@@ -83,7 +94,11 @@ class Codes(PersonTest):
     def test_what_cannot_be_sent_is_refused_with_file_and_line(self):
         for old, new, says in (("channel = 15", "channel = 4", "array.toml:4:8: code: channel 4 drives a tactor"),
                                ("[sync]", "[output]\nchannels = 12\n[sync]", "array.toml:6:8: the code's channel is 15, but there are 12 channels"),
-                               ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'the answer\'s number of motion "down" by method "brush" is 256'),
+                               ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'up to number 265 (void), and 255 is the greatest'),
+                               ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8]', 'up to number 24 (void), and 15 is the greatest (more lines, or'),
+                               ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8, 9], pulse_ms = 800',
+                                "array.toml:4:8: code: pulse_ms is 800, and 7"),
+                               ('code = { channel = 15 }', 'out = { chip = "c", offset = 5, pulse_ms = 2000 }', "[sync] out: pulse_ms is 2000"),
                                ("channel = 15", "lsl = 1", "array.toml:4:16: lsl is 1"),
                                ("channel = 15", 'chip = "c", offsets = [5, 6.7]', "array.toml:4:36: an offset is 6.7")):
             self.write("array.toml", ARRAY.replace(old, new))
@@ -107,7 +122,7 @@ class Codes(PersonTest):
         for row, first in zip(rows, (events[0], events[3], events[7])):
             self.assertEqual(int(first["frame"]), int(row["frame_1"]) - LEAD)
             self.assertEqual(first["onset"], row["onset"])
-        self.assertEqual(int(events[6]["code"]), int(events[2]["code"]) + 10)
+        self.assertEqual([self.levels("pairs")[events[i]["code"]] for i in (2, 6)], ['answer, run "pairs", answer 1', "void"])
         self.assertLess(int(events[5]["frame"]), int(events[6]["frame"]))
         info, outlet, *marks = (line.split() for line in said.read_text().splitlines())
         self.assertEqual((info, outlet), (["info", "tactor", "Markers", "1", "0", "4", "tactor-01"], ["outlet", "0", "360"]))
@@ -128,6 +143,42 @@ class Codes(PersonTest):
         process.communicate()
         self.assertEqual(self.answers(), [("1", "1", "false", "1")])
         self.assertEqual([e["event"] for e in self.events("pairs")][:2], ["stimulus", "stimulus"])
+
+    def test_values_standards_and_catch_trials_have_numbers_of_their_own(self):
+        runs = (studies.run("jnd", "constant", 16, question="?", vary="length_mm", values=[4, 8], standard=6, motions=["down"], methods=["park"])
+                + studies.run("felt", "detect", 20, vary="level_dbfs", values=[-40, -30], catch=0.2, motions=["down"], methods=["park"])
+                + studies.run("size", "estimate", 4, question="?", vary="level_dbfs", values=[-30, -20], motions=["down"], methods=["park"]))
+        # A level in dBFS: nobody's thresholds are needed.
+        text = SMALL.partition("[[run]]")[0].replace("gap_s", "level = { dbfs = -20 }\ngap_s") + runs
+        definition = self.small(text)
+        self.simulate("01", "--array", "array.toml", definition=definition, spec="seed=1,jnd=2")
+        one = 'motion "down", method "park"'
+        expected = ([f"stimulus, {one}, length_mm {v}, interval {i}" for v in (4, 8) for i in (1, 2)]
+                    + [f"stimulus, {one}, level_dbfs {v}" for v in (-40, -30)] + [f"stimulus, {one}, level_dbfs {v}" for v in (-20,)]
+                    + [f"standard, {one}, interval {i}" for i in (1, 2)] + [f"catch, {one}"]
+                    + [f'answer, run "{r}", answer {n}' for r in ("jnd", "felt") for n in (1, 2)] + ['answer, run "size"', "void"])
+        self.assertEqual(list(self.levels("felt").values()), expected)
+        levels = self.levels("felt")
+        for task in ("jnd", "felt"):
+            rows = {r["trial"]: r for r in self.rows("01", task)}
+            for e in self.events(task):
+                row = rows[e["trial"]]
+                if e["event"] == "catch":
+                    self.assertEqual(row["method_1"], "none")
+                elif e["event"] == "standard":
+                    self.assertEqual(row[f"method_{levels[e['code']][-1]}"], "standard")
+                elif e["event"] == "stimulus":
+                    self.assertIn(f" {row['value']}", levels[e["code"]])
+        # Joined: one number for all values and both intervals.
+        self.write("array.toml", ARRAY + '[sync.codes]\nstimulus = { first = 10, by = ["motion", "method"] }\nstandard = { by = [] }\nanswer = 200\n')
+        listed = json.loads(self.ok("experiment", definition, "--dry-run", "--array", "array.toml", "--format", "json").stdout)["codes"]
+        self.assertEqual([(c["code"], c["meanings"]) for c in listed[:4]],
+                         [(10, [f"stimulus, {one}"]), (11, ["standard"]), (12, [f"catch, {one}"]), (200, ['answer, run "jnd", answer 1'])])
+        many = studies.run("many", "constant", 0, question="?", vary="length_mm", values=list(range(4, 40)), standard=6).replace("trials = 0\n", "trials_per_value = 2\n")
+        self.write("array.toml", ARRAY)
+        self.small(text + many)
+        self.refused(2, "experiment", definition, "--dry-run", "--array", "array.toml",
+                     says=["array.toml:4:8: code: there are", 'join some under [sync.codes]: stimulus = { by = ["motion", "method"] }'])
 
     def test_a_library_that_is_none_is_refused(self):
         self.write("desk.toml", DESK + "[sync]\ncode = { lsl = true }\n")

@@ -168,6 +168,7 @@ class Schemas(ToolTest):
         self.write("grouped.toml", FELT.replace("name", "sessions = 2\nname", 1) + '[[group]]\nname = "a"\n')
         self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a", "--session", "1")
         self.write("measured.toml", MEASURED + TRACKS)
+        self.write("coded.toml", '[array]\npreset = "palm-3x3"\n[sync]\ncode = { channel = 9 }\n')
         for code in "123":
             self.ok("experiment", "measured.toml", "--participant", code, "-o", "measured", "--simulate", f"seed={code},jnd=4,sigma=0.2,dprime=1")
         studies.grouped(self.dir / "compared")
@@ -187,7 +188,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

@@ -170,7 +170,8 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
 {
     const setup s =
         read("[sync]\nout = { chip = \"a\", offset = 4 }\ncode = { channel = 15, bit_ms = 1, chip = \"a\", "
-             "offsets = [5, 6], pulse_ms = 7, lsl = true }\n[sync.codes]\nstimulus = 1\nvoid = 3\n");
+             "offsets = [5, 6], pulse_ms = 7, lsl = true }\n[sync.codes]\nstimulus = 1\nvoid = 3\n"
+             "standard = { first = 4, by = [\"motion\", \"interval\"] }\ncatch = { by = [] }\n");
     REQUIRE(s.sync->code.has_value());
     const code_settings& c = *s.sync->code;
     CHECK(c.channel == 15u);
@@ -179,7 +180,14 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(c.offsets == std::vector<unsigned>{5, 6});
     CHECK(c.pulse_s == 0.007);
     CHECK(c.lsl);
-    CHECK(std::array{c.stimulus, c.answer, c.made_void} == std::array{1u, 20u, 3u});
+    CHECK(c.stimulus.first == 1u);
+    CHECK(!c.stimulus.by);
+    CHECK(!c.answer.first);
+    CHECK(c.made_void.first == 3u);
+    CHECK(c.standard.first == 4u);
+    CHECK(c.standard.by == std::vector<std::string>{"motion", "interval"});
+    CHECK(!c.caught.first);
+    CHECK(c.caught.by == std::vector<std::string>{});
     const std::string again = detail::besides_text(s);
     CHECK(detail::besides_text(read(again)) == again);
 
@@ -194,6 +202,8 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
           "t.toml:2:8: the line is in use at t.toml:2:8 (give each purpose a GPIO line of its own)");
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = 256") ==
           "t.toml:4:12: stimulus is 256 (allowed: 1 to 255)");
+    CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = { by = [\"motions\"] }") ==
+          "t.toml:4:19: by has \"motions\" (some of run, motion, method, value, interval, answer)");
     CHECK(complaint("[sync.codes]\nstimulus = 1\n") ==
           "t.toml:1:1: nothing sends these numbers (code = { channel }, or { chip, offsets })");
     CHECK(complaint("[sync]\nchannel = 4\ncode = { channel = 4 }\n") ==

@@ -362,21 +362,21 @@ struct coded_session {
     study::study_folder study_files;
     study::session_store store;
 
-    explicit coded_session(const std::string& array_text)
-        : p(prepare(array_text)),
+    explicit coded_session(const std::string& array_text, const std::string& definition = pairs)
+        : p(prepare(array_text, definition)),
           study_files(files / "study", p.definition, "01", true),
           store(study_files, {&p.definition.runs[0]}, study::describe_session(p, {}, ""), false)
     {
         store.begin(p.stimuli.all(), study::describe_events(p));
     }
 
-    study::prepared_experiment prepare(const std::string& array_text)
+    study::prepared_experiment prepare(const std::string& array_text, const std::string& definition)
     {
         session::settings s;
         s.config_file = files.write("none.toml", "").string();
         s.array_name = files.write("array.toml", array_text).string();
-        return study::prepare({files.write("pairs.toml", pairs).string(), "01", 1, study::audience::nobody},
-                              s);
+        return study::prepare(
+            {files.write("pairs.toml", definition).string(), "01", 1, study::audience::nobody}, s);
     }
 };
 
@@ -401,11 +401,11 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
     const study::session_step step{study::step_kind::trial, 0, 0, false, {1, 1}};
     const study::session_step practice{study::step_kind::trial, 0, 0, true, {1, 1}}; // has no codes
     CHECK(codes.give(c.p.stimuli.make_score(t), practice, t, nobody).frames == c.p.stimuli.frames(t));
-    codes.send(study::code_event::answer, practice, t);
+    codes.send(study::code_event::answer, practice, t, "1");
     std::uint64_t latest = 0;
     const study::given_stimulus g =
         codes.give(c.p.stimuli.make_score(t), step, t, [&](std::uint64_t frame) { latest = frame; });
-    codes.send(study::code_event::answer, step, t);
+    codes.send(study::code_event::answer, step, t, "1");
     codes.send(study::code_event::made_void, step, t);
     codes.finish();
     REQUIRE(g.flaw.empty());
@@ -434,10 +434,11 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
     REQUIRE(heard.size() == 4);
     CHECK(synth::make_code(c.p.stimuli.make_score(t), 8, bit, 1).starts().empty()); // no sync pulse
     const std::uint64_t first = *g.first_frame;
-    CHECK(heard[0] == std::pair{42U, first - 9 * bit});
-    CHECK(heard[1] == std::pair{41U, first + c.p.stimuli.second(t) - 9 * bit});
-    CHECK(heard[2].first == 21);
-    CHECK(heard[3].first == 31);
+    // From 41: a in both intervals, b in both, the answers 1 and 2, void.
+    CHECK(heard[0] == std::pair{43U, first - 9 * bit});
+    CHECK(heard[1] == std::pair{42U, first + c.p.stimuli.second(t) - 9 * bit});
+    CHECK(heard[2].first == 45);
+    CHECK(heard[3].first == 47);
     for (const std::size_t method : {t.method_1, *t.method_2}) {
         const study::stimulus& s = c.p.stimuli.at(0, method);
         const std::uint64_t from = first + (method == t.method_1 ? 0 : c.p.stimuli.second(t));
@@ -459,6 +460,35 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
     }
     CHECK(events.need(0, "onset") == "0.000000");
     there.finish();
+}
+
+TEST_CASE("a code that an xrun cuts has an event, because the recorder may have another number")
+{
+    std::string array_text = coded_array;
+    array_text.replace(array_text.find("1.5"), 3, "20"); // nine bits take 8640 frames
+    std::string definition = pairs;
+    definition.replace(definition.find("0.0321"), 6, "0.3");
+    coded_session c(array_text, definition);
+    set_up s;
+    study::sync_codes codes(c.p, c.store, &s.there, nullptr);
+    const study::planned_trial t{0, 1, 0};
+    const study::session_step step{study::step_kind::trial, 0, 0, false, {1, 1}};
+    {
+        const meanwhile x(s, [&] { s.dac.advance(1'000'000); });
+        const study::given_stimulus g = codes.give(c.p.stimuli.make_score(t), step, t, nobody);
+        CHECK_FALSE(g.flaw.empty());
+        CHECK_FALSE(g.first_frame);
+    }
+    study::run_table table(c.store, c.p.definition.runs[0], false);
+    study::trial_row row = study::planned_row(c.p, t, {1, 1});
+    row.is_void = true;
+    table.add(row, 0, rate);
+    codes.write(c.p.definition.runs[0], row, table);
+    const study::text_table events(c.files / "study/sub-01/beh/sub-01_task-r_events.tsv");
+    REQUIRE(events.rows() == 1);
+    CHECK(events.need(0, "event") == "broken");
+    CHECK(events.need(0, "code") == "43");
+    s.there.finish();
 }
 
 TEST_CASE("lines show the number of each pulse, another line along with it")
@@ -497,23 +527,26 @@ TEST_CASE("lines show the number of each pulse, another line along with it")
 TEST_CASE("codes that cannot be sent are refused by name before the session")
 {
     CHECK(refusal("stimulus = 41", "stimulus = 255") ==
-          "array.toml:6:8: code: the stimulus's number of motion \"east\" by method \"b\" is 256, and 255 is "
-          "the "
-          "greatest (smaller numbers under [sync.codes], or fewer motions or methods)");
+          "array.toml:6:8: code: there are 7 events, up to number 261 (void), and 255 is the greatest (join "
+          "some "
+          "under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
+    CHECK(refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5]") ==
+          "array.toml:6:8: code: there are 7 events, up to number 47 (void), and 31 is the greatest (more "
+          "lines, "
+          "or join some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(
-        refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5]") ==
-        "array.toml:6:8: code: the stimulus's number of motion \"east\" by method \"a\" is 41, and 31 is the "
-        "greatest (more lines, or smaller numbers under [sync.codes])");
+        refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5, 6], pulse_ms = 250") ==
+        "array.toml:6:8: code: pulse_ms is 250, and 200 ms after the stimulus of motion \"east\" by method "
+        "\"b\" begins the answer's number may come (a shorter pulse_ms, or longer stimuli)");
     CHECK(refusal("bit_ms = 1.5", "bit_ms = 4") == "array.toml:6:8: code: it takes 0.036 s, and the gap "
                                                    "between two stimuli is 0.0321 s (a longer gap_s in "
                                                    "the definition, or a shorter bit_ms)");
-    std::string same = coded_array;
-    same.replace(same.find("41"), 2, "20");
-    const auto warnings = coded_session(same).p.warnings;
+    const auto warnings = coded_session(std::string(coded_array) + "answer = 44\n").p.warnings;
     REQUIRE(!warnings.empty());
-    CHECK(warnings.back() ==
-          "[sync.codes]: the answer's number of motion \"east\" by method \"a\" is 20, which "
-          "another event has, too");
+    CHECK(
+        warnings.back() ==
+        "[sync.codes]: number 44 marks several events: stimulus, motion \"east\", method \"b\", interval 2; "
+        "answer, run \"r\", answer 1");
 }
 
 } // namespace stage_test

@@ -222,6 +222,9 @@ void print_dry_run_json(const study::prepared_experiment& p)
             {{"name", q.name}, {"when", std::string(describe_time(q.when))}, {"items", items}});
     }
     j["stimuli"] = study::stimulus_facts(p);
+    j["codes"] = json::array();
+    for (const auto& [number, meanings] : p.codes.meanings())
+        j["codes"].push_back({{"code", number}, {"meanings", meanings}});
     j["warnings"] = p.warnings;
     fmt::print("{}\n", j.dump(1, ' ', false, json::error_handler_t::replace));
 }
@@ -245,6 +248,8 @@ void print_dry_run_text(const study::prepared_experiment& p)
     for (const study::questionnaire& q : d.outline.questionnaires)
         say(stdout, "questionnaire {}: {}, {}\n", q.name, describe_time(q.when),
             counted(q.items.size(), "item"));
+    for (const auto& [number, meanings] : p.codes.meanings())
+        say(stdout, "code {}: {}\n", number, fmt::join(meanings, "; "));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
         const study::trial_row r = study::planned_row(p, t, {});
         const std::optional<double> v = find_planned_value(p, t);

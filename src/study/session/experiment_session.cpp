@@ -257,6 +257,7 @@ json rest_facts(const prepared_experiment& p)
 prepared_experiment prepare(const session_request& r, session::settings& s)
 {
     experiment_definition d = load_definition(r.definition);
+    const experiment_definition whole = d; // its groups share the numbers of [sync] code
     keep_group(d, r.group);
     if (!r.all_sessions)
         take_session(d, r.session);
@@ -289,9 +290,13 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         doubts = calibration_doubts(r.participant, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
-    if (const code_settings* const c = find_codes(e))
-        if (std::string same = check_codes(*c, d, stimuli, render.rate); !same.empty())
+    code_numbers codes;
+    if (const code_settings* const c = find_codes(e)) {
+        codes = code_numbers(*c, whole);
+        if (std::string same = find_shared_number(codes); !same.empty())
             warnings.push_back(std::move(same));
+    }
+    check_pulses(e, d, stimuli, render.rate);
     if (std::string words = d.page.warning(); !words.empty() && r.who != audience::observer)
         warnings.push_back(std::move(words));
     if (assumed)
@@ -312,7 +317,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             std::move(warnings),
             std::move(doubts),
             r.hand,
-            row};
+            row,
+            std::move(codes)};
 }
 
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor)
@@ -426,7 +432,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["thresholds_assumed"] = p.assumed;
     j["calibration"] = calibration_facts(p);
     if (const code_settings* const c = find_codes(p.where))
-        j["codes"] = code_facts(*c);
+        j["codes"] = code_facts(*c, p.codes);
     j["rate"] = p.render.rate;
     j["channels"] = p.render.channels;
     j["masking"] = masking_facts(d.masking);

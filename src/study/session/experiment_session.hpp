@@ -20,6 +20,7 @@
 #include "study/experiment/definition.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
+#include "study/session/code_numbers.hpp"
 
 namespace tactor::study {
 
@@ -60,6 +61,7 @@ struct prepared_experiment {
     std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
     std::optional<hand_kind> hand = {};          ///< motions that say so are mirrored for a left one
     std::size_t row = 1;                         ///< of the orders, from 1
+    code_numbers codes = {};                     ///< empty without [sync] code
 
     /// Returns the run at a place in the session's order.
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }

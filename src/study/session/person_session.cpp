@@ -472,9 +472,9 @@ void person_session::trial(const session_step& s)
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
-            codes_.send(code_event::answer, s, t);
             set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a->number - 1]) : a->number,
                          std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
+            codes_.send(code_event::answer, s, t, row.response);
         }
     }
     row.is_void = !flaw.empty();

@@ -139,9 +139,10 @@ private:
     {
         if (s.practice)
             return;
-        codes_.note_stimuli(t, now_, p_.stimuli.frames(t), utc_ns(now_));
+        codes_.note_stimuli(s, t, now_, p_.stimuli.frames(t), utc_ns(now_));
         const std::uint64_t then = now_ + p_.stimuli.frames(t) + frames(row.response_time_s.value_or(0.0));
-        codes_.note(row.is_void ? code_event::made_void : code_event::answer, t, then, utc_ns(then));
+        codes_.note(row.is_void ? code_event::made_void : code_event::answer, s, t, row.response, then,
+                    utc_ns(then));
     }
 
     const prepared_experiment& p_;

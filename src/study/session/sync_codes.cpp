@@ -2,16 +2,15 @@
 #include "study/session/sync_codes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <set>
 #include <thread>
 #include <utility>
 
 #include <dlfcn.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
@@ -23,40 +22,18 @@
 namespace tactor::study {
 namespace {
 
-constexpr std::array events{code_event::stimulus, code_event::answer, code_event::made_void};
-constexpr unsigned most_number = 255;
+// Event of a code that was cut.
+constexpr std::string_view broken = "broken";
 
 std::uint64_t bit_frames(const code_settings& c, unsigned rate)
 {
     return static_cast<std::uint64_t>(std::max(1LL, std::llround(c.bit_s * rate)));
 }
 
-std::string_view to_string(code_event e) noexcept
-{
-    return e == code_event::stimulus ? "stimulus" : e == code_event::answer ? "answer" : "void";
-}
-
 // Returns the frames that a code on the channel takes before its event; 0 without a channel.
 std::uint64_t code_frames(const code_settings& c, unsigned rate)
 {
     return c.channel ? synth::code_bits * bit_frames(c, rate) : 0;
-}
-
-// Returns the number of an event: that of the first condition, plus the place of this one, motion by motion.
-unsigned code_number(const code_settings& c, const experiment_definition& d, code_event e, std::size_t motion,
-                     std::size_t method)
-{
-    const unsigned first = e == code_event::stimulus ? c.stimulus
-                           : e == code_event::answer ? c.answer
-                                                     : c.made_void;
-    const auto methods =
-        static_cast<std::size_t>(std::ranges::count(d.methods, false, &method_definition::is_variant));
-    return first + static_cast<unsigned>(motion * methods + d.methods[method].made_of.value_or(method));
-}
-
-std::string condition_text(const experiment_definition& d, std::size_t motion, std::size_t method)
-{
-    return fmt::format("motion \"{}\" by method \"{}\"", d.motions[motion].name, d.methods[method].name);
 }
 
 } // namespace
@@ -66,43 +43,52 @@ const code_settings* find_codes(const session::environment& e)
     return e.config.sync && e.config.sync->code ? &*e.config.sync->code : nullptr;
 }
 
-std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
-                        unsigned rate)
+std::string find_shared_number(const code_numbers& all)
 {
-    const unsigned most = c.offsets.empty() ? most_number : (1U << c.offsets.size()) - 1;
-    std::set<unsigned> seen;
-    std::string warning;
-    std::set<std::pair<std::size_t, std::size_t>> conditions;
-    for (const stimulus& s : all.all()) {
-        const std::size_t method = d.methods[s.method].made_of.value_or(s.method);
-        if (!conditions.emplace(s.motion, method).second)
-            continue;
-        for (const code_event e : events) {
-            const unsigned n = code_number(c, d, e, s.motion, method);
-            const std::string of = fmt::format("the {}'s number of {} is {}", to_string(e),
-                                               condition_text(d, s.motion, method), n);
-            if (n > most)
-                throw error(
-                    error_kind::bad_input, c.where, fmt::format("code: {}, and {} is the greatest", of, most),
-                    most == most_number ? "smaller numbers under [sync.codes], or fewer motions or methods"
-                                        : "more lines, or smaller numbers under [sync.codes]");
-            if (!seen.insert(n).second && warning.empty())
-                warning = fmt::format("[sync.codes]: {}, which another event has, too", of);
-        }
-    }
+    for (const auto& [number, meanings] : all.meanings())
+        if (meanings.size() > 1)
+            return fmt::format("[sync.codes]: number {} marks several events: {}", number,
+                               fmt::join(meanings, "; "));
+    return {};
+}
+
+void check_pulses(const session::environment& e, const experiment_definition& d, const stimulus_set& all,
+                  unsigned rate)
+{
+    if (!e.config.sync)
+        return;
+    const sync_settings& sync = *e.config.sync;
+    const code_settings* const c = find_codes(e);
     const bool are_pairs = std::ranges::any_of(d.runs, [](const auto& r) { return has_pairs(r.outline); });
-    const std::uint64_t lead = code_frames(c, rate);
+    const std::uint64_t lead = c != nullptr ? code_frames(*c, rate) : 0;
     if (are_pairs && d.gap_s * rate < static_cast<double>(lead))
-        throw error(error_kind::bad_input, c.where,
+        throw error(error_kind::bad_input, c->where,
                     fmt::format("code: it takes {:.4g} s, and the gap between two stimuli is {} s",
                                 static_cast<double>(lead) / rate, d.gap_s),
                     "a longer gap_s in the definition, or a shorter bit_ms");
-    return warning;
+    const stimulus& shortest = *std::ranges::min_element(all.all(), {}, &stimulus::frames);
+    const double shortest_s = static_cast<double>(shortest.frames) / rate;
+    const auto check = [&](double pulse_s, double most_s, std::string_view next, const auto& where,
+                           std::string_view what) {
+        if (pulse_s > most_s)
+            throw error(error_kind::bad_input, where,
+                        fmt::format("{}pulse_ms is {:.4g}, and {:.4g} ms after the stimulus of motion \"{}\" "
+                                    "by method \"{}\" begins {} may come",
+                                    what, pulse_s * 1e3, most_s * 1e3, d.motions[shortest.motion].name,
+                                    d.methods[shortest.method].name, next),
+                        "a shorter pulse_ms, or longer stimuli");
+    };
+    const bool has_lines = c != nullptr && !c->offsets.empty();
+    if (has_lines)
+        check(c->pulse_s, shortest_s, "the answer's number", c->where, "code: ");
+    const double rest_s = are_pairs ? std::min(d.gap_s, stimulus_lead_s) : stimulus_lead_s;
+    if (sync.channel || (sync.out && !has_lines))
+        check(sync.pulse_s, shortest_s + rest_s, "the next pulse", "[sync] out", "");
 }
 
-nlohmann::ordered_json code_facts(const code_settings& c)
+nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& all)
 {
-    nlohmann::ordered_json j{{"stimulus", c.stimulus}, {"answer", c.answer}, {"void", c.made_void}};
+    nlohmann::ordered_json j;
     if (c.channel) {
         j["channel"] = *c.channel;
         j["bit_ms"] = c.bit_s * 1e3;
@@ -111,6 +97,8 @@ nlohmann::ordered_json code_facts(const code_settings& c)
         j["lines"] = c.offsets;
     if (c.lsl)
         j["lsl"] = true;
+    for (const auto& [number, meanings] : all.meanings())
+        j["numbers"][fmt::format("{}", number)] = fmt::format("{}", fmt::join(meanings, "; "));
     return j;
 }
 
@@ -130,18 +118,14 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
     column("attempt", "Attempt of the run's table");
     column("event", "What happened");
     j["event"]["Levels"] = {{"stimulus", "a stimulus began"},
+                            {"standard", "a stimulus with the standard's value began"},
+                            {"catch", "a trial without a stimulus began"},
                             {"answer", "the participant answered"},
-                            {"void", "the trial was made void"}};
-    column("code", "Number that was sent; of an answer or a void trial that of its first stimulus, or of its "
-                   "condition without one");
-    // Lists all conditions: groups share the file.
-    const experiment_definition& d = p.definition;
-    for (const code_event e : events)
-        for (std::size_t motion = 0; motion < d.motions.size(); ++motion)
-            for (std::size_t method = 0; method < d.methods.size(); ++method)
-                if (!d.methods[method].is_variant())
-                    j["code"]["Levels"][fmt::format("{}", code_number(*c, d, e, motion, method))] =
-                        fmt::format("{}, {}", to_string(e), condition_text(d, motion, method));
+                            {"void", "the trial was made void"},
+                            {broken, "a code was cut short: the recorder may have another number"}};
+    column("code", "Number that was sent");
+    for (const auto& [number, meanings] : p.codes.meanings())
+        j["code"]["Levels"][fmt::format("{}", number)] = fmt::format("{}", fmt::join(meanings, "; "));
     column("frame", c->channel ? "Frame of the stream at which the start bit begins; the code ends where the "
                                  "stimulus begins, frame_1 or frame_2 of the run's table"
                                : "Frame of the stream at which the lines switch");
@@ -227,9 +211,15 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
         code_ = nullptr; // lines that are left alone
 }
 
-unsigned sync_codes::number(code_event e, const planned_trial& t, std::size_t method) const
+coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned interval) const
 {
-    return code_number(*code_, p_.definition, e, t.motion, method);
+    const std::size_t method = interval == 2 ? t.method_2.value() : t.method_1;
+    return {find_event(p_.definition.methods[method]), &p_.run_at(s.run), t.motion, method, interval};
+}
+
+unsigned sync_codes::number(const coded_event& e) const
+{
+    return p_.codes.number(p_.definition, e);
 }
 
 score sync_codes::make(unsigned number) const
@@ -242,8 +232,8 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
 {
     const std::uint64_t lead = this->lead(s);
     const bool sends = code_ != nullptr && !s.practice;
-    const unsigned first = sends ? number(code_event::stimulus, t, t.method_1) : 0;
-    const unsigned second = sends ? number(code_event::stimulus, t, t.method_2.value_or(t.method_1)) : 0;
+    const unsigned first = sends ? number(find_stimulus(s, t, 1)) : 0;
+    const unsigned second = sends ? number(find_stimulus(s, t, t.method_2 ? 2 : 1)) : 0;
     std::vector<synth::placed_score> parts{{stimuli, lead}};
     if (lead > 0)
         parts.push_back({make(first), 0});
@@ -261,26 +251,39 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
     given_stimulus g = there_->give(lead > 0 ? synth::join_scores(parts) : stimuli,
                                     stimulus_lead_s - static_cast<double>(lead) / rate,
                                     [&](std::uint64_t frame) { watch(frame - std::min(frame, lead)); });
+    // A code comes before its stimulus: of the second, where that begins in the stimuli alone.
+    const std::uint64_t played = g.frames;
+    const auto find_cut = [&](std::uint64_t begins, unsigned number) {
+        if (!g.first_frame || played <= begins || played >= begins + lead)
+            return;
+        const std::uint64_t at = *g.first_frame + begins;
+        const std::int64_t ns = g.started_ns + std::llround(static_cast<double>(begins) / rate * 1e9);
+        note_broken(s, {broken, number, at, at, rt::unix_ns() - (rt::monotonic_ns() - ns), 0});
+    };
+    find_cut(0, first);
+    if (t.method_2)
+        find_cut(p_.stimuli.second(t), second);
     g.frames -= std::min(g.frames, lead);
     g.started_ns += std::llround(static_cast<double>(lead) / rate * 1e9);
     if (g.first_frame)
         g.first_frame = g.frames > 0 || lead == 0 ? std::optional(*g.first_frame + lead) : std::nullopt;
     if (sends && g.first_frame)
-        note_stimuli(t, *g.first_frame, g.frames, rt::unix_ns() - (rt::monotonic_ns() - g.started_ns));
+        note_stimuli(s, t, *g.first_frame, g.frames, rt::unix_ns() - (rt::monotonic_ns() - g.started_ns));
     if (lines_ != nullptr && there_->stats().sync_missed != missed)
         session::say(stderr, "tactor: {}: trial {}: the lines came too late for a code and did not send it\n",
                      p_.run_at(s.run).outline.name, s.which.trial);
     return g;
 }
 
-void sync_codes::send(code_event e, const session_step& s, const planned_trial& t)
+void sync_codes::send(code_event e, const session_step& s, const planned_trial& t, std::string_view response)
 {
     if (code_ == nullptr || s.practice || there_->lost())
         return;
     finish();
-    const unsigned n = number(e, t, t.method_1);
+    const unsigned n = number({e, &p_.run_at(s.run), t.motion, t.method_1, 1, response});
     const std::uint64_t now = there_->position().played;
-    sending_ = sending{sent{e, n, now, now, rt::unix_ns(), 0}};
+    sending_ = sending{sent{to_string(e), n, now, now, rt::unix_ns(), 0}};
+    sending_->of = s;
     sending_->lines_until =
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                std::chrono::duration<double>(code_->pulse_s));
@@ -297,10 +300,13 @@ void sync_codes::finish()
     if (!sending_)
         return;
     sent code = sending_->code;
+    const session_step of = sending_->of;
     bool is_sent = true;
+    bool is_broken = false;
     if (code_->channel) {
         const stroke_report r = sending_->refused ? *sending_->refused : there_->follow();
         is_sent = r.state == state_kind::finished;
+        is_broken = !is_sent && r.frames > 0;
         code.frame += static_cast<std::uint64_t>(std::llround(r.late_s * p_.render.rate));
     }
     if (lines_ != nullptr) {
@@ -310,28 +316,42 @@ void sync_codes::finish()
     sending_.reset();
     if (is_sent)
         note(code);
+    code.event = broken;
+    if (is_broken)
+        note_broken(of, code);
 }
 
-void sync_codes::note_stimuli(const planned_trial& t, std::uint64_t frame_1, std::uint64_t frames,
-                              std::int64_t ns)
+void sync_codes::note_broken(const session_step& s, const sent& code)
+{
+    session::say(stderr,
+                 "tactor: {}: trial {}: the code {} was cut short: the recorder may have another number\n",
+                 p_.run_at(s.run).outline.name, s.which.trial, code.number);
+    noted_.push_back(code);
+}
+
+void sync_codes::note_stimuli(const session_step& s, const planned_trial& t, std::uint64_t frame_1,
+                              std::uint64_t frames, std::int64_t ns)
 {
     if (code_ == nullptr)
         return;
     const stimulus_set& all = p_.stimuli;
-    note({code_event::stimulus, number(code_event::stimulus, t, t.method_1), frame_1 - lead_, frame_1, ns,
-          all.at(t.motion, t.method_1).frames});
+    const auto note_one = [&](unsigned interval, std::uint64_t frame, std::int64_t at_ns) {
+        const coded_event e = find_stimulus(s, t, interval);
+        note({to_string(e.event), number(e), frame - lead_, frame, at_ns, all.at(e.motion, e.method).frames});
+    };
+    note_one(1, frame_1, ns);
     if (!t.method_2 || frames <= all.second(t))
         return;
-    const std::uint64_t frame_2 = frame_1 + all.second(t);
     const auto later = std::llround(static_cast<double>(all.second(t)) / p_.render.rate * 1e9);
-    note({code_event::stimulus, number(code_event::stimulus, t, *t.method_2), frame_2 - lead_, frame_2,
-          ns + later, all.at(t.motion, *t.method_2).frames});
+    note_one(2, frame_1 + all.second(t), ns + later);
 }
 
-void sync_codes::note(code_event e, const planned_trial& t, std::uint64_t frame, std::int64_t ns)
+void sync_codes::note(code_event e, const session_step& s, const planned_trial& t, std::string_view response,
+                      std::uint64_t frame, std::int64_t ns)
 {
     if (code_ != nullptr)
-        note({e, number(e, t, t.method_1), frame, frame, ns, 0});
+        note({to_string(e), number({e, &p_.run_at(s.run), t.motion, t.method_1, 1, response}), frame, frame,
+              ns, 0});
 }
 
 void sync_codes::note(const sent& s)
@@ -351,7 +371,7 @@ void sync_codes::write(const run_definition& r, const trial_row& trial, const ru
                 {"duration", fmt::format("{:.6f}", static_cast<double>(s.frames) / p_.render.rate)},
                 {"trial", fmt::format("{}", trial.trial)},
                 {"attempt", fmt::format("{}", trial.attempt)},
-                {"event", std::string(to_string(s.event))},
+                {"event", std::string(s.event)},
                 {"code", fmt::format("{}", s.number)},
                 {"frame", fmt::format("{}", s.frame)}});
 }

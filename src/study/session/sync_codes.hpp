@@ -22,24 +22,28 @@
 #include "session/environment.hpp"
 #include "study/bids/session_store.hpp"
 #include "study/experiment/trials.hpp"
+#include "study/session/code_numbers.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/session/stage.hpp"
 
 namespace tactor::study {
 
-enum class code_event { stimulus, answer, made_void };
-
 /// Returns the configuration's [sync] code; null: there is none.
 const code_settings* find_codes(const session::environment& e);
 
-/// Checks the numbers of all conditions before a session. Returns a warning if two events have one number.
-/// \throws error (bad_input) at the place of [sync] code: a number above 255, or with more bits than there
-///         are lines, or a gap between stimuli that is shorter than a code.
-std::string check_codes(const code_settings& c, const experiment_definition& d, const stimulus_set& all,
-                        unsigned rate);
+/// Returns a warning if two events that are told apart have one number, because [sync.codes] says so; else
+/// empty.
+std::string find_shared_number(const code_numbers& all);
+
+/// Checks before a session that each code and each pulse is over before the next may come: a code on the
+/// channel in the gap between two stimuli, a number on the lines within the shortest stimulus, at whose end
+/// somebody may answer, and a pulse or marker of [sync] before the next stimulus.
+/// \throws error (bad_input).
+void check_pulses(const session::environment& e, const experiment_definition& d, const stimulus_set& all,
+                  unsigned rate);
 
 /// Returns what session.json has of the codes.
-nlohmann::ordered_json code_facts(const code_settings& c);
+nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& all);
 /// Returns the description of the tables of events, with each number and its meaning; null without codes.
 nlohmann::ordered_json describe_events(const prepared_experiment& p);
 
@@ -103,22 +107,25 @@ public:
                         const stage::watcher& watch);
     /// Begins to send the code of an event that is now: on the lines at once, on the channel after the
     /// buffer. finish() ends it.
-    void send(code_event e, const session_step& s, const planned_trial& t);
+    /// `response`: of an answer, as in the table.
+    void send(code_event e, const session_step& s, const planned_trial& t, std::string_view response = {});
 
     /// Waits for the end of a code that send() began, if any, and notes it.
     void finish();
 
     /// Notes the codes of stimuli that began at a frame, of which so many frames were played.
-    void note_stimuli(const planned_trial& t, std::uint64_t frame_1, std::uint64_t frames, std::int64_t ns);
-    /// Notes the code of an event at a frame. `ns`: its CLOCK_REALTIME.
-    void note(code_event e, const planned_trial& t, std::uint64_t frame, std::int64_t ns);
+    void note_stimuli(const session_step& s, const planned_trial& t, std::uint64_t frame_1,
+                      std::uint64_t frames, std::int64_t ns);
+    /// Notes the code of an answer or a void trial at a frame. `ns`: its CLOCK_REALTIME.
+    void note(code_event e, const session_step& s, const planned_trial& t, std::string_view response,
+              std::uint64_t frame, std::int64_t ns);
     /// Calls finish(); then writes what was noted as events of the trial.
     /// \throws error (runtime).
     void write(const run_definition& r, const trial_row& trial, const run_table& table);
 
 private:
     struct sent {
-        code_event event;
+        std::string_view event;
         unsigned number;
         std::uint64_t frame;    ///< at which the code begins
         std::uint64_t at_frame; ///< of the event itself
@@ -130,8 +137,13 @@ private:
         sent code;
         std::chrono::steady_clock::time_point lines_until = {};
         std::optional<stroke_report> refused = {}; ///< by the stream
+        session_step of = {};
     };
-    unsigned number(code_event e, const planned_trial& t, std::size_t method) const;
+    /// Returns the stimulus in an interval, 1 or 2.
+    coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned interval) const;
+    unsigned number(const coded_event& e) const;
+    /// Notes and says that a code was cut, so that the recorder may have another number.
+    void note_broken(const session_step& s, const sent& code);
     score make(unsigned number) const;
     void note(const sent& s);
 

@@ -10,7 +10,7 @@ CHANNELS, CODE = 10, 9
 BIT = RATE * 2 // 1000
 LEAD = 9 * BIT
 TRIALS = 10
-STIMULUS, ANSWER = 0x81, 0x42  # only stimuli have the first line's bit
+STIMULUS, ANSWER = 0x81, 0x42  # only stimuli have the first line's bit; each answer is 2
 
 RATINGS = SessionTest.HEAD + f"""[[run]]
 name = "ratings"
@@ -26,7 +26,7 @@ class Codes(SessionTest):
         gpio = GpioSim()
         self.addCleanup(gpio.close)
         array = self.grid(extra=f'[sync]\ncode = {{ channel = {CODE}, chip = "{gpio.label}", offsets = {list(range(8))}, pulse_ms = 60 }}\n'
-                                f"[sync.codes]\nstimulus = {STIMULUS}\nanswer = {ANSWER}\nvoid = 2\n")
+                                f"[sync.codes]\nstimulus = {STIMULUS}\nanswer = {ANSWER - 1}\nvoid = 2\n")
         onsets, watch = Onsets(self.dir, CHANNELS), Watch(gpio, 0)
         err = self.hold(RATINGS, "y\n" * 9 + "\n" + "2\n" * 3 * TRIALS, timeout=300)
         heard, pulses = onsets.stop(), watch.stop()

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "study/session/code_numbers.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/error.hpp>
+
+#include "core/words.hpp"
+#include "study/data/dataset.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr unsigned greatest_number = 255;
+
+/// An event with its settings and the parts that tell its numbers apart by default.
+struct event_row {
+    code_event event;
+    std::string_view name;
+    code_numbering code_settings::*given;
+    std::vector<std::string> (*by)();
+};
+
+const std::array<event_row, code_events>& list_events()
+{
+    static const std::array<event_row, code_events> rows{{
+        {code_event::stimulus, "stimulus", &code_settings::stimulus,
+         [] {
+             return std::vector<std::string>{"motion", "method", "value", "interval"};
+         }},
+        {code_event::standard, "standard", &code_settings::standard,
+         [] {
+             return std::vector<std::string>{"motion", "method", "interval"};
+         }},
+        {code_event::silent, "catch", &code_settings::caught,
+         [] {
+             return std::vector<std::string>{"motion", "method"};
+         }},
+        {code_event::answer, "answer", &code_settings::answer,
+         [] {
+             return std::vector<std::string>{"run", "answer"};
+         }},
+        {code_event::made_void, "void", &code_settings::made_void, [] { return std::vector<std::string>{}; }},
+    }};
+    return rows;
+}
+
+// Returns true if a run has so few answers that each has a number. Estimates and lines have any number.
+bool has_answer_numbers(const run_outline& r)
+{
+    return r.task != task_kind::estimate && !r.visual;
+}
+
+// Lists the answers of a run as its table has them.
+std::vector<std::string> list_answers(const run_definition& r)
+{
+    const run_outline& o = r.outline;
+    if (o.task == task_kind::identify)
+        return o.motions;
+    std::vector<std::string> all;
+    const unsigned most = !has_answer_numbers(o) ? 1 : o.task == task_kind::rate ? o.scale : 2;
+    for (unsigned i = 1; i <= most; ++i)
+        all.push_back(fmt::format("{}", i));
+    return all;
+}
+
+// Returns the intervals in which a stimulus may come.
+std::vector<unsigned> list_intervals(const run_definition& r, code_event e)
+{
+    if (!has_pairs(r.outline))
+        return {1};
+    if (r.outline.task == task_kind::estimate) // the standard is always first
+        return {e == code_event::standard ? 1U : 2U};
+    return {1, 2};
+}
+
+// Lists the events of a run, in order.
+std::vector<coded_event> list_events_in(const run_definition& r)
+{
+    std::vector<coded_event> all;
+    for (const std::size_t motion : r.motions)
+        for (const std::size_t method : r.methods) {
+            const method_variants& v = r.variants.at(method);
+            const auto add = [&](code_event e, std::size_t played) {
+                for (const unsigned interval : list_intervals(r, e))
+                    all.push_back({e, &r, motion, played, interval});
+            };
+            for (const std::size_t value : v.values)
+                add(code_event::stimulus, value);
+            if (v.values.empty())
+                add(code_event::stimulus, method);
+            if (v.standard)
+                add(code_event::standard, *v.standard);
+            if (v.silent)
+                add(code_event::silent, *v.silent);
+            all.push_back({code_event::made_void, &r, motion, method});
+        }
+    return all;
+}
+
+} // namespace
+
+std::string_view to_string(code_event e) noexcept
+{
+    return list_events()[static_cast<std::size_t>(e)].name;
+}
+
+code_event find_event(const method_definition& m) noexcept
+{
+    return m.silent                                    ? code_event::silent
+           : m.is_variant() && m.name == standard_name ? code_event::standard
+                                                       : code_event::stimulus;
+}
+
+std::string code_numbers::describe(const experiment_definition& d, const coded_event& e) const
+{
+    const run_outline& r = e.run->outline;
+    const method_definition& m = d.methods[e.method];
+    const bool is_stimulus = e.event != code_event::answer && e.event != code_event::made_void;
+    std::vector<std::string> parts{std::string(to_string(e.event))};
+    for (const std::string& part : by_[static_cast<std::size_t>(e.event)])
+        if (part == "run")
+            parts.push_back(fmt::format("run \"{}\"", r.name));
+        else if (part == "motion")
+            parts.push_back(fmt::format("motion \"{}\"", d.motions[e.motion].name));
+        else if (part == "method")
+            parts.push_back(fmt::format("method \"{}\"", d.methods[m.made_of.value_or(e.method)].name));
+        else if (part == "value" && is_stimulus && m.value)
+            parts.push_back(fmt::format("{} {}", r.vary, plain_number(*m.value)));
+        else if (part == "interval" && is_stimulus && has_pairs(r))
+            parts.push_back(fmt::format("interval {}", e.interval));
+        else if (part == "answer" && e.event == code_event::answer && has_answer_numbers(r))
+            parts.push_back(r.task == task_kind::identify ? fmt::format("answer \"{}\"", e.response)
+                                                          : fmt::format("answer {}", e.response));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+code_numbers::code_numbers(const code_settings& c, const experiment_definition& whole)
+{
+    for (const event_row& row : list_events())
+        by_.push_back((c.*row.given).by.value_or(row.by()));
+    const unsigned most = c.offsets.empty() ? greatest_number : (1U << c.offsets.size()) - 1;
+    unsigned next = 1;
+    for (const event_row& row : list_events()) {
+        next = (c.*row.given).first.value_or(next);
+        const auto add = [&](const coded_event& e) {
+            if (e.event != row.event)
+                return;
+            const std::string text = describe(whole, e);
+            if (!numbers_.emplace(text, next).second)
+                return;
+            meanings_[next++].push_back(text);
+        };
+        for (const run_definition& r : whole.runs) {
+            const std::vector<std::string> answers = list_answers(r);
+            for (const coded_event& e : list_events_in(r)) {
+                add(e);
+                for (const std::string& answer : answers)
+                    add({code_event::answer, &r, e.motion, e.method, 1, answer});
+            }
+        }
+    }
+    const auto last = std::ranges::max_element(numbers_, {}, &decltype(numbers_)::value_type::second);
+    if (last->second > most)
+        throw error(error_kind::bad_input, c.where,
+                    fmt::format("code: there are {} events, up to number {} ({}), and {} is the greatest",
+                                numbers_.size(), last->second, last->first, most),
+                    most == greatest_number
+                        ? "join some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] }"
+                        : "more lines, or join some under [sync.codes]: stimulus = { by = [\"motion\", "
+                          "\"method\"] }");
+}
+
+unsigned code_numbers::number(const experiment_definition& d, const coded_event& e) const
+{
+    return numbers_.at(describe(d, e));
+}
+
+} // namespace tactor::study
