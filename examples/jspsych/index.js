@@ -3,13 +3,14 @@
 //   <script src="jspsych-plugin-tactor/index.js"></script>        after that of jspsych; or
 //   import jsPsychTactorStroke from 'jspsych-plugin-tactor';      with a bundler
 //   { type: jsPsychTactorStroke, play: { stroke: 'park2016-1', options: { duration: 0.5 } }, choices: ['f', 'j'] }
+// example.html has timeline variables.
 // The service lists the page's host and port in allow_hosts: man/guide/runners.md.
 const jsPsychTactorStroke = (({ ParameterType }) => {
   const info = {
     name: 'tactor-stroke',
     version: '0.1.0',
     parameters: {
-      /** Parameters of `play`, as in tactor-protocol(7). */
+      /** Parameters of `play`, as in tactor-protocol(7). Timeline variables and functions may stand at any depth. */
       play: { type: ParameterType.OBJECT, default: undefined },
       url: { type: ParameterType.STRING, default: 'ws://127.0.0.1:4003/rpc' },
       /** Token of the service, if it has one. */
@@ -59,6 +60,15 @@ const jsPsychTactorStroke = (({ ParameterType }) => {
       let socket, keyboard, calls = 0, silence_s = 0, ahead = 0, pressed = null;
       let was_open = false, is_planned = false, waits = trial.choices !== 'NO_KEYS', has_ended = false;
 
+      // jsPsych evaluates what stands directly in `play`. Deeper it leaves a timeline variable as a copy, {name: ...}.
+      const evaluate = (value) => {
+        if (typeof value === 'function') return evaluate(value());
+        if (Array.isArray(value)) return value.map(evaluate);
+        if (typeof value !== 'object' || value === null) return value;
+        const entries = Object.entries(value);
+        if (entries.length === 1 && entries[0][0] === 'name') return evaluate(this.jsPsych.evaluateTimelineVariable(value.name));
+        return Object.fromEntries(entries.map(([key, v]) => [key, evaluate(v)]));
+      };
       const call = (method, params, handle) => {
         answers.set(++calls, handle);
         socket.send(JSON.stringify({ jsonrpc: '2.0', id: calls, method, params }));
@@ -103,7 +113,7 @@ const jsPsychTactorStroke = (({ ParameterType }) => {
         if (data.state === 'lost' || data.state === 'finished') Object.assign(data, { state, message: reason });
         finish_if_done();
       };
-      const play = () => call('play', trial.play, ({ strokes }) => {
+      const play = () => call('play', evaluate(trial.play), ({ strokes }) => {
         strokes.forEach((number) => sounding.add(number));
         is_planned = true;
       });

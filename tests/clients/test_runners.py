@@ -112,6 +112,23 @@ class JsPsych(BrowserTest, RunnerTest):
         self.assertLess(first["onset_s"], second["onset_s"])
         self.assertEqual(p.faults(), [])
 
+    def test_the_example_takes_timeline_variables(self):
+        (self.dir / "node_modules").mkdir()
+        for name, target in (("jspsych", JSPSYCH), ("jspsych-plugin-tactor", ROOT / "examples/jspsych")):
+            (self.dir / "node_modules" / name).symlink_to(target)
+        (self.dir / "example.html").symlink_to(ROOT / "examples/jspsych/example.html")
+        url = self.server.where["http"].replace("http:", "ws:") + "rpc"
+        p = self.page(f"http://{self.web}/example.html?url={url}")
+        for n in range(4):
+            p.until(f"typeof jsPsych !== 'undefined' && jsPsych.getProgress().current_trial_global === {n} && document.body.innerText.includes('Left (f)')")
+            p.key("KeyJ", "j")
+        rows = self.rows(p)
+        self.assertEqual([(r["state"], r["message"]) for r in rows], [("finished", "")] * 4)
+        self.assertEqual(sorted((r["path"], r["duration"]) for r in rows),
+                         sorted((path, d) for path in ("M 35 20 H 5", "M 5 20 H 35") for d in (0.2, 0.4)))
+        # A burst each 0.07 s: three in 0.2 s.
+        self.assertEqual({r["duration"]: r["frames"] > 12000 for r in rows}, {0.2: False, 0.4: True})
+
     @unittest.skipUnless(shutil.which("esbuild"), "esbuild is not here")
     def test_a_bundler_takes_it(self):
         modules = self.dir / "lab/node_modules"
