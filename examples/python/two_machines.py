@@ -1,23 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws on one array that two machines share, each with `tactor serve`. Needs neither NumPy nor this package.
-
-    two_machines.py split ARRAY.toml NAME=FIRST-LAST NAME=FIRST-LAST   writes NAME.asoundrc: a PCM that plays these channels of the array
-    two_machines.py draw HOST:PORT HOST:PORT PATH [TOKEN_FILE]         draws a path, if the clocks of both agree within 2 ms
-"""
+"""Draws on one array that two machines share, each with `tactor serve`. Needs the tool `tactor`, neither NumPy nor this package.
+    two_machines.py split ARRAY NAME=FIRST-LAST NAME=FIRST-LAST   writes NAME.asoundrc: a PCM that plays these channels of the array
+    two_machines.py draw HOST:PORT HOST:PORT PATH [TOKEN_FILE]    draws a path, if both plan the same and their clocks agree within 2 ms"""
 import contextlib
 import json
 import pathlib
 import socket
+import subprocess
 import sys
 import time
-import tomllib
 
 
 def split(file, *machines):
-    array = tomllib.loads(pathlib.Path(file).read_text(encoding="utf-8"))
-    channels = sorted(t["channel"] for t in array.get("tactor", [])) or range((grid := array["array"]["grid"])["rows"] * grid["columns"])
-    own = {name: range(int(first), int(last) + 1) for name, first, last in (m.replace("=", "-").split("-") for m in machines)}
+    command = [*"tactor plan --outside clamp --algorithm continuous --duration 1 --format json --path".split(), "M 0 0", "--array", file]
+    channels = sorted(t["channel"] for t in json.loads(subprocess.check_output(command))["array"]["tactors"])
+    own = {name: range(*(int(end) + i for i, end in enumerate(share.split("-")))) for name, share in (m.rsplit("=", 1) for m in machines)}
     if unclear := [c for c in channels if sum(c in mine for mine in own.values()) != 1]:
         sys.exit(f"{file}: channel {unclear[0]} is on no machine, or on both (give each channel to one)")
     for name, mine in own.items():
@@ -59,6 +57,8 @@ def draw(first, second, path, token_file=None, limit_s=0.002, after_s=0.5):
     apart_s, known_s = machines[1].lead_s - machines[0].lead_s, sum(m.trip_s for m in machines) / 2
     print(f"{second}'s clock is {1000 * apart_s:+.3f} ms from {first}'s, known to {1000 * known_s:.3f} ms")
     max(abs(apart_s), known_s) > limit_s and sys.exit(f"the clocks must agree within {1000 * limit_s:g} ms (synchronise them, over a wire)")
+    plans = [m.call("plan", path=path) for m in machines]
+    plans[0] == plans[1] or sys.exit("the machines plan different strokes (give both the same version, array and [defaults])")
     start_s = machines[0].lead_s + time.monotonic() + after_s
     with contextlib.ExitStack() as at_end:
         for m in machines:
@@ -76,5 +76,5 @@ def draw(first, second, path, token_file=None, limit_s=0.002, after_s=0.5):
 if __name__ == "__main__":
     try:
         {"split": split, "draw": draw}.get(sys.argv[1] if len(sys.argv) > 4 else "", lambda *_: sys.exit(__doc__))(*sys.argv[2:])
-    except (OSError, KeyError, ValueError) as e:
+    except (OSError, KeyError, ValueError, subprocess.SubprocessError) as e:
         sys.exit(f"{' '.join(sys.argv[1:])}: {type(e).__name__}: {e}")

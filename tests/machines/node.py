@@ -76,6 +76,7 @@ class Node:
         (RUN / "tactor").mkdir()
         (RUN / "tactor/tactor.toml").write_text(SERVE, encoding="ascii")
         os.chdir(RUN)
+        os.environ["PATH"] += f":{TOOL.parent}"
         two_machines.split("array.toml", f"left=0-{HALF - 1}", f"right={HALF}-{2 * HALF - 1}")
         half = (RUN / f"{role}.asoundrc").read_text(encoding="ascii").replace("hw:CARD=Tactor", "recorded")
         (RUN / ".asoundrc").write_text(RECORDED + half, encoding="ascii")

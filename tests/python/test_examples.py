@@ -166,8 +166,9 @@ class Between(socketserver.StreamRequestHandler):
                 self.wfile.write(json.dumps(answer).encode() + b"\n")
 
 
-def test_two_machines_draw_one_array(root, tool, tmp_path):
+def test_two_machines_draw_one_array(root, tool, tmp_path, monkeypatch):
     program, array = root / "examples/python/two_machines.py", root / "examples/rtp/both.toml"
+    monkeypatch.setenv("PATH", f"{pathlib.Path(tool.program).parent}:{os.environ['PATH']}")
 
     def refuse(*arguments):
         r = subprocess.run([sys.executable, program, *map(str, arguments)], capture_output=True, text=True, cwd=tmp_path, timeout=120, check=False)
@@ -184,13 +185,27 @@ def test_two_machines_draw_one_array(root, tool, tmp_path):
         assert [(int(c), int(at)) for c, slave, at in bindings if slave == "card"] == [(first + i, i) for i in range(12)]
         assert sorted(int(c) for c, _, _ in bindings) == list(range(24))
     assert "channel 11 is on no machine, or on both" in refuse("split", array, "left=0-11", "right=11-23")
+    assert "ValueError" in refuse("split", array, "left", "right=12-23")
+
+    # Presets, arrays without channels, and names with hyphens.
+    (tmp_path / "own.toml").write_text('[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nchannel = 9\n', encoding="utf-8")
+    (tmp_path / "other.toml").write_text('[array]\nfile = "own.toml"\n', encoding="utf-8")
+    shipped = root / "examples/arrays"
+    for its_array, last in (("palm-3x3", 8), ("palm-2x4", 7), (tmp_path / "own.toml", 9), (tmp_path / "other.toml", 9), (shipped / "arm-line-4.toml", 3),
+                            (shipped / "honeycomb.toml", 7), (shipped / "lra-row-3.toml", 2), (shipped / "ring-8.toml", 7), (shipped / "scattered-12.toml", 11)):
+        run(program, "split", its_array, "left-arm=0-1", f"right-arm=2-{last}", cwd=tmp_path)
+        for side, mine in (("left-arm", range(2)), ("right-arm", range(2, last + 1))):
+            bindings = re.findall(r"^bindings\.(\d+) { slave (\w+) channel (\d+) }$", (tmp_path / f"{side}.asoundrc").read_text(encoding="utf-8"), re.M)
+            assert [(int(c), int(at)) for c, slave, at in bindings if slave == "card"] == [(c, at) for at, c in enumerate(mine)], its_array
+            assert sorted(int(c) for c, _, _ in bindings) == list(range(last + 1))
 
     with contextlib.ExitStack() as services:
         places = []
-        for i, its_array in enumerate((array, array, "palm-3x3")):
-            where = services.enter_context(service(tool, tmp_path, "--socket", f"{tmp_path}/{i}", "--array", its_array, "--tcp", "0"))
+        (tmp_path / "differ.toml").write_text('[defaults]\nlevel_dbfs = -40.0\nalgorithm = "tactile-brush"\n', encoding="utf-8")
+        for i, options in enumerate((("--array", array), ("--array", array), ("--array", "palm-3x3"), ("--array", array, "--config", tmp_path / "differ.toml"))):
+            where = services.enter_context(service(tool, tmp_path, "--socket", f"{tmp_path}/{i}", *options, "--tcp", "0"))
             places.append(where["tcp"])
-        left, right, other = places
+        left, right, other, differs = places
         said = run(program, "draw", left, right, "M 0 0 H 100").splitlines()
         assert re.fullmatch(rf"{right}'s clock is [+-]0\.\d{{3}} ms from {left}'s, known to \d\.\d{{3}} ms", said[0])
         assert [re.sub(r"\d+\.\d+ ms", "0 ms", s) for s in said[1:]] == [f"{m}: finished, 0 ms late" for m in (left, right)]
@@ -204,6 +219,7 @@ def test_two_machines_draw_one_array(root, tool, tmp_path):
         while strokes(1):  # it fades, though nobody stopped it there
             assert time.monotonic() < end
         assert "different arrays" in refuse("draw", left, other, "M 0 0 H 100")
+        assert "the machines plan different strokes (give both" in refuse("draw", left, differs, "M 0 0 H 100")
         with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Between) as between:
             between.behind = right.rsplit(":", 1)
             threading.Thread(target=between.serve_forever, daemon=True).start()
