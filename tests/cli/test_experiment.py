@@ -741,14 +741,25 @@ class Power(ExperimentTest):
                      ("--part", "1/3", "-o", "x", "--merge", "1.json")):
             self.refused(2, *args, *more)
         self.assertFalse((self.dir / "x").exists())
+        # A part is written again by itself alone.
+        kept = (self.dir / "1.json").read_bytes()
+        for more, says in ((("--part", "1/4"), "1.json: it has part 1 of 3 ("), (("--part", "2/3"), "1.json: it has part 1 of 3 ("),
+                           (("--part", "1/3", "--seed", "9"), "1.json: it has part 1 of 3 of other studies (seed)")):
+            self.refused(2, *args, *more, "-o", "1.json", says=[says, "another file, or remove it"])
+        self.assertEqual((self.dir / "1.json").read_bytes(), kept)
+        self.ok(*args, "--part", "1/3", "-o", "1.json")
+        self.assertEqual((self.dir / "1.json").read_bytes(), kept)
 
     def test_a_job_array_does_all_parts(self):
         args = (self.small(), "--power", "3", "--studies", "4", "--simulate", "sigma=5")
-        array = ROOT / "examples/experiments/power.sbatch"
-        self.assertIn("#SBATCH --array=1-100", array.read_text(encoding="utf-8"))
-        for k in ("1", "2", "3"):
+        text = (ROOT / "examples/experiments/power.sbatch").read_text(encoding="utf-8")
+        self.assertIn("#SBATCH --array=1-100\n", text)
+        self.assertIn("\nparts=100 ", text)
+        array = self.write("three.sbatch", text.replace("parts=100", "parts=3"))
+        # The second task is lost; it runs again alone, in an array of one.
+        for k, count in (("1", "3"), ("3", "3"), ("2", "1")):
             subprocess.run(["sh", array, *map(str, args)], cwd=self.dir, check=True, stderr=subprocess.DEVNULL,
-                           env=self.env | {"PATH": f"{TOOL.parent}:{os.environ['PATH']}", "SLURM_ARRAY_TASK_ID": k, "SLURM_ARRAY_TASK_COUNT": "3"})
+                           env=self.env | {"PATH": f"{TOOL.parent}:{os.environ['PATH']}", "SLURM_ARRAY_TASK_ID": k, "SLURM_ARRAY_TASK_COUNT": count})
         self.assertEqual(self.ok("experiment", *args, "--merge", *(f"part{k}.json" for k in (1, 2, 3))).stdout, self.ok("experiment", *args).stdout)
 
     def test_impossible_numbers_and_exclusive_options_are_refused(self):

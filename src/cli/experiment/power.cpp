@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -176,6 +177,28 @@ void write_part(const std::string& file, json j, const study::power_request& ask
     study::write_whole(file, study::json_text(j));
 }
 
+// Refuses to write a part over one of another simulation, or with another number, which may be hours of work.
+void check_other_part(const std::string& file, const json& common, const study::power_request& asked)
+{
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        return;
+    const json there =
+        json::parse(std::string_view(detail::read_text_file(file, detail::max_setup_bytes)), nullptr, false);
+    if (!there.is_object() || there.value("schema", json()) != common.at("schema"))
+        return;
+    json own = common;
+    own["part"] = asked.part;
+    own["parts"] = asked.parts;
+    for (const auto& [key, value] : own.items())
+        if (there.value(key, json()) != value)
+            throw error(error_kind::bad_input, file,
+                        fmt::format("it has part {} of {}{}", there.value("part", json()).dump(),
+                                    there.value("parts", json()).dump(),
+                                    common.contains(key) ? fmt::format(" of other studies ({})", key) : ""),
+                        "another file, or remove it");
+}
+
 // Adds the counts of a part to those of the others, which are of no more than so many studies.
 void add_counts(std::vector<study::run_power>& all, const files::json_value& runs, std::size_t studies)
 {
@@ -295,8 +318,11 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
                       "a study or more in each part");
     study::power_request asked{*o.simulate,    o.power, o.studies,
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
-    if (o.parts != 0)
-        study::try_whole(o.folder); // now, not after hours
+    const json common = describe_parts(e, o);
+    if (o.parts != 0) { // now, not after hours
+        check_other_part(o.folder, common, asked);
+        study::try_whole(o.folder);
+    }
     if (!o.merge.empty())
         asked.studies = 0; // the files have the counts
     int signal = 0;
@@ -305,7 +331,6 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
         say(stderr, "tactor: ended by a signal, before there was a result\n");
         return session::interrupt::status(signal);
     }
-    const json common = describe_parts(e, o);
     if (!o.merge.empty())
         merge_parts(*powers, common, o.merge);
     if (o.parts != 0)
