@@ -101,8 +101,9 @@ TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, c
                                                    const person& who = {});
 
 /// Goldreich's observer (PLoS ONE 2007; Goldreich and Tong 2013). It localises taps with standard deviation
-/// sigma_mm and expects speeds of 0 with standard deviation sigma_v_mm_s. The defaults were fitted to taps on
-/// the forearm. There is no fit for the palm, or for bursts that touch.
+/// sigma_mm and expects speeds of 0 with standard deviation sigma_v_mm_s. It was built for taps on the
+/// forearm, with a sigma of 10 mm; the default of 5 mm is assumed. There is no fit for the palm, or for
+/// bursts that touch.
 struct low_speed_observer {
     double sigma_mm = 5.0;       ///< least_sigma_mm to most_sigma_mm
     double sigma_v_mm_s = 100.0; ///< least_sigma_v_mm_s to most_sigma_v_mm_s

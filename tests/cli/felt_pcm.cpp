@@ -37,13 +37,16 @@ int start(snd_pcm_ioplug_t* io)
     return ::timerfd_settime(self(io).timer, 0, &each_ms, nullptr);
 }
 
-int stop(snd_pcm_ioplug_t*)
+int stop(snd_pcm_ioplug_t* io)
 {
+    self(io).began_ns = 0;
     return 0;
 }
 
 snd_pcm_sframes_t pointer(snd_pcm_ioplug_t* io)
 {
+    if (self(io).began_ns == 0)
+        return 0;
     // It waits for a writer that is late, as a device without a DAC can.
     const auto due = (now_ns() - self(io).began_ns) * static_cast<std::int64_t>(io->rate) / 1'000'000'000;
     const auto written = static_cast<std::int64_t>(io->appl_ptr);

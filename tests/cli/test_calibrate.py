@@ -177,7 +177,7 @@ class Simulated(CalibrateTest):
         self.write("mixed.toml", PALM + '[[tactor]]\ntactor = 4\nmax_dbfs = -25\n')
         args = ("--array", "mixed.toml", "--tactors", "3-5", *SHORT)
         first = ["tactor: highest level: 0 dBFS at tactors 3, 5; -25 dBFS at tactor 4",
-                 "tactor: warning: no max_dbfs below 0 limits tactors 3, 5: the level may go to full scale (set max_dbfs in [[tactor]] "
+                 "tactor: warning: no max_dbfs below 0 limits tactors 3, 5: the level may go to full scale (set max_dbfs in [array] or [[tactor]] "
                  "of the array file)"]
         told = self.refused(1, "calibrate", "--participant", "P1", "-o", "me.toml", *args, "-D", "null").stderr
         self.assertEqual(told.splitlines()[:2], first)

@@ -36,7 +36,7 @@ class Service(ServeTest):
         self.assertEqual([s.where["max_level_dbfs"], c.ok("hello")["max_level_dbfs"]], [ceiling_dbfs] * 2)
         louder = c.error("play", path="M 0 0 L 40 0", options={"level_dbfs": ceiling_dbfs + 0.1})
         self.check_error(louder, -32602, "options.level_dbfs")
-        c.await_end(c.ok("drive", tactor=4, intensity=1, duration_s=0.1)["stroke"])
+        c.await_end(c.ok("play", path="M 20 20", options={"duration": 0.1, "level_dbfs": ceiling_dbfs})["stroke"])
         status = c.ok("status")
         self.assertEqual(status["max_level_dbfs"], ceiling_dbfs)
         self.assertIn(f"ceiling    {ceiling_dbfs} dBFS\n", self.ok("status", "--socket", s.where["socket"]).stdout)
@@ -130,7 +130,7 @@ class Presets(ToolTest):
         self.mine = self.write("mine.toml", MINE)
 
     def channels(self, *args):
-        r = self.ok("plan", "--path", "M 0 20 H 40", "--format", "json", *args)
+        r = self.ok("plan", "--path", "M 0 20 H 40", "--level-dbfs", "-40", "--format", "json", *args)
         return {(t["x_mm"], t["y_mm"]): t["channel"] for t in json.loads(r.stdout)["array"]["tactors"]}, r.stderr
 
     def test_a_preset_is_the_configuration_s_array_where_that_has_its_places(self):

@@ -168,7 +168,7 @@ class Codes(PersonTest):
                 elif e["event"] == "standard":
                     self.assertEqual(row[f"method_{levels[e['code']][-1]}"], "standard")
                 elif e["event"] == "stimulus":
-                    self.assertIn(f" {row['value']}", levels[e["code"]])
+                    self.assertIn(f" {float(row['value']):g}", levels[e["code"]])
         # Joined: one number for all values and both intervals.
         self.write("array.toml", ARRAY + '[sync.codes]\nstimulus = { first = 10, by = ["motion", "method"] }\nstandard = { by = [] }\nanswer = 200\n')
         listed = json.loads(self.ok("experiment", definition, "--dry-run", "--array", "array.toml", "--format", "json").stdout)["codes"]

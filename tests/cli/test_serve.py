@@ -21,7 +21,7 @@ from websocket import Peer
 class Sockets(ServeTest):
     def test_the_first_line_and_the_end(self):
         s = self.serve("--tcp", "0")
-        self.assertEqual(set(s.where), {"event", "socket", "tcp", "osc", "http"})
+        self.assertEqual(set(s.where), {"event", "socket", "tcp", "osc", "http", "max_level_dbfs"})
         self.assertEqual((s.where["event"], s.where["osc"], s.where["http"]), ("listening", None, None))
         self.assertRegex(s.where["tcp"], r"^127\.0\.0\.1:[1-9]\d*$")
         status, out, err = s.terminate()
@@ -204,7 +204,7 @@ class Protocol(ServeTest):
                               ({"toml": toml}, 2), ({"csv": "t_s,x_mm,y_mm\n0,0,0\n0.1,20,20\n"}, 1),
                               ({"svg": '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0 L20 0 M0 20 L20 20"/></svg>'}, 2)):
             r = c.ok("play", **params)
-            self.assertEqual(set(r), {"stroke", "strokes", "total_s", "warnings"})
+            self.assertEqual(set(r), {"stroke", "strokes", "total_s", "warnings", "weakened_db"})
             self.assertEqual((r["strokes"][0], len(r["strokes"])), (r["stroke"], count))
             for n in r["strokes"]:
                 self.assertIsInstance(c.stroke(n, "started")["started_s"], float)
@@ -336,7 +336,7 @@ class Protocol(ServeTest):
         self.assertEqual(page.upgrade(), 101)
         a.ok("play", **LONG)
         r = a.ok("status")
-        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "who", "strokes", "limits"])
+        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "who", "strokes", "max_level_dbfs", "limits"])
         self.assertLessEqual({"state", "xruns", "uptime_s", "realtime"}, set(r["stream"]))
         self.assertEqual((r["stream"]["state"], r["amplifier"], r["clients"]), ("running", "none", 3))
         who = r["who"]

@@ -247,16 +247,21 @@ class Examples(ToolTest):
 
     def test_the_lines_for_any_runner(self):
         page = (ROOT / "man/guide/runners.md").read_text(encoding="utf-8")
-        requests = [m for m in map(json.loads, re.findall(r'^    (\{"jsonrpc".*)$', page, re.M)) if "id" in m and "method" in m]
-        self.assertEqual([m["method"] for m in requests], ["hello", "play", "play", "cancel", "stop"])
+        blocks = [[json.loads(line) for line in block.split("\n")] for block in re.findall(r'^    (\{"jsonrpc".*(?:\n    \{.*)*)$', page, re.M)]
+        play, end = blocks[:2]
+        self.assertEqual([m["method"] for m in play + end], ["hello", "play", "play", "cancel", "stop"])
         c = Server(self, "--tcp", "0").client(tcp=True)
-        results = []
-        for m in requests:
+        # Sends all lines at once, as printed: both strokes are played.
+        for m in play:
             c.send(m)
-            results.append(c.reply()["result"])
-            if m["method"] == "play" and len(results) == 2:
-                self.assertEqual(c.await_end(results[1]["stroke"])["state"], "finished")
-        self.assertEqual(c.await_end(results[2]["stroke"])["reason"], "cancelled by its client")
+        strokes = [c.reply()["result"].get("stroke") for _ in play][1:]
+        self.assertEqual([c.await_end(stroke)["state"] for stroke in strokes], ["finished", "finished"])
+        for m in end:
+            c.send(play[2])
+            stroke = c.reply()["result"]["stroke"]
+            c.send(m)
+            c.reply()
+            self.assertEqual(c.await_end(stroke)["state"], "cancelled")
 
     def test_the_serve_client_of_node(self):
         server = Server(self)

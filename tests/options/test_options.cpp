@@ -256,6 +256,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
                                                  {"snap", "true"},
                                                  {"drop-points", "true"},
                                                  {"overlap", "sum"},
+                                                 {"together", "sum"},
                                                  {"carrier", "230.5"},
                                                  {"waveform", "noise:1-300"},
                                                  {"am", "30:0.5"},

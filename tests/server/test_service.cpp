@@ -368,6 +368,7 @@ TEST_CASE("gain_db and the level of a client are what its strokes sound with, li
             rig.ok(c, "level", {{"db", level}});
         json n;
         if (live) {
+            rig.ok(c, "subscribe", {{"events", {"levels"}}}); // they come while it sounds
             n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
             rig.ok(c, "to", {{"stroke", n}, {"x_mm", 20}, {"y_mm", 20}});
             const std::uint64_t from = rig.all->output().stats().frames;

@@ -305,7 +305,7 @@ int run_experiment(command_line& line)
     line.app.footer(
         "tactor experiment park2016 --dry-run\n"
         "tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1\n"
-        "tactor experiment park2016 --participant P07 -o pilot --array P07.toml -D hw:CARD=Tactor");
+        "tactor experiment park2016 --participant P07 -o strokes --array P07.toml -D hw:CARD=Tactor");
     line.parse();
     return run(o, s);
 }

@@ -248,7 +248,10 @@ std::string to_svg(const canvas& c)
 
 std::string to_bytes(const canvas& c, file_format format, unsigned dpi)
 {
-    return format == file_format::svg ? to_svg(c) : format == file_format::png ? to_png(c, dpi) : to_pdf(c);
+    return with_hash(format == file_format::svg   ? to_svg(c)
+                     : format == file_format::png ? to_png(c, dpi)
+                                                  : to_pdf(c),
+                     format);
 }
 
 file_format find_format(const fs::path& file)
@@ -283,7 +286,7 @@ void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)
 {
     check_output(file, force);
     const file_format format = find_format(file);
-    detail::write_file(file, with_hash(to_bytes(c, format, dpi), format));
+    detail::write_file(file, to_bytes(c, format, dpi));
 }
 
 } // namespace tactor::plot

@@ -71,12 +71,13 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
     const auto check = [&](double pulse_s, double most_s, std::string_view next, const auto& where,
                            std::string_view what) {
         if (pulse_s > most_s)
-            throw error(error_kind::bad_input, where,
-                        fmt::format("{}pulse_ms is {:.4g}, and {:.4g} ms after the stimulus of motion \"{}\" "
-                                    "by method \"{}\" begins {} may come",
-                                    what, pulse_s * 1e3, most_s * 1e3, d.motions[shortest.motion].name,
-                                    d.methods[shortest.method].name, next),
-                        "a shorter pulse_ms, or longer stimuli");
+            throw error(
+                error_kind::bad_input, where,
+                fmt::format("{}pulse_ms is {:.4g}, and {} may come {:.4g} ms after the stimulus of motion "
+                            "\"{}\" by method \"{}\" begins",
+                            what, pulse_s * 1e3, next, most_s * 1e3, d.motions[shortest.motion].name,
+                            d.methods[shortest.method].name),
+                "a shorter pulse_ms, or longer stimuli");
     };
     const bool has_lines = c != nullptr && !c->offsets.empty();
     if (has_lines)
