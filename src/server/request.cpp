@@ -136,6 +136,19 @@ std::vector<stroke> read_points(const json& list, double intensity_max)
     return {stroke{.name = "points", .motion = motion, .warnings = recorded.warnings()}};
 }
 
+// Reads the number of a stroke, or a list of them.
+std::vector<std::uint32_t> read_numbers(const json& v, const std::string& what)
+{
+    constexpr std::size_t most = 64;
+    const json list = v.is_array() ? v : json::array({v});
+    if (list.empty() || list.size() > most)
+        bad_param(what, fmt::format("it has {} numbers", list.size()), fmt::format("1 to {}", most));
+    std::vector<std::uint32_t> numbers;
+    for (const json& n : list)
+        numbers.push_back(static_cast<std::uint32_t>(whole(n, what, {1.0, UINT32_MAX})));
+    return numbers;
+}
+
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
@@ -272,11 +285,12 @@ options::wishes settle_options(options::wishes owner, const json& params)
 start_time read_start(const net::json* start, std::int64_t now_ns)
 {
     constexpr double longest_wait_s = 86400.0;
-    constexpr const char* forms = R"("now", "armed", {"delay_s":S}, {"monotonic_s":S} or {"unix_s":S})";
+    constexpr const char* forms =
+        R"("now", "armed", {"delay_s":S}, {"monotonic_s":S}, {"unix_s":S} or {"after":N})";
     if (start == nullptr || *start == "now")
         return {};
     if (*start == "armed")
-        return {true, {}};
+        return {.armed = true};
     if (!start->is_object() || start->size() != 1)
         bad_param("start", "it is not known", forms);
     const std::string name = start->begin().key();
@@ -284,7 +298,9 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
     const std::string what = "start." + name;
     const double most_s = 9e9; // a time of day for centuries
     if (name == "delay_s")
-        return {false, now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
+        return {.at_ns = now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
+    if (name == "after")
+        return {.after = read_numbers(value, what)};
     if (name != "monotonic_s" && name != "unix_s")
         bad_param(what, "it is not known", forms);
     std::int64_t at = std::llround(number(value, what, {0.0, most_s}) * 1e9);
@@ -292,7 +308,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
         at += now_ns - rt::unix_ns();
     if (seconds(at - now_ns) > longest_wait_s)
         bad_param(what, "it is more than a day ahead", forms);
-    return {false, at};
+    return {.at_ns = at};
 }
 
 reply_json option_rows(const options::wishes& owner)
@@ -385,9 +401,8 @@ score planned::make_score(const array& a, std::size_t i) const
     alone.together = together_kind::sum;
     (alone.sl_db ? *alone.sl_db : alone.level_dbfs) += weakened.weakened_db;
     score_builder made(a, alone);
-    const double round_s = total_s();
     for (std::uint64_t k = 0; k < rounds; ++k)
-        made.add(plans[i].plan, static_cast<double>(k) * round_s);
+        made.add(plans[i].plan, static_cast<double>(k) * round_s());
     return made.take();
 }
 

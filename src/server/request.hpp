@@ -3,6 +3,7 @@
 /// Parameters of requests: options, a start, and strokes, of which they make plans and scores.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -47,6 +48,7 @@ options::wishes settle_options(options::wishes owner, const net::json& params);
 struct start_time {
     bool armed = false;
     std::optional<std::int64_t> at_ns = {}; ///< CLOCK_MONOTONIC
+    std::vector<std::uint32_t> after = {};  ///< strokes whose round is to end before
 };
 
 /// Reads a start; null: now. \throws fault_error naming it.
@@ -64,11 +66,13 @@ struct planning {
 /// The planned strokes of a request.
 struct planned : session::piece {
     render_options render = {};
-    std::uint64_t rounds = 1; ///< how often one submission plays them, each total_s() after the last
+    std::uint64_t rounds = 1; ///< how often one submission plays them, each round_s() after the last
+    double least_round_s = 0.0;
     detail::observer_choice observer = {}; ///< of the view percept
     double over_db = 0.0;                  ///< of a view: how much weaker it must be to be played
     weakening weakened = {};               ///< of all plans together
 
+    double round_s() const { return std::max(total_s(), least_round_s); }
     std::vector<std::string> warnings() const;
     /// Returns the bursts of one round; a continuous stroke counts as one.
     double count_bursts() const;

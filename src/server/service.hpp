@@ -76,10 +76,14 @@ struct service_options {
     log_function log = {}; ///< gets a line for each stroke that ends
 };
 
-/// Rounds that are submitted again and again, so many frames after the last time.
-struct repeated {
-    score rounds;
+/// Submissions of a planned stroke, each so many frames after the last.
+struct submissions {
+    std::optional<score> again = {}; ///< score of the next one; none: there is no next one
     std::uint64_t frames = 0;
+    std::uint64_t offset = 0;                ///< frames from the beginning of its request to its own
+    std::uint64_t newest = 0;                ///< number of the newest one, from 0 on
+    std::optional<std::uint64_t> last = {};  ///< number of the last one, once it is decided
+    std::optional<std::uint64_t> begun = {}; ///< frame in which its request began
 };
 
 /// Kind of connection of a client.
@@ -178,8 +182,9 @@ private:
         std::optional<std::int64_t> started_ns = {};
         /// Other strokes of an armed file, and their starts after this one, s.
         std::vector<std::pair<std::uint32_t, double>> followers = {};
-        std::optional<score> submits_later = {};  ///< score of a follower, until it is submitted
-        std::optional<repeated> again = {};       ///< until it is to end
+        std::optional<score> submits_later = {}; ///< score of a follower, until it is submitted
+        submissions rounds = {};
+        std::uint32_t request = 0;                ///< number of the first stroke of its request
         bool next_waits = false;                  ///< the newest submission is a round that has not begun
         std::uint64_t frames = 0;                 ///< of the submissions that have ended
         std::string name = {};                    ///< for the log, as the next two
@@ -239,6 +244,7 @@ private:
         net::json start = "now";
         double gain_db = 0.0;     ///< of all its strokes
         std::uint64_t rounds = 1; ///< 0: until they are cancelled
+        double round_s = 0.0;     ///< least length of a round
         view_choice view = {};
         std::optional<double> draft = {};
 
@@ -325,7 +331,11 @@ private:
     void begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
     void ended(std::uint64_t player, const stroke_report& r);
     void start_followers(stroke_record& first, std::int64_t at_ns);
+    void note_beginning(stroke_record& r, stroke_id id);
     void end_rounds(stroke_record& r);
+    std::vector<stroke_record*> find_request(const stroke_record& r);
+    std::optional<std::uint64_t> end_request(const stroke_record& of);
+    std::uint64_t end_requests(client_number owner, const std::vector<std::uint32_t>& numbers);
     void add_submission(stroke_record& r, stroke_id id);
     void finish(stroke_record& r, const stroke_report& how);
     std::string reason(const stroke_record& r, const stroke_report& how) const;

@@ -72,7 +72,7 @@ void service::read_job(plan_job& j) const
     const json& params = j.params;
     if (j.plays())
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
-                            "repeat"});
+                            "repeat", "round_s"});
     else if (!j.is_file())
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
                             "draft", "bins", "observer"});
@@ -91,6 +91,7 @@ void service::read_job(plan_job& j) const
     if (const json* repeat = member(params, "repeat"))
         j.rounds =
             *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
+    j.round_s = number_or(params, "round_s", {0.0, options_.plans.max_stroke_s}, 0.0);
 }
 
 // Makes the result. Runs on a planner's thread.
@@ -121,6 +122,7 @@ void service::work_on(plan_job& j)
 void service::make_scores(plan_job& j, const go_on_check& go_on)
 {
     j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, j.settled, go_on));
+    j.made->least_round_s = j.round_s;
     j.made->rounds = count_rounds(j, *j.made);
     for (std::size_t i = 0; i < j.made->plans.size(); ++i) {
         go_on();
@@ -194,7 +196,7 @@ void service::refuse(const plan_job& j, const net::rpc_fault& f)
 std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
 {
     constexpr double endless_s = 2.0;
-    const double round_s = p.total_s();
+    const double round_s = p.round_s();
     if (job.rounds == 0)
         return static_cast<std::uint64_t>(std::ceil(endless_s / round_s));
     check_bursts(static_cast<double>(job.rounds) * p.count_bursts(),

@@ -59,10 +59,12 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     // Several strokes keep their distances: they count from a time that the first is sure to reach.
     const auto lead_ns = std::int64_t{1'000'000'000} * (s.buffer_frames + 3 * s.period_frames) / s.rate;
     const std::int64_t base_ns = asked.at_ns.value_or(now + lead_ns);
+    const bool joins = !asked.after.empty();
+    const std::uint64_t base_frame = joins ? end_requests(owner, asked.after) : 0;
     const auto first =
         static_cast<std::size_t>(std::min_element(starts.begin(), starts.end()) - starts.begin());
     const auto rounds_frames =
-        static_cast<std::uint64_t>(std::llround(static_cast<double>(p.rounds) * p.total_s() * s.rate));
+        static_cast<std::uint64_t>(std::llround(static_cast<double>(p.rounds) * p.round_s() * s.rate));
     std::vector<std::uint32_t> numbers;
     std::vector<stroke_record*> records;
     for (std::size_t i = 0; i < scores.size(); ++i) {
@@ -72,16 +74,23 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         r.player = stream_.number();
         r.gain_db = gain_db;
         note_sound(r, i < p.strokes.size() ? p.strokes[i].name : p.name, p.render);
+        r.request = numbers.front();
+        r.rounds.frames = rounds_frames;
         if (const client* c = find(owner); again && c != nullptr && !c->input_over)
-            r.again = repeated{scores[i], rounds_frames};
+            r.rounds.again = scores[i];
         if (asked.armed)
             r.state = "armed";
+        const bool keeps_distance = joins || asked.at_ns || scores.size() > 1;
+        if (const double from_s = asked.armed ? starts[first] : 0.0; keeps_distance)
+            r.rounds.offset = static_cast<std::uint64_t>(std::llround((starts[i] - from_s) * s.rate));
         if (asked.armed && i != first) {
             r.submits_later = scores[i];
             continue;
         }
         start_at when = asked.armed ? start_at::trigger() : start_at::now();
-        if (asked.at_ns || (!asked.armed && scores.size() > 1)) {
+        if (joins) {
+            when = start_at::frame(base_frame + r.rounds.offset);
+        } else if (!asked.armed && keeps_distance) {
             const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
             when = start_at::time(rt::to_time(at));
             if (asked.at_ns)
@@ -112,17 +121,20 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
 void service::submit_next(stroke_record& r)
 {
     player* out = find_player(r);
-    if (!r.again || r.next_waits || r.open.empty() || r.ended_by != nullptr || out == nullptr)
+    submissions& all = r.rounds;
+    if (all.last && all.newest >= *all.last)
+        all.again.reset();
+    if (!all.again || r.next_waits || r.open.empty() || r.ended_by != nullptr || out == nullptr)
         return;
     const auto from = out->first_frame(r.open.back());
     if (!from) // it has ended, and its report comes
         return;
     try {
-        add_submission(r,
-                       out->submit(r.again->rounds, start_at::frame(*from + r.again->frames), level_db(r)));
+        add_submission(r, out->submit(*all.again, start_at::frame(*from + all.frames), level_db(r)));
         r.next_waits = true;
+        ++all.newest;
     } catch (const error& e) {
-        r.again.reset();
+        all.again.reset();
         r.broken =
             stroke_report{.state = state_kind::interrupted, .reason = reason_kind::failed, .why = e.what()};
     }
@@ -257,7 +269,7 @@ void service::cancel(stroke_record& r, const char* why)
         r.ended_by = why;
     if (r.submits_later) // it waits for another to begin
         return finish(r, {.state = state_kind::cancelled});
-    r.again.reset();
+    r.rounds.again.reset();
     if (player* p = find_player(r))
         for (const stroke_id id : r.open)
             p->cancel(id);
@@ -339,6 +351,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     stroke_record& r = strokes_.at(found->second);
     if (!r.open.empty() && r.open.back() == id)
         r.next_waits = false;
+    note_beginning(r, id);
     if (r.state == "started") // it began again after an xrun, or with the next round
         return submit_next(r);
     r.state = "started";
@@ -419,10 +432,80 @@ void service::add_submission(stroke_record& r, stroke_id id)
     by_player_[{r.player, id}] = r.number;
 }
 
+// Notes when the request of a planned stroke began.
+void service::note_beginning(stroke_record& r, stroke_id id)
+{
+    const player* out = find_player(r);
+    if (out == nullptr || r.live)
+        return;
+    const auto frame = out->first_frame(id);
+    if (!frame)
+        return;
+    submissions& all = r.rounds;
+    const auto newer = static_cast<std::uint64_t>(r.open.end() - std::find(r.open.begin(), r.open.end(), id));
+    const std::uint64_t before = all.offset + (all.newest + 1 - newer) * all.frames;
+    if (const std::uint64_t first = frame.value(); first >= before)
+        all.begun = first - before;
+}
+
+// Returns the strokes of a request that have not ended.
+std::vector<service::stroke_record*> service::find_request(const stroke_record& r)
+{
+    std::vector<stroke_record*> found;
+    for (auto at = strokes_.lower_bound(r.request); at != strokes_.end(); ++at)
+        if (at->second.request == r.request && at->second.state != "ended")
+            found.push_back(&at->second);
+    return found;
+}
+
+// Lets the submission that sounds be the last one for all strokes of a request, or the next one if that comes
+// too soon. Returns the frame of the stream that follows it; nothing if the request has not begun.
+std::optional<std::uint64_t> service::end_request(const stroke_record& of)
+{
+    const std::vector<stroke_record*> strokes = find_request(of);
+    const auto known = std::find_if(strokes.begin(), strokes.end(),
+                                    [](const stroke_record* r) { return r->rounds.begun.has_value(); });
+    const player* out = find_player(of);
+    std::uint64_t last = 0;
+    std::optional<std::uint64_t> end;
+    if (known != strokes.end() && out != nullptr) {
+        const submissions& any = (*known)->rounds;
+        const stream_setup& s = out->setup();
+        const std::uint64_t reached = out->stats().frames + s.buffer_frames + 3 * s.period_frames;
+        last = any.last.value_or(any.again && reached > *any.begun ? (reached - *any.begun) / any.frames : 0);
+        end = *any.begun + (last + 1) * any.frames;
+    }
+    for (stroke_record* r : strokes) {
+        r->rounds.last = last;
+        // The player reports a beginning before it sounds, so that more than the newest may be to come.
+        for (; r->rounds.newest > last && r->open.size() > 1; --r->rounds.newest) {
+            r->next_waits = true;
+            end_rounds(*r);
+        }
+    }
+    return end;
+}
+
+// Ends requests as end_request() does. Returns the first frame that follows all of them.
+std::uint64_t service::end_requests(client_number owner, const std::vector<std::uint32_t>& numbers)
+{
+    const client* c = find(owner);
+    std::uint64_t end = 0;
+    for (const std::uint32_t n : numbers) {
+        if (c == nullptr || own_stroke(*c, n).live)
+            no_such_stroke(n);
+        const auto own = end_request(strokes_.at(n));
+        if (!own)
+            no_such_stroke(n, "it has not begun, or its stream has ended");
+        end = std::max(end, *own);
+    }
+    return end;
+}
+
 // Lets no round begin any more.
 void service::end_rounds(stroke_record& r)
 {
-    r.again.reset();
+    r.rounds.again.reset();
     if (!std::exchange(r.next_waits, false))
         return;
     if (player* p = find_player(r))
@@ -612,7 +695,11 @@ void service::to(client& c, const json& params, const answer& to)
 void service::end(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"stroke"});
-    own_live(c, need_stroke(params)).live->end();
+    const std::uint32_t n = need_stroke(params);
+    if (const stroke_record& r = own_stroke(c, n); r.rounds.again || r.rounds.last)
+        end_request(r);
+    else
+        own_live(c, n).live->end();
     to.result(reply_json::object());
 }
 
