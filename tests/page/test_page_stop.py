@@ -193,13 +193,55 @@ class Play(StudioTest):
         watcher.await_end(number)
         p.until("!tactor.state.playing")
 
-    def test_a_loop_goes_on_in_a_tab_that_is_not_shown(self):
+    def test_a_loop_goes_on_while_its_page_does_nothing(self):
+        s = self.serve()
+        p, watcher = self.ready(s)
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        p.value("document.querySelector('[data-value=continuous]').click()")
+        number = self.loop(p, watcher)
+        total_s = p.value("tactor.state.playing.total_s")
+        asker = s.client()
+        asker.ok("subscribe", events=["levels"], levels_hz=10)
+        clock = asker.notification(lambda m: m["method"] == "levels")["params"]["t_s"]
+        p.send("Runtime.evaluate", expression=f"for (const end = performance.now() + {4000 * total_s}; performance.now() < end;);")
+        t = clock
+        while t < clock + 3.5 * total_s:
+            levels = asker.notification(lambda m: m["method"] == "levels")["params"]
+            t = levels["t_s"]
+            self.assertTrue(any(v is not None for v in levels["dbfs"]), t - clock)
+        # The page goes on where the round is, in a tab that is not shown, too.
+        p.value("Object.defineProperty(document, 'hidden', {value: true}), requestAnimationFrame = () => 0")
+        for _ in range(2):
+            p.until(f"tactor.state.at_s > {0.6 * total_s}")
+            p.until(f"tactor.state.at_s < {0.4 * total_s}")
+        self.assertEqual(p.value("[...tactor.state.playing.numbers]"), [number])
+        p.click("#stop")
+
+    def test_what_is_changed_in_a_loop_comes_with_the_next_round(self):
+        p, watcher = self.ready(self.serve())
+        self.add_example(p)
+        number = self.loop(p, watcher)
+        self.watch_sent(p)
+        p.value("document.querySelector('[data-value=continuous]').click()")
+        changed = self.next_stroke(watcher, "started")
+        self.assertEqual(watcher.await_end(number)["state"], "finished")
+        p.until(f"tactor.state.playing.firsts[0] === {changed} && tactor.state.playing.numbers.size === 1")
+        self.assertEqual(p.value("sent.filter(m => m.method === 'play').map(m => m.start.after)"), [[number]])
+        # The end of a loop comes with its round.
+        p.key("KeyL", "l")
+        self.assertEqual(watcher.await_end(changed)["state"], "finished")
+        p.until("!tactor.state.playing")
+        self.assertEqual(p.value("sent.filter(m => m.method === 'end').length"), 1)
+
+    def test_a_loop_that_is_switched_on_late_begins_without_a_gap(self):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 5]))
-        self.loop(p, watcher)
-        p.value("Object.defineProperty(document, 'hidden', {value: true}), requestAnimationFrame = () => 0")
-        for _ in range(3):
-            self.next_stroke(watcher, "started")
+        self.planned(p)
+        number = self.play(p, watcher)
+        p.key("KeyL", "l")
+        begun = self.next_stroke(watcher, "started")
+        self.assertEqual(watcher.await_end(number)["state"], "finished")
+        p.until(f"tactor.state.playing.repeats && tactor.state.playing.firsts[0] === {begun}")
         p.click("#stop")
 
     def test_a_palm_that_the_system_cancels_leaves_nothing(self):

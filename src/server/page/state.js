@@ -25,7 +25,7 @@ export const state = {
   drawing: null,         // {began, before, tracks, kind, append}
   plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
   outside: [],           // places of strokes that are farthest from the array
-  playing: null,         // {take, began_ms, numbers, felt, waits, again, next} and its round, see service/player.js
+  playing: null,         // {take, began_ms, numbers, felt, waits, again, next, ending} and its round, see service/player.js
   at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   compare: null,         // of two methods, see settings/compare.js

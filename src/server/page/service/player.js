@@ -8,22 +8,33 @@ import {start_loudspeaker} from "./loudspeaker.js";
 import {fault_text, fault_sentence} from "../words.js";
 
 const TEST_S = 0.5;
-const AHEAD_S = 0.4;      // before the end, when the next round of a loop is asked for
-const SILENT_DB = -60, TOGETHER_S = 0.3, COMPARED_AHEAD_S = 1; // of sides of a comparison: the level of one, the time until both begin
+const AHEAD_S = 0.4;      // before the end of a round, when what has changed is asked for
+const SILENT_DB = -60, TOGETHER_S = 0.3, ROUNDING_S = 0.001; // of sides of a comparison: the level of one, the time until both begin
 const STOP_AGAIN_MS = 500; // between stops that are not answered
 const ended = new Set(), begun = new Map(); // of strokes: ends and starts that came before the answer that named them
 let speaker = null;
 
 // Returns what Play plays: the range, or all from the start on.
-const part_to_play = () => { const [from_s, until_s] = marks().range ?? [marks().start_s]; return {from_s, until_s}; };
+const part_to_play = () => { const [from_s, until_s = Infinity] = marks().range ?? [marks().start_s]; return {from_s, until_s}; };
 // Returns a round of a take: a part of it, how long that is, and how long it is silent at first (Infinity: always).
 const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, take_s(take)) - from_s,
   lead_s: Math.min(...take_part(take, from_s, until_s).strokes.map(s => s.start_s))});
+// Returns what decides how a round of a take sounds.
+const ingredients = (take, {from_s, until_s}) => [take, from_s, until_s, state.compare?.other];
+// Asks for a round. The service repeats it where the page loops: then no round needs the page. `start()` is called once all is known.
 async function ask_for(p, round, start) {
-  const take = take_part(take_by_id(p.take), round.from_s, round.until_s), answers = await submit(take, start);
-  const sound_s = Math.max(...answers.map(r => r.total_s));
-  Object.assign(round, {firsts: answers.map(r => r.stroke), sound_s, total_s: Math.max(sound_s, round.total_s)});
-  return answers.flatMap(r => r.strokes);
+  const whole = take_by_id(p.take), take = take_part(whole, round.from_s, round.until_s), made_of = ingredients(whole, round);
+  const repeats = state.loop && round.from_s === p.again.from_s && round.until_s === p.again.until_s;
+  const round_s = repeats && state.compare ? await longest_s(take, round.total_s) : round.total_s;
+  const answers = await submit(take, {start: start(), ...repeats && {repeat: true, round_s}});
+  const sound_s = Math.max(...answers.map(r => r.total_s)), strokes = answers.flatMap(r => r.strokes);
+  Object.assign(round, {made_of, repeats, strokes, firsts: answers.map(r => r.stroke), sound_s, total_s: Math.max(sound_s, round_s), ending: false});
+  return strokes;
+}
+// Both sides of a comparison have rounds of one length: a plan may last longer than its stroke.
+async function longest_s(take, total_s) {
+  const plans = await Promise.all([0, 1].map(side => call("plan", {...make_request(with_side(take, side), ceiling_dbfs()), view: "peaks", bins: 1})));
+  return Math.max(total_s, ...plans.map(plan => plan.total_s + ROUNDING_S));
 }
 
 // Plays the take, or a part of it.
@@ -77,7 +88,7 @@ async function ask_to_play() {
   try {
     tell_level();
     // Without a start the service leaves out the silence before the first stroke.
-    const strokes = await ask_for(own, own, state.compare ? {monotonic_s: server_now_s() + TOGETHER_S} : own.lead_s ? {delay_s: 0} : "now");
+    const strokes = await ask_for(own, own, () => state.compare ? {monotonic_s: server_now_s() + TOGETHER_S} : own.lead_s ? {delay_s: 0} : "now");
     if (state.playing !== own) return cancel_strokes(strokes);
     own.began_ms = now_ms();
     own.numbers = new Set(strokes.filter(n => !ended.has(n)));
@@ -95,16 +106,19 @@ async function ask_to_play() {
     }
     if (state.playing !== own) return;
     state.playing = null;
-    if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
-    else if (e.code !== 0) { state.fault = fault_sentence(e); changed("link"); }
+    say_refusal(e);
   }
   changed("playing");
 }
+function say_refusal(e) {
+  if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
+  else if (e.code !== 0) { state.fault = fault_sentence(e); changed("link"); }
+}
 
 // Asks for the strokes of a take, or of both sides of a comparison, which begin together. Returns the answers.
-async function submit(take, start) {
+async function submit(take, how) {
   const sides = state.compare ? [0, 1] : [0];
-  const all = await Promise.allSettled(sides.map(side => call("play", {...make_request(with_side(take, side), ceiling_dbfs()), start})));
+  const all = await Promise.allSettled(sides.map(side => call("play", {...make_request(with_side(take, side), ceiling_dbfs()), ...how})));
   const answers = all.flatMap((a, side) => a.value ? [{...a.value, side}] : []), refused = all.find(a => a.reason);
   for (const r of answers) r.strokes.forEach(n => side_of.set(n, r.side));
   if (!refused) return answers;
@@ -122,18 +136,35 @@ const is_shown = p => p.take === state.current;
 export function tick() {
   const p = state.playing;
   if (!p) return;
-  const t = (now_ms() - p.began_ms) / 1000;
+  const is_new = begin_round(p), t = (now_ms() - p.began_ms) / 1000;
   if (is_shown(p)) state.at_s = p.from_s + Math.max(0, Math.min(p.waits ? p.lead_s : p.total_s, t));
-  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - (state.compare ? COMPARED_AHEAD_S : AHEAD_S)) next_round(p);
-  if (t < p.total_s || p.waits) return;
-  const round = p.next?.firsts ? p.next : state.loop && !p.felt && round_after(p);
-  if (round) {
-    Object.assign(p, {began_ms: p.began_ms + p.total_s * 1000, waits: p.felt && !round.began_ms}, round, {next: null});
-    return hear_it();
-  }
-  if (p.next) return;
+  if (is_new) hear_it();
+  if (p.felt && !p.waits && !p.next) follow_changes(p, t);
+  if (t < p.total_s || p.waits || p.next || p.repeats) return;
   if (p.felt && p.numbers.size && t < p.total_s + 1) return; // the service reports its end
   end_playing();
+}
+// Begins the round that it is time for. Returns true if there is one.
+function begin_round(p) {
+  const now = now_ms(), rounds = Math.floor((now - p.began_ms) / (1000 * p.total_s));
+  if (p.next?.began_ms <= now) {
+    Object.assign(p, p.next, {next: null});
+    return true;
+  }
+  const round = !p.waits && rounds >= 1 && (p.repeats ? p : !p.felt && state.loop && round_after(p));
+  if (round) Object.assign(p, round, {began_ms: p.began_ms + 1000 * p.total_s * (p.repeats ? rounds : 1)});
+  return Boolean(round);
+}
+// Ends a loop that is switched off, or whose take is deleted, with its round; asks for what has changed soon before that.
+function follow_changes(p, t) {
+  const take = take_by_id(p.take), loops = state.loop && take;
+  if (p.repeats && !p.ending && !loops) {
+    p.ending = true;
+    p.firsts.forEach(n => tell("end", {stroke: n}));
+  }
+  if (!loops) return;
+  const has_changed = () => ingredients(take, is_shown(p) ? part_to_play() : p.again).some((v, i) => v !== p.made_of[i]);
+  if (!p.repeats || p.ending || t > p.total_s - AHEAD_S && has_changed()) next_round(p);
 }
 const cancel_strokes = numbers => numbers.forEach(n => tell("cancel", {stroke: n}));
 function end_round(p) {
@@ -148,18 +179,22 @@ function round_after(p) {
   return take && make_round(take, p.again);
 }
 async function next_round(p) {
-  const round = round_after(p);
-  if (!round) return;
+  const round = round_after(p), ends_s = server_now_s() + p.total_s - (now_ms() - p.began_ms) / 1000;
   p.next = true;
-  const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (now_ms() - p.began_ms) / 1000);
   try {
-    const strokes = await ask_for(p, round, {monotonic_s: at});
+    const strokes = await ask_for(p, round, () => p.repeats ? {after: p.firsts} : {monotonic_s: Math.max(server_now_s() + 0.05, ends_s)});
     if (state.playing !== p) return cancel_strokes(strokes);
     strokes.forEach(n => p.numbers.add(n));
     tell_level(state.compare);
     p.next = round;
     hear_starts(strokes);
-  } catch { p.next = null; state.loop = false; changed("playing"); }
+  } catch (e) {
+    if (state.playing !== p) return;
+    p.next = null;
+    state.loop = false;
+    say_refusal(e);
+    changed("playing");
+  }
 }
 
 on_notification("stroke", hear_stroke);
@@ -169,7 +204,7 @@ function hear_stroke(s) {
     if (p && !p.numbers.has(s.stroke)) begun.set(s.stroke, s);
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
       // The service reports a start before it is heard: the round before goes on until its end.
-      const round = p.waits ? p : p.next?.firsts?.includes(s.stroke) && p.next;
+      const round = p.waits ? p : p.next?.strokes?.includes(s.stroke) && !p.next.began_ms && p.next;
       if (round) round.began_ms = from_server_ms(s.started_s) - round.lead_s * 1000;
       if (p.waits) { p.waits = false; tick(); hear_it(); }
       changed("playing");
@@ -181,7 +216,9 @@ function hear_stroke(s) {
     if (s.state !== "finished") {
       if (s.state === "interrupted") { state.fault = `The stroke was interrupted: ${s.reason}`; changed("link"); }
       end_playing();
-    } else if (!p.numbers.size && p.total_s === p.sound_s && !(state.loop && p.next)) {
+    } else if (!p.numbers.size && !p.next) {
+      p.repeats = false; // the silence at the end of the round is to come
+      if (p.total_s !== p.sound_s) return;
       if (is_shown(p)) state.at_s = p.from_s + p.total_s;
       end_playing();
     }
