@@ -7,14 +7,15 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from harness import ToolTest  # noqa: E402
+from harness import ALSA_CONFIG, ToolTest  # noqa: E402
 from serving import Server  # noqa: E402
 
 DESKTOP, TABLET, PHONE, LYING = (1440, 900), (820, 1180), (390, 844), (844, 390)
 SIZES = (DESKTOP, TABLET, PHONE, LYING)
 DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
 LIVE = {"algorithm": "continuous"}  # options of a live stroke
-MISSING = ("-D", "hw:CARD=NotThere")
+MISSING, NULL = ("-D", "hw:CARD=NotThere"), ("-D", "null")
+ARRAY = ("-D", "array")  # a device that counts as a card: only the PCM null plays to nobody
 LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
 # Keeps the toasts of a page: one may cover another at once.
 TOASTS = """globalThis.toasts = []; addEventListener("DOMContentLoaded", () => new MutationObserver(all => toasts.push(
@@ -25,8 +26,12 @@ quoted = json.dumps  # as a literal of JavaScript
 
 
 class StudioTest(BrowserTest, ToolTest):
-    def serve(self, *args, **more):
-        s = Server(self, "--http", "0", *args, **more)
+    def setUp(self):
+        super().setUp()
+        self.write("alsa.conf", ALSA_CONFIG + "pcm.array { type null }\n")
+
+    def serve(self, *args, device=ARRAY, **more):
+        s = Server(self, "--http", "0", *args, device=device, **more)
         if s.where is None:
             self.fail(s.errors)
         return s
@@ -46,7 +51,7 @@ class StudioTest(BrowserTest, ToolTest):
         """Kills a service and starts another at the same address."""
         port = s.where["http"].rsplit(":", 1)[1].rstrip("/")
         s.kill()
-        again = Server(self, "--http", port, **more)
+        again = Server(self, "--http", port, **{"device": ARRAY} | more)
         self.assertIsNotNone(again.where)
         return again
 

@@ -4,7 +4,7 @@ import re
 import sys
 
 del sys.argv[3:]
-from studio import MISSING, PHONE, StudioTest  # noqa: E402
+from studio import MISSING, NULL, PHONE, SIZES, StudioTest, quoted  # noqa: E402
 from harness import ROOT, main  # noqa: E402
 
 # Keeps the oscillators that the page makes.
@@ -56,6 +56,30 @@ class Simulated(StudioTest):
         p.until("tactor.state.at_s > 0 && !tactor.state.playing")  # it may have ended already
         self.assertEqual(p.value("heard.length"), 18)
 
+    def test_a_service_that_plays_to_nobody_is_heard(self):
+        s = self.serve(device=NULL)
+        p = self.open(s)
+        self.says(p, "Simulated")
+        watcher = s.watcher()
+        p.until("document.querySelectorAll('#examples li').length && !document.querySelector('#hint').hidden")
+        p.value(LISTEN)
+        self.assertNotRegex(p.value("document.body.innerText"), re.compile(r"you feel|feel on|felt, predicted|listen", re.I))
+        # It sounds at the first touch, and the service plays, too: other clients see it.
+        self.press(p, [5, 20], [20, 20])
+        p.until("heard.length === 9 && tactor.state.dbfs[4] > -20")
+        self.next_stroke(watcher, "started")
+        p.click("#stop")
+        p.until("!tactor.state.drawing")
+        p.value("heard.length = 0")
+        p.key("KeyG", "g")
+        p.value(f"{CARDS}[3].click()")
+        self.next_stroke(watcher, "started")
+        p.until("heard.length >= 9 && tactor.state.dbfs.some(v => v > -30)")
+        # One button.
+        p.click("#feel")
+        p.until("document.querySelector('#feel-text').textContent === 'Hear off' && !tactor.state.speaker")
+        self.assertFalse(p.value("document.querySelector('#speaker').checkVisibility()"))
+
     def test_share_shows_the_command_where_no_other_device_can_open_the_address(self):
         p, _ = self.ready(self.serve())
         p.open_popover("#share", "#p-share")
@@ -72,6 +96,27 @@ class Simulated(StudioTest):
 
 
 class Gallery(StudioTest):
+    def test_a_card_plays_in_its_place_with_the_array_in_view(self):
+        p, watcher = self.ready(self.serve())
+        for size in SIZES:
+            p.resize(size)
+            p.value("document.querySelector('#p-gallery').showPopover()")
+            p.frames()
+            p.frames()
+            with self.subTest(size=size):
+                for name in ("stop", "level"):
+                    self.assertEqual(p.element_at(*p.middle(f"#{name}"), f"#{name}"), name)
+                for i, at in enumerate(p.value("tactor.state.hello.array.tactors.map(t => tactor.place_in_page([t.x_mm, t.y_mm]))")):
+                    self.assertEqual(p.element_at(*at, "canvas"), "field", i)
+                p.value(f"{CARDS}[3].click()")
+                self.next_stroke(watcher, "started")
+                # What the card shows moves, and it stands still once the stroke has ended.
+                p.until(f"{CARDS}[3].hasAttribute('data-playing') && tactor.state.at_s > 0.1")
+                first = p.value(f"{CARDS}[3].querySelector('canvas').toDataURL()")
+                p.until(f"{CARDS}[3].querySelector('canvas').toDataURL() !== {quoted(first)}")
+                p.click("#stop")
+                p.until("!document.querySelector('[data-playing]')")
+
     def test_a_tap_plays_and_the_first_change_makes_a_take(self):
         p, watcher = self.ready(self.serve())
         p.key("KeyG", "g")

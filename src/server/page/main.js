@@ -16,7 +16,7 @@ import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker, unanswered_s, stop_words} from "./service/player.js";
 import {change_point, remove_point, finish_early} from "./drawing/pointer.js";
 import "./takes/takes_panel.js";
-import {open_tour} from "./takes/gallery.js";
+import {draw_card, open_tour} from "./takes/gallery.js";
 import "./service/simulated.js";
 import {own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
@@ -135,6 +135,7 @@ function frame() {
   draw_frame();
   draw_lanes();
   draw_meter();
+  draw_card();
   const [now, total] = clock_text(), text = `${now} of ${total}`, slider = by_id("lanes");
   set_text("clock", now);
   set_text("total", total);

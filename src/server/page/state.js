@@ -74,8 +74,10 @@ export const marks = () => state.marks.take === state.current ? state.marks : {s
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 // The service plays to the PCM null where nothing names another.
 export const plays_to_nobody = () => state.hello?.stream.pcm === "null";
-// Returns true where the service has never had a card: the page itself plays then.
-export const is_simulated = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
+// Returns true where the service has never had a card: it plays nothing then.
+export const is_cardless = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
+// Returns true where nobody feels what plays: the page makes it heard then.
+export const is_simulated = () => is_cardless() || state.link === "connected" && plays_to_nobody();
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
 // Level and gain of the take that is shown, as a factor on what sounds at the ceiling.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, current_stroke, ceiling_dbfs, is_simulated, say, now_ms} from "../state.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, is_cardless, say, now_ms} from "../state.js";
 import {by_id, listen} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, view, tactor_at, zoom, zoom_by_two, pan, ARROWS} from "./view.js";
@@ -84,7 +84,7 @@ function begin(f) {
   f.track = {start_s: Math.max(0, seconds(now - state.drawing.began)), began: now, points: [[0, ...rounded(f.from), f.strength]], down: true,
     straight: f.straight};
   state.drawing.tracks.push(f.track);
-  if (state.feel && is_connected() && !is_simulated()) begin_live(f);
+  if (state.feel && is_connected() && !is_cardless()) begin_live(f);
   changed("drawing", "link");
 }
 const rounded = p => p.map(v => +v.toFixed(3));

@@ -54,7 +54,8 @@ function insets() {
   const s = getComputedStyle(canvas), v = name => parseFloat(s.getPropertyValue(name)) || 0;
   view.scale_bottom = v("--scale-bottom") || 20;
   const free = {left: v("--free-left"), right: v("--free-right"), top: v("--free-top"), bottom: v("--free-bottom")};
-  const stage = by_id("stage").getBoundingClientRect(), sheet = by_id(state.placing ? "place-bar" : "sheet-head").getBoundingClientRect();
+  const stage = by_id("stage").getBoundingClientRect(), gallery = by_id("p-gallery");
+  const sheet = (gallery.matches(":popover-open") ? gallery : by_id(state.placing ? "place-bar" : "sheet-head")).getBoundingClientRect();
   if (!sheet.width || sheet.left >= stage.right) return free;
   if (sheet.left > stage.left + 10) return {...free, right: stage.right - sheet.left + 10};
   return {...free, top: 12, bottom: stage.bottom - sheet.top + 8};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // State of the service: one word and one reason each, a banner where something is to be done.
-import {state, on_change, changed, ceiling_dbfs, is_simulated, plays_to_nobody, say, remember, remembered, now_ms} from "../state.js";
+import {state, on_change, changed, ceiling_dbfs, is_cardless, is_simulated, say, remember, remembered, now_ms} from "../state.js";
 import {by_id, make, on_click, listen, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
@@ -17,7 +17,7 @@ function describe() {
   if (state.link === "lost") return ["broken", "No connection", "bad",
     `again in ${Math.max(0, Math.ceil((state.retry_at - now_ms()) / 1000))} s`];
   if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
-  if (is_simulated()) return ["barred", "Simulated", "off", "no card"];
+  if (is_cardless()) return ["barred", "Simulated", "off", "no card"];
   if (s.state === "lost") return ["broken", "Card lost", "bad", "it is looked for"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
   if (s.state === "closing") return ["stop", "Closing", "warn", "tactor ends"];
@@ -25,7 +25,8 @@ function describe() {
     `by ${state.stopped.name}`];
   const other = state.status?.strokes.find(k => k.state === "started" && k.client !== state.hello?.client);
   if (other) return ["people", "Someone is playing", "info", who(other.client)];
-  const why = plays_to_nobody() ? "no array connected" : state.hello?.stream.pcm ?? "";
+  if (is_simulated()) return ["barred", "Simulated", "off", "no card"];
+  const why = state.hello?.stream.pcm ?? "";
   return s.state === "idle" ? ["ready", "Ready", "ok", why] : ["running", "Running", "ok", why];
 }
 const who = client => { const w = state.status?.who?.find(x => x.client === client); return w ? w.name ? `“${w.name}”` : w.from : ""; };
@@ -41,7 +42,7 @@ function warn() {
   if (state.unkept.size) return [`Takes are not kept: ${state.storage_fault}.`, "warn",
     "It is tried again with each change. Save what you need as a file; the page asks before it closes."];
   if (state.link === "connected" && state.slow) return null;
-  if (s.state === "lost" && !is_simulated()) return ["The sound card is gone. Drawings are kept; plug it in again.", "bad", s.reason];
+  if (s.state === "lost" && !is_cardless()) return ["The sound card is gone. Drawings are kept; plug it in again.", "bad", s.reason];
   if (s.state === "muted") return ["Muted: the sound broke up. It comes back when it is steady.", "warn", s.reason];
   if (s.state === "closing") return ["Tactor ends. Drawings are kept.", "warn", s.reason];
   if (state.fault) return [state.fault, "bad", ""];

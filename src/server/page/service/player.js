@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops, and moves the moment on.
-import {state, changed, on_change, current_take, take_by_id, is_simulated, plays_to_nobody, ceiling_dbfs, take_gain, marks, say, now_ms} from "../state.js";
+import {state, changed, on_change, current_take, take_by_id, is_cardless, is_simulated, ceiling_dbfs, take_gain, marks, say, now_ms} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
@@ -82,7 +82,6 @@ export function tell_level(anew = false) {
 on_change(() => tell_level());
 on_lost(() => { sent_level = null; });
 
-let warned = false;
 async function ask_to_play() {
   const own = state.playing, take = take_by_id(own.take);
   try {
@@ -95,8 +94,7 @@ async function ask_to_play() {
     ended.clear();
     tell_level(state.compare);
     hear_starts(strokes);
-    if (plays_to_nobody() && !state.speaker && !warned) say("No array is connected, so nobody feels it. Listen makes it heard here.");
-    warned = true;
+    if (is_simulated() && !state.speaker) say("No card: shown, not felt");
   } catch (e) {
     if (state.playing !== own) return;
     // A tactor may have a lower limit than the level: the take is played as strong as it may be.
@@ -243,7 +241,7 @@ on_notification("stops", s => {
   changed("link", "playing");
 });
 // They come in a tab that is hidden, too, where there are no frames: a loop goes on.
-on_notification("levels", l => { if (!is_simulated()) state.dbfs = l.dbfs; if (document.hidden) tick(); });
+on_notification("levels", l => { if (!is_cardless()) state.dbfs = l.dbfs; if (document.hidden) tick(); });
 on_notification("stream", s => { state.stream = s; changed("stream", "link"); });
 on_notification("touches", t => {
   if (t.down) state.touches.set(t.stroke, {...t, at: now_ms()}); else state.touches.delete(t.stroke);
@@ -285,7 +283,8 @@ export function on_stop(f) { lift_fingers = f; }
 
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
-  if (is_simulated()) return tap_tactor(i);
+  if (is_simulated()) tap_tactor(i);
+  if (is_cardless()) return;
   tell_level();
   call("drive", {tactor: i, duration_s: TEST_S})
     .then(r => {
@@ -303,9 +302,10 @@ function tap_tactor(i) {
 // Plays on this computer's loudspeakers if Listen is on.
 export function hear_it() {
   silence_speaker();
-  if (!state.speaker || !state.plan || !state.hello) return;
+  if (!state.speaker || !state.plan || !state.hello || state.playing && state.plan_of?.id !== state.playing.take) return;
   speaker = start_loudspeaker(state.plan, state.hello.array.tactors, state.at_s, {gain: take_gain(), pitched: is_simulated()});
 }
+on_change(() => { if (!speaker && state.playing && !state.playing.waits) hear_it(); }, "plan"); // a new take is planned while it begins
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {
   if (state.playing) return;

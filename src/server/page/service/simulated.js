@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A page without a card plays by itself: each tactor is a sound at its place.
-import {state, changed, on_change, is_simulated, ceiling_dbfs, take_gain} from "../state.js";
+// A page whose service has no card, or plays to nobody, is heard: each tactor is a sound at its place.
+import {state, changed, on_change, is_cardless, is_simulated, ceiling_dbfs, take_gain} from "../state.js";
 import {by_id, on_click, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {array} from "../drawing/view.js";
@@ -38,7 +38,7 @@ function hear_touches() {
   const touches = state.tapped >= 0 ? [[0, ...array.places[state.tapped], 1]]
     : state.drawing?.tracks.filter(k => k.down).map(k => k.points.at(-1)) ?? [];
   if (!simulated || !state.speaker || !touches.length) {
-    if (tones) { tones.stop(); tones = null; state.dbfs = []; }
+    if (tones) { tones.stop(); tones = null; if (is_cardless()) state.dbfs = []; }
     return;
   }
   const parts = array.places.map(() => 0);
@@ -48,5 +48,5 @@ function hear_touches() {
   }
   tones ??= start_tones(array.tactors);
   tones.set(parts, take_gain());
-  state.dbfs = parts.map(v => v > 0.01 ? ceiling_dbfs() + 20 * Math.log10(v * take_gain()) : null);
+  if (is_cardless()) state.dbfs = parts.map(v => v > 0.01 ? ceiling_dbfs() + 20 * Math.log10(v * take_gain()) : null);
 }

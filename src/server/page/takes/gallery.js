@@ -6,7 +6,7 @@ import {by_id, make, listen} from "../../../net/page/dom.js";
 import {array} from "../drawing/view.js";
 import {play} from "../service/player.js";
 import {add_take, choose_take, try_take} from "./takes.js";
-import {thumb, facts} from "./takes_panel.js";
+import {thumb, draw_thumb, facts} from "./takes_panel.js";
 import {box, outside_mm, parts_reached, trimmed} from "./stroke.js";
 
 const BURST_S = 0.07; // by Park's law its interval is as long
@@ -83,7 +83,8 @@ const as_take = ([name,, over, made, options = {}, gain_db]) =>
   ({name, origin: "one stroke", strokes: on_array(made, over), options, gain_db});
 let example = GALLERY[0];
 export const open_example = () => { const take = as_take(example); add_take(take.strokes, take); };
-export const try_entry = (entry = example) => { try_take(as_take(entry)); play(); };
+let tried = null; // the thumb of the card that was tapped last
+export const try_entry = (entry = example, picture = null) => { tried = picture; try_take(as_take(entry)); play(); };
 
 on_change(() => {
   if (!array) return;
@@ -94,9 +95,20 @@ on_change(() => {
     return make("li", {}, make("button", {class: `take ${kind}`, disabled, onclick}, thumb(take.strokes), make("span", {},
       make("b", {}, g[0]), make("small", {}, disabled ? "needs two rows" : facts(take))), kind && make("p", {}, g[1])));
   };
-  by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", () => try_entry(g))));
+  by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", e => try_entry(g, e.currentTarget.firstChild))));
   by_id("examples").replaceChildren(entry(example, "", open_example));
 }, "array");
+// Shows in its card what a card plays; called once a frame.
+let shown = null;
+export function draw_card() {
+  const now = state.trial && state.playing?.take === state.trial.id ? tried : null;
+  if (shown !== now) {
+    shown?.draw();
+    for (const c of [shown, now]) c?.parentElement.toggleAttribute("data-playing", c === now);
+  }
+  shown = now;
+  if (now) draw_thumb(now, state.trial.strokes, state.at_s);
+}
 
 // Title, text, what its strokes go over (see the gallery), and [name, strokes] of what is tried, with the neighbours a and b.
 const tour = ([a, b], feel) => [
@@ -126,7 +138,7 @@ function show_step(n) {
   card.lastChild.lastChild.focus();
   if (actions[0][0] === "Again") actions[0][1]();
 }
-listen(card, "toggle", () => changed("layout"));
+for (const p of [card, gallery]) listen(p, "toggle", () => changed("layout"));
 export function open_tour() {
   gallery.hidePopover();
   card.showPopover();

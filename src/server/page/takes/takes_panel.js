@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The list of takes.
-import {state, on_change} from "../state.js";
+import {state, on_change, ceiling_dbfs} from "../state.js";
 import {by_id, make, all_of, listen, set_text} from "../../../net/page/dom.js";
-import {icon, is_dark, colour, disc, plot} from "../look.js";
+import {icon, is_dark, colour, disc, paint, plot} from "../look.js";
 import {BIN_DAYS, DAY_MS} from "./keeping.js";
 import {choose_take, rename_take, duplicate_take, delete_take, bring_back, fit_take, take_s} from "./takes.js";
-import {total_s} from "./stroke.js";
+import {end_s, interpolate, total_s} from "./stroke.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
 import {seconds_text} from "../words.js";
@@ -18,11 +18,12 @@ const seen = new IntersectionObserver(list => list.filter(e => e.isIntersecting)
 // A small picture of strokes over the tactors, drawn when it comes into view.
 export function thumb(strokes) {
   const c = make("canvas", {class: "thumb", width: SIZE * 2, height: SIZE * 2, "aria-hidden": "true"});
-  c.draw = () => draw(c, strokes);
+  c.draw = () => draw_thumb(c, strokes);
   seen.observe(c);
   return c;
 }
-function draw(c, strokes) {
+// With a moment it shows the strokes as they play: how strong each tactor is, and where each stroke is.
+export function draw_thumb(c, strokes, at_s = null) {
   if (!array) return;
   const p = c.getContext("2d"), side = Math.max(...array.box.size, 1), scale = SIZE * 2 * 0.68 / side;
   const at = (x, y) => [SIZE + (x - array.box.middle[0]) * scale, SIZE + (y - array.box.middle[1]) * scale];
@@ -38,6 +39,16 @@ function draw(c, strokes) {
       p.strokeStyle = viridis((s.start_s + a[0]) / total, is_dark());
       plot(p, at(a[1], a[2]), at(b[1] + 1e-3, b[2])); p.stroke();
     }
+  }
+  if (at_s === null) return;
+  array.places.forEach((q, i) => {
+    const share = 10 ** (((state.dbfs[i] ?? -Infinity) - ceiling_dbfs()) / 20);
+    if (share > 0.01) { disc(p, at(...q), 10 * Math.sqrt(Math.min(1, share))); paint(p, {fill: "felt"}); }
+  });
+  for (const s of strokes) {
+    if (at_s < s.start_s || at_s > end_s(s)) continue;
+    disc(p, at(...interpolate(s.timed, at_s - s.start_s).slice(1, 3)), 7);
+    paint(p, {fill: "skin", line: "ink", width: 3});
   }
 }
 export const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
