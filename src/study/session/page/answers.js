@@ -39,12 +39,13 @@ function make_line({choices, visual}, word, answer) {
   // Safari lets people only drag the mark, which is hidden at first: here each place on the line sets it.
   const point = e => {
     const {x, width} = mark.getBoundingClientRect();
+    mark.style.setProperty("--at", e.buttons || e.pointerType !== "mouse" || mark.disabled ? "-20px" : `${e.clientX - x - 4}px`);
     if (!e.buttons || mark.disabled) return;
     mark.value = 1 + (choices.length - 1) * (e.clientX - x) / width;
     set();
   };
   const mark = make("input", {type: "range", min: 1, max: choices.length, "aria-labelledby": "question low high", "aria-valuetext": "–",
-    oninput: set, onpointerdown: point, onpointermove: point, onkeydown: e => { if (e.key === "Enter" && !e.repeat) confirm.click(); }});
+    oninput: set, onpointerdown: point, onpointermove: point, onpointerleave: () => mark.style.removeProperty("--at"), onkeydown: e => { if (e.key === "Enter" && !e.repeat) confirm.click(); }});
   return [mark, make("span", {id: "low"}, describe(0)), make("span", {id: "high"}, describe(choices.length - 1)), number, confirm];
 }
 
