@@ -166,6 +166,13 @@ class Drawing(StudioTest):
 
 
 class Keys(StudioTest):
+    @staticmethod
+    def press_on(p, code, key, text=""):
+        """Presses a key as a keyboard does: on what has the focus."""
+        number = {"Enter": 13, "Tab": 9, "Space": 32}[code]
+        for kind in ("keyDown", "keyUp"):
+            p.call("Input.dispatchKeyEvent", type=kind, code=code, key=key, windowsVirtualKeyCode=number, **({"text": text} if kind == "keyDown" and text else {}))
+
     def test_the_keyboard_draws_plays_and_stops(self):
         p, watcher = self.ready(self.serve())
         p.value("document.querySelector('#field').focus()")
@@ -247,6 +254,22 @@ class Keys(StudioTest):
         p.value("document.querySelector('#p-study').showPopover(), document.querySelector('#study [name=trials]').focus(), document.activeElement.select()")
         p.type("120")
         self.assertEqual(p.value("[document.activeElement.value, tactor.state.compare, tactor.view.zoom]"), ["120", None, 1])
+
+    def test_the_menu_of_a_take_is_reached_by_keys(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        p.value("document.querySelector('.more-button').focus()")
+        self.press_on(p, "Enter", "Enter", "\r")
+        p.until("document.activeElement.matches('#p-take .button:first-child')")
+        self.press_on(p, "Tab", "Tab")
+        self.assertEqual(p.value("document.activeElement.textContent"), "Duplicate")
+        p.key("Escape", "Escape")
+        p.until("document.activeElement.matches('.more-button')")
+        self.press_on(p, "Enter", "Enter", "\r")
+        p.until("document.activeElement.matches('#p-take .button:first-child')")
+        self.press_on(p, "Tab", "Tab")
+        self.press_on(p, "Enter", "Enter", "\r")
+        p.until("tactor.state.takes.length === 2")
 
     def test_space_stops_what_is_being_drawn(self):
         p, watcher = self.ready(self.serve())

@@ -141,6 +141,16 @@ class Gallery(StudioTest):
         p.until("tactor.state.takes.length === 0 && document.querySelector('#take-name').textContent === 'Two fingers'")
         p.click("#stop")
 
+    def test_a_tactor_with_a_low_limit_is_named_and_makes_no_take(self):
+        array = self.write("low.toml", "[array]\npreset = 'palm-3x3'\n[[tactor]]\ntactor = 4\nmax_dbfs = -30\n")
+        p, watcher = self.ready(self.serve("--array", array))
+        p.key("KeyG", "g")
+        p.value(f"{CARDS}[0].click()")
+        self.next_stroke(watcher, "started")
+        self.toast(p, "tactor 4 is limited to −30 dBFS")
+        self.assertEqual(p.value("[tactor.state.takes.length, tactor.state.trial.name]"), [0, "Line across"])
+        self.assertLess(p.value("tactor.state.trial.gain_db"), -10)  # 18 dB, and less where no burst is on the tactor
+
     def test_a_row_of_tactors_has_what_makes_sense_there(self):
         for file, fitting in (("arm-line-4", 10), ("two", 6)):
             array = ROOT / f"examples/arrays/{file}.toml" if file != "two" else self.write(

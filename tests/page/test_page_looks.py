@@ -211,6 +211,18 @@ class Shapes(Drawn):
                         p.key("KeyT", "t")
                         p.until("!('timeOpen' in document.body.dataset)")
 
+    def test_nothing_is_lost_in_forced_colours(self):
+        p, _ = self.drawn(self.serve())
+        p.call("Emulation.setEmulatedMedia", features=[{"name": "forced-colors", "value": "active"}])
+        p.frames()
+        style = "getComputedStyle(document.querySelector('{}'), '{}').{}"
+        ground = p.value(style.format(".time", "", "backgroundColor"))
+        for element in (".moment", ".meter i"):
+            self.assertNotIn(p.value(style.format(element, "", "backgroundColor")), (ground, "rgba(0, 0, 0, 0)"), element)
+        for element in ("#level input", ".l-felt"):
+            self.assertTrue(p.value(f"document.querySelector('{element}').checkVisibility()"), element)
+        self.assertIn("gradient", p.value(style.format(".l-drawn", "::before", "backgroundImage")))
+
     def test_settings_with_a_warning_show_the_settings(self):
         p, _ = self.drawn(self.serve())
         for size, touch in (((1024, 768), True), ((960, 540), False), ((1093, 614), False), ((820, 1180), True), ((600, 501), False),

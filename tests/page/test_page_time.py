@@ -123,6 +123,14 @@ class Time(StudioTest):
         self.assertLessEqual(p.value("sent.findLast(m => m.method === 'play').round_s"), total)
         self.assertTrue(low <= p.value("tactor.state.at_s") <= low + total)
         p.click("#stop")
+        # A range beyond the end of a take that was cut plays all of it, and is there again where the cut is taken back.
+        p.value("tactor.state.marks.range = [2.5, 2.8], tactor.changed('curves')")
+        p.key("KeyL", "l")
+        p.key("KeyP", "p")
+        self.started(watcher)
+        p.until("tactor.state.playing && tactor.state.playing.from_s === 0")
+        p.click("#stop")
+        p.value(f"tactor.state.marks.range = [{low}, {high}], tactor.changed('curves')")
         # An end is pulled; two taps clear it.
         (x, y), (end, _) = self.at_time(p, high, RULER), self.at_time(p, 0.8, RULER)
         p.mouse("mousePressed", x + 6, y)  # it keeps its distance from the pointer

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // State of the page, and the listeners to its changes.
 import {by_id, make} from "../../net/page/dom.js";
+import {total_s} from "./takes/stroke.js";
 
 const TOAST_MS = 2200, UNDO_MS = 6000;
+export const LEAST_PART_S = 0.05; // of a take, or a stroke, that is played from within
 
 export const state = {
   // The service.
@@ -69,7 +71,12 @@ export function remember(name, v) { try { localStorage.setItem(`tactor-${name}`,
 
 export const take_by_id = id => state.takes.find(t => t.id === id) ?? (state.trial?.id === id ? state.trial : null);
 export const current_take = () => take_by_id(state.current);
-export const marks = () => state.marks.take === state.current ? state.marks : {start_s: 0};
+// Marks within the take as it is now: a part of it may be gone since they were set.
+export function marks() {
+  if (state.marks.take !== state.current) return {start_s: 0};
+  const {start_s, range} = state.marks, is_within = t => t < total_s(current_take()?.strokes ?? []) - LEAST_PART_S;
+  return {...state.marks, start_s: is_within(start_s) ? start_s : 0, range: range && is_within(range[0]) ? range : null};
+}
 // The stroke of the take that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 // The service plays to the PCM null where nothing names another.

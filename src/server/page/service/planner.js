@@ -63,14 +63,26 @@ async function ask() {
 }
 // Returns by how much the strokes of a plan are too strong, dB.
 export const excess_db = plan => plan?.warnings.find(w => w.kind === "level")?.over_db ?? 0;
-// Gives a take the gain with which it can be played; the level of all others stays. Returns false if it is not too strong.
+// Returns which tactor is driven most beyond a limit of its own, in words; empty where none is. `dbfs`: level of full amplitude.
+export function limit_text({tactors: count, amplitudes}, dbfs) {
+  const {array, max_level_dbfs} = state.hello, over = array.tactors.map((t, i) => {
+    let most = 0;
+    for (let k = i; k < amplitudes.length; k += count) most = Math.max(most, amplitudes[k]);
+    return t.max_dbfs < max_level_dbfs ? dbfs + 20 * Math.log10(most) - t.max_dbfs : -Infinity;
+  });
+  const worst = over.indexOf(Math.max(...over)), {tactor, max_dbfs} = array.tactors[worst];
+  return over[worst] > 0 ? `tactor ${tactor ?? worst} is limited to ${number_text(max_dbfs, max_dbfs % 1 ? 1 : 0)} dBFS` : "";
+}
+// Gives a take the gain with which it can be played; the level of all others stays. Returns false if it is not too strong. What is tried
+// is no take for that.
 export async function weaken_take(take) {
-  const over_db = excess_db(await call("plan", {...make_request(take, ceiling_dbfs()), view: "peaks", bins: 1}));
+  const plan = await call("plan", {...make_request(take, ceiling_dbfs()), view: "peaks", bins: 1}), over_db = excess_db(plan);
   const now = take_by_id(take.id); // it may have been edited meanwhile
   if (!over_db || !now) return false;
   const gain_db = (now.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
-  put_take({...now, gain_db});
-  say(`“${now.name}” ${number_text(gain_db)} dB: it would be too strong`);
+  if (now === state.trial) { state.trial = {...now, gain_db}; changed("take"); } else put_take({...now, gain_db});
+  const limit = limit_text({...plan, amplitudes: plan.peaks}, ceiling_dbfs() + (now.gain_db ?? 0));
+  say(`“${now.name}” ${number_text(gain_db)} dB: ${limit || "it would be too strong"}`);
   return true;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Prediction of what is felt, and faults of the take in plain words, with what mends them.
-import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke, level_dbfs, say} from "../state.js";
 import {by_id, make, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, edit_take, fit_take, algorithm} from "../takes/takes.js";
-import {excess_db, weaken_take} from "../service/planner.js";
+import {excess_db, limit_text, weaken_take} from "../service/planner.js";
 import {spark} from "./diagrams.js";
 import {place_word, even_word, number_text, fault_sentence} from "../words.js";
 import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
@@ -51,11 +51,11 @@ function show_warnings() {
   });
   if (state.outside.length && !take.leaves_array) found.push({...outside_text(),
     buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
-  const over_db = excess_db(state.plan);
+  const over_db = excess_db(state.plan), limit = over_db && take ? limit_text(state.plan, level_dbfs() + (take.gain_db ?? 0)) : "";
   const weaker_db = -(state.plan?.weakened_db ?? 0);
   if (weaker_db > 0 && take) found.push({text: `Its strokes meet on a tactor, so all of it is played ${number_text(weaker_db)} dB weaker.`,
     short: `${number_text(weaker_db)} dB weaker`, buttons: []});
-  if (over_db && take) found.push({text: `It is ${number_text(over_db)} dB stronger than may be played.`,
+  if (over_db && take) found.push({text: `It is ${number_text(over_db)} dB stronger than may be played${limit && `: ${limit}`}.`,
     short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(current_take()).catch(e => say(fault_sentence(e)))]]});
   for (const w of new Set(state.plan?.warnings)) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings"), more = found.length - 1;

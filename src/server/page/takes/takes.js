@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Takes: {id, version, name, origin, strokes, options}. They are values: a change makes a new one with a new version, so
 // that all can be undone.
-import {state, changed, current_take, level_dbfs, say} from "../state.js";
+import {state, changed, current_take, level_dbfs, say, LEAST_PART_S} from "../state.js";
 import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";
 import {total_s, duration_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
 
-const LEAST_REST_S = 0.05; // of a stroke that is played from within
 const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // of undo
 const ROW_BYTES = 40;         // of a list of points, in memory
 
@@ -127,7 +126,7 @@ export function fit_take(edge) {
 // Returns what a take has from one moment until another; its time begins there.
 export const take_part = (take, from_s, until_s) => ({...take, strokes: take.strokes.flatMap(k => {
   const d = duration_s(k), a = Math.max(0, from_s - k.start_s), b = Math.min(d, until_s - k.start_s);
-  if (b - a < Math.min(LEAST_REST_S, d)) return [];
+  if (b - a < Math.min(LEAST_PART_S, d)) return [];
   return {...a > 0 || b < d ? trimmed(k, a, b) : k, start_s: Math.max(0, k.start_s - from_s)};
 })});
 export const take_s = t => t ? total_s(t.strokes) : 0;

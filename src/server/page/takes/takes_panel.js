@@ -72,6 +72,7 @@ function menu(take, at) {
     item("Fit to array", "all", () => { choose_take(take.id); if (array && take.strokes.length) fit_take(array.edge); }),
     item("Delete", "bin", () => delete_take(take.id)));
   m.showPopover();
+  m.firstChild.focus();
   const r = at.getBoundingClientRect();
   m.style.inset = `${Math.min(innerHeight - 204, r.bottom + 4)}px auto auto ${Math.max(8, Math.min(innerWidth - 200, r.right - 190))}px`;
 }
