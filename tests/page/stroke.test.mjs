@@ -187,3 +187,10 @@ test("a corner shortly after the start takes nothing from the curve behind it", 
   for (const [fitted, within] of [[s.as_edited(drawn), 0.2], [s.fitted_within(drawn, 0.2), 0.2], [s.fitted_within(drawn, 2), 2]])
     assert.ok(both_ways(fitted.timed, drawn.timed) < within + 0.05, `${fitted.knots.length} points, ${both_ways(fitted.timed, drawn.timed)} mm off`);
 });
+
+test("handles are so far apart, and the ends and one that is wanted have one", () => {
+  const knots = [0, 2, 9, 11, 19, 23, 31, 38, 40].map(x => ({x, y: 0}));
+  assert.deepEqual(s.handles_apart(knots, 10), [0, 3, 5, 8]);
+  assert.deepEqual(s.handles_apart(knots, 10, 4), [0, 4, 8]);
+  assert.deepEqual(s.handles_apart(knots.slice(0, 2), 10), [0, 1]);
+});

@@ -203,12 +203,23 @@ class Keys(StudioTest):
         for i in range(p.value("all.length")):
             number = player.ok("play", toml=LONG)["stroke"]
             watcher.stroke(number, "started")
+            p.until("tactor.state.dbfs.some(v => v !== null)")
             name = p.value(f"(all[{i}].focus(), document.activeElement === all[{i}] && (all[{i}].id || all[{i}].outerHTML.slice(0, 80)))")
             self.assertTrue(name, p.value(f"all[{i}].isConnected + all[{i}].outerHTML.slice(0, 200)"))
             p.key("Space", " ")
             self.assertEqual(watcher.await_end(number)["state"], "cancelled", name)
         # It did nothing else.
         self.assertEqual(p.value("[tactor.state.tool, tactor.state.feel, tactor.state.loop, tactor.state.takes.length]"), ["draw", True, False, 0])
+        # X does it, too. In silence Space presses the button that has the focus.
+        number = player.ok("play", toml=LONG)["stroke"]
+        watcher.stroke(number, "started")
+        p.key("KeyX", "x")
+        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
+        p.until("tactor.state.dbfs.every(v => v === null) && !tactor.state.status.strokes.length && !tactor.state.stopping")
+        for is_on in (True, False):
+            p.value("document.querySelector('#loop').focus()")
+            self.press_on(p, "Space", " ", " ")
+            p.until(f"tactor.state.loop === {str(is_on).lower()}")
         # In a text it is a space; the button there is the way.
         p.value("document.querySelector('#p-others').showPopover(), document.querySelector('#own-name-text').focus()")
         number = player.ok("play", toml=LONG)["stroke"]
@@ -270,6 +281,20 @@ class Keys(StudioTest):
         self.press_on(p, "Tab", "Tab")
         self.press_on(p, "Enter", "Enter", "\r")
         p.until("tactor.state.takes.length === 2")
+
+    def test_a_wheel_moves_and_zooms_with_ctrl(self):
+        p, _ = self.ready(self.serve())
+        x, y = self.at(p, [20, 20])[0]
+
+        def wheel(dx, dy, modifiers=0):
+            p.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=dx, deltaY=dy, modifiers=modifiers)
+        wheel(0, 40)
+        p.until(f"Math.abs(tactor.place_in_page([20, 20])[1] - {y - 40}) < 1")
+        wheel(30, 0)
+        p.until(f"Math.abs(tactor.place_in_page([20, 20])[0] - {x - 30}) < 1")
+        self.assertEqual(p.value("tactor.view.zoom"), 1)
+        wheel(0, -100, modifiers=2)  # ctrl, as a pinch
+        p.until("tactor.view.zoom > 1.3")
 
     def test_space_stops_what_is_being_drawn(self):
         p, watcher = self.ready(self.serve())

@@ -188,8 +188,20 @@ class Shapes(Drawn):
                 " && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
         p.frames()
 
+    # Tactors of which a part lies under something, or under a toast.
+    HIDDEN = """(toast => { toast.textContent = "Undone, and a text of some length"; toast.classList.add("on");
+        const r = toast.getBoundingClientRect(), found = tactor.state.hello.array.tactors.filter(t => [[0, 0], [4, 0], [-4, 0], [0, 4], [0, -4]].some(([dx, dy]) => {
+            const [x, y] = tactor.place_in_page([t.x_mm + dx, t.y_mm + dy]);
+            return document.elementFromPoint(x, y)?.id !== "field" || x > r.left && x < r.right && y > r.top && y < r.bottom; })).map(t => t.tactor ?? t.channel);
+        toast.classList.remove("on"); return found; })(document.querySelector("#toast"))"""
+
     def test_the_canvas_keeps_half_of_the_height(self):
         p, _ = self.drawn(self.serve())
+        p.click("[data-tool=points]")
+        knot = self.take(p)["strokes"][0]["knots"][3]
+        p.mouse("mouseReleased", *self.press(p, [knot["x"], knot["y"]], [knot["x"] - 2, knot["y"] + 2]))
+        p.until("!document.querySelector('#shape').hidden")
+        p.click("[data-tool=draw]")
         for touch in (False, True):
             for size in self.SHAPES:
                 self.resize(p, size, touch)
@@ -207,6 +219,7 @@ class Shapes(Drawn):
                         self.assertEqual(p.value(self.COVERED), [])
                         self.assertGreaterEqual(p.value("document.querySelector('#level').offsetHeight"), 56)
                         self.assertTrue(p.value("document.querySelector('#level').checkVisibility()"))
+                        self.assertEqual(p.value(self.HIDDEN), [])
                     if unfolded:
                         p.key("KeyT", "t")
                         p.until("!('timeOpen' in document.body.dataset)")
@@ -217,11 +230,12 @@ class Shapes(Drawn):
         p.frames()
         style = "getComputedStyle(document.querySelector('{}'), '{}').{}"
         ground = p.value(style.format(".time", "", "backgroundColor"))
-        for element in (".moment", ".meter i"):
+        for element in (".moment", ".groove i"):
             self.assertNotIn(p.value(style.format(element, "", "backgroundColor")), (ground, "rgba(0, 0, 0, 0)"), element)
         for element in ("#level input", ".l-felt"):
             self.assertTrue(p.value(f"document.querySelector('{element}').checkVisibility()"), element)
         self.assertIn("gradient", p.value(style.format(".l-drawn", "::before", "backgroundImage")))
+        self.assertIn("gradient", p.value(style.format(".beyond", "", "backgroundImage")))
 
     def test_settings_with_a_warning_show_the_settings(self):
         p, _ = self.drawn(self.serve())

@@ -164,6 +164,43 @@ class Play(StudioTest):
         p.until(f"{loudest} > -80")
         self.assertLess(p.value(loudest), -45)
 
+    def test_the_level_is_a_fader_on_a_scale_of_dbfs(self):
+        p, watcher = self.ready(self.serve(config="[serve]\nmax_level_dbfs = -20\n"))
+        x, y, w, h = p.value("(r => [r.x, r.y, r.width, r.height])(document.querySelector('.groove').getBoundingClientRect())")
+        # From 30 dB below the ceiling, and a place of silence, to 6 dB above it.
+        at = lambda dbfs: x + w * (dbfs + 50.5) / 36.5  # noqa: E731
+        ticks = p.value("[...document.querySelectorAll('.ticks > *')].map(t => (r => [t.textContent, r.x + r.width / 2])(t.getBoundingClientRect()))")
+        self.assertEqual([text for text, _ in ticks], ["−50 dBFS", "−40", "−30", "ceiling −20"])
+        for (_, place), dbfs in zip(ticks, (-50, -40, -30, -20)):
+            self.assertAlmostEqual(place, at(dbfs), delta=1)
+        text = "document.querySelector('#level output').textContent"
+        self.assertEqual(p.value(text), "100 % −20 dBFS")
+        # A tap lowers at once, and raises by 3 dB; a drag goes where it leads, and beyond the ceiling nowhere.
+        p.tap(at(-40), y + h / 2)
+        p.until("tactor.state.level_db === -20")
+        self.assertEqual(p.value(text), "10 % −40 dBFS")
+        p.tap(at(-22), y + h / 2)
+        p.until("tactor.state.level_db === -17")
+        p.mouse("mousePressed", at(-37), y + h / 2)
+        p.move_to((at(-30), y + h / 2), (at(-10), y + h / 2))
+        p.mouse("mouseReleased", at(-10), y + h / 2)
+        p.until("tactor.state.level_db === 0")
+        for key, db in (("ArrowLeft", -1), ("PageDown", -7), ("ArrowRight", -6), ("End", 0), ("Home", -60)):
+            p.key(key)
+            p.until(f"tactor.state.level_db === {db}")
+        self.assertEqual(p.value(text), "silent")
+        # What plays is in the fader, too, and cannot pass the knob.
+        self.add_example(p)
+        p.key("End")
+        self.loop(p, watcher)
+        p.until("document.querySelector('.groove i').offsetWidth > 20")
+        p.value("document.querySelector('#level input').focus()")
+        for _ in range(2):
+            p.key("PageDown")
+        p.until("tactor.state.level_db === -12")
+        p.until(f"(e => e.offsetWidth > 20 && e.offsetWidth <= {at(-32) - x + 2})(document.querySelector('.groove i'))")
+        p.click("#stop")
+
     def test_a_touch_of_the_knob_binds_no_later_key(self):
         p, _ = self.ready(self.serve())
         p.value("(tactor.state.level_db = -20, tactor.changed('level'), 0)")

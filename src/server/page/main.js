@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The studio: buttons that belong to no other module, frames, and the start.
-import {state, changed, on_change, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
+import {state, changed, on_change, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms, SILENT_DB} from "./state.js";
 import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello, page_link} from "./service/connection.js";
@@ -12,7 +12,6 @@ import {label_boxes} from "./drawing/labels.js";
 import {felt_points} from "./drawing/felt.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
-import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker, unanswered_s, stop_words} from "./service/player.js";
 import {change_point, remove_point, finish_early} from "./drawing/pointer.js";
 import "./takes/takes_panel.js";
@@ -42,7 +41,7 @@ function set_theme(theme) {
 }
 set_theme(remembered("theme"));
 // A page that is opened again is no louder than it was.
-state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(remembered("level") ?? 0) || 0));
+state.level_db = Math.min(0, Math.max(SILENT_DB, Number(remembered("level") ?? 0) || 0));
 on_change(() => remember("level", state.level_db), "level");
 listen(dark, "change", () => { if (!remembered("theme")) set_theme(null); });
 on_click("theme", () => {

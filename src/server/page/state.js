@@ -85,6 +85,7 @@ export const plays_to_nobody = () => state.hello?.stream.pcm === "null";
 export const is_cardless = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
 // Returns true where nobody feels what plays: the page makes it heard then.
 export const is_simulated = () => is_cardless() || state.link === "connected" && plays_to_nobody();
+export const SILENT_DB = -60; // the least level that the service knows
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
 // Level and gain of the take that is shown, as a factor on what sounds at the ceiling.

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Moves what is felt: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
-// was put, or as near as can be.
+// Moves what is felt: diamonds where points of the stroke are felt, at most one each 10 mm. The point moves until it is felt where the
+// diamond was put, or as near as can be.
 import {state, changed, on_change, current_take, current_stroke, say, now_ms} from "../state.js";
 import {plot, paint, disc} from "../look.js";
 import {array, trace_rows, to_px, view} from "./view.js";
 import {edit_stroke} from "../takes/takes.js";
-import {editable, changed_knot, nearest_knot, knot_times, interpolate, within} from "../takes/stroke.js";
+import {editable, changed_knot, nearest_knot, handles_apart, knot_times, interpolate, within} from "../takes/stroke.js";
 import {number_text} from "../words.js";
 
 const GRASP_PX = 22, WISH_STEPS = 24, LEAST_PART = 0.2;
 const HERE_MM = 0.25, SOLVED_MM = 0.05;
+const APART_MM = 10, APART_PITCHES = 0.5; // diamonds along the path; less on an array with a small pitch
 
 let wish = null; // {knot, at, steps, part, best, before, after, key}: so many steps are left
 
-// Returns the places where the points of the stroke are felt.
+// Returns the diamonds: numbers of points, and where they are felt. The ends and the chosen point have one.
 export function felt_points(s = current_stroke()) {
   const i = state.stroke, rows = s && state.plan?.felt_rows[i];
-  return !rows?.length ? [] : knot_times(editable(s)).map(t => interpolate(rows, state.plan.strokes[i].start_s + t)).map(([, x, y]) => ({x, y}));
+  if (!rows?.length) return [];
+  const {knots} = editable(s), times = knot_times(editable(s)), apart = Math.min(APART_MM, APART_PITCHES * array.pitch);
+  return handles_apart(knots, apart, state.knot).map(knot => {
+    const [, x, y] = interpolate(rows, state.plan.strokes[i].start_s + times[knot]);
+    return {knot, x, y};
+  });
 }
 function start_wish(knot) {
   wish = {knot, before: current_stroke().timed, key: `felt ${now_ms()}`};
@@ -27,7 +33,7 @@ function start_wish(knot) {
 export function grasp_felt(mm) {
   const points = felt_points(), near = nearest_knot(points, mm), at = points[near.index];
   if (near.off * view.scale > GRASP_PX) return null;
-  start_wish(near.index);
+  start_wish(at.knot);
   return [at.x - mm[0], at.y - mm[1]];
 }
 // Lets the point of the wish be felt at a place.
@@ -37,7 +43,7 @@ export function pull(at) {
   solve();
 }
 export function step_felt(knot, [dx, dy]) {
-  const felt = felt_points()[knot];
+  const felt = felt_points().find(q => q.knot === knot);
   if (!felt) return;
   start_wish(knot);
   pull([felt.x + dx, felt.y + dy]);
@@ -46,7 +52,7 @@ export function step_felt(knot, [dx, dy]) {
 // between triangles, it looks round about. The plan of that comes here again.
 function solve() {
   if (!(wish?.steps >= 0) || wish.knot !== state.knot || state.plan_of !== current_take()) return;
-  const s = current_stroke(), felt = felt_points()[wish.knot], k = editable(s).knots[wish.knot];
+  const s = current_stroke(), felt = felt_points().find(q => q.knot === wish.knot), k = editable(s).knots[wish.knot];
   const error = [wish.at[0] - felt.x, wish.at[1] - felt.y], off = Math.hypot(...error);
   if (off >= wish.best?.off) wish.part /= 2; else Object.assign(wish, {best: {off, at: [k.x, k.y], error}, part: 1});
   const {best, part, steps} = wish, solved = !steps || best.off < SOLVED_MM, far = best.off * steps / WISH_STEPS;
@@ -63,17 +69,17 @@ on_change(solve, "plan");
 
 // Draws the diamonds, and of a wish its ring, how far it is from there, and the former path.
 export function draw_felt_points(p, s) {
-  const places = felt_points(s).map(q => to_px([q.x, q.y]));
-  if (wish?.at && wish.after === s && places.length) {
+  const points = felt_points(s), places = points.map(q => to_px([q.x, q.y])), held = points.findIndex(q => q.knot === wish?.knot);
+  if (wish?.at && wish.after === s && held >= 0) {
     const at = to_px(wish.at), thin = {line: "felt", width: 1.5};
     p.setLineDash([4, 4]);
     trace_rows(p, wish.before); paint(p, thin);
     disc(p, at, 13); paint(p, thin);
     p.setLineDash([]);
-    plot(p, at, places[wish.knot]); paint(p, thin);
+    plot(p, at, places[held]); paint(p, thin);
   }
   places.forEach(([x, y], i) => {
     plot(p, [x, y - 9], [x + 9, y], [x, y + 9], [x - 9, y], [x, y - 9]);
-    paint(p, {fill: i === state.knot ? "felt" : "raised", line: "felt", width: 2});
+    paint(p, {fill: points[i].knot === state.knot ? "felt" : "raised", line: "felt", width: 2});
   });
 }

@@ -58,7 +58,7 @@ function draw_place(p) {
 }
 function draw_scale(p) {
   const mm = [1, 2, 5, 10, 20, 50, 100].find(v => v * view.scale > 46) ?? 100, width = mm * view.scale;
-  const x = 18, y = view.height - view.scale_bottom;
+  const x = view.scale_left, y = view.height - view.scale_bottom;
   plot(p, [x, y - 5], [x, y], [x + width, y], [x + width, y - 5]);
   paint(p, {line: "ink2", width: 1.5});
   write(p, `${mm} mm${view.width >= 760 ? `, ${place_name()}, to scale` : ""}`, x + width + 10, y, "ink2", {align: "left"});

@@ -5,7 +5,7 @@ import {colour, is_dark, font, paint, disc} from "../look.js";
 import {array, view, layers, start_layer, trace_rows, to_px} from "./view.js";
 import {editable, shape} from "../takes/stroke.js";
 import {place_labels, number_place, draw_labels} from "./labels.js";
-import {draw_felt_points} from "./felt.js";
+import {draw_felt_points, felt_points} from "./felt.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
@@ -13,13 +13,14 @@ export function draw_ink() {
   if (!array) return;
   const {drawing, stroke} = state, plan = state.compare?.blind ? null : state.plan, strokes = drawing ? drawing.before : current_take()?.strokes ?? [];
   // Tactors are the ground of the lines, which stay above them.
-  place_labels(drawing ? [] : strokes);
+  place_labels(drawing ? [] : strokes, drawing || !strokes[stroke] ? [] : mark_places(strokes[stroke]));
   array.places.forEach((q, i) => draw_ring(p, q, i));
   if (plan) draw_felt(p, plan);
   strokes.forEach((s, i) => draw_stroke(p, s, i === stroke || drawing !== null));
   if (plan) draw_dots(p, plan);
+  if (!drawing && strokes[stroke]) draw_marks(p, strokes[stroke]);
+  array.places.forEach((_, i) => { if (number_place(i)[2]) draw_number(p, i, "ink"); });
   if (drawing || !strokes[stroke]) return;
-  draw_marks(p, strokes[stroke]);
   if (!state.placing) draw_labels(p, strokes[stroke]);
 }
 function draw_ring(p, q, i) {
@@ -28,14 +29,19 @@ function draw_ring(p, q, i) {
   paint(p, {fill: "skin", line: hot ? "ink" : "ink3", width: hot ? 2.5 : 1.5});
   draw_number(p, i, "ink");
 }
-// Writes a tactor's number: under strokes and points, and over its disc while it is driven.
+// Writes a tactor's number: over its disc while it is driven, and where a stroke crosses it in all places over that.
 export function draw_number(p, i, tone) {
-  const [x, y] = number_place(i), r = array.radius * view.scale, number = String(array.tactors[i].tactor ?? i);
+  const [x, y, crossed] = number_place(i), r = array.radius * view.scale, number = String(array.tactors[i].tactor ?? i);
   p.font = font(Math.max(11, Math.min(16, r * 0.5)), 600);
   p.textAlign = "center";
   p.textBaseline = "middle";
   p.fillStyle = colour(tone);
-  if (!state.placing && p.measureText(number).width < 2 * r) p.fillText(number, x, y + 0.5);
+  p.strokeStyle = colour("skin");
+  p.lineWidth = 4;
+  if (!state.placing && p.measureText(number).width < 2 * r) {
+    if (crossed && tone === "ink") p.strokeText(number, x, y + 0.5);
+    p.fillText(number, x, y + 0.5);
+  }
   p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {
@@ -71,6 +77,7 @@ function draw_dots(p, plan) {
     paint(p, {line: "ink", alpha: 0.38});
   }
 }
+const mark_places = s => (state.tool === "felt" ? felt_points(s) : state.tool === "points" ? editable(s).knots : []).map(q => to_px([q.x, q.y]));
 function draw_marks(p, s) {
   if (state.tool === "felt") draw_felt_points(p, s);
   if (state.tool === "points") editable(s).knots.forEach((k, n) => draw_knot(p, k, n === state.knot));

@@ -31,8 +31,8 @@ function* places_round([x, y], w, first) {
     yield [x + c * (far + w / 2), y + s * (far + HIGH_PX / 2)];
   }
 }
-// Finds places for the number of each tactor, where no stroke hides it, and for what the tactor may show.
-export function place_labels(strokes) {
+// Finds places for the number of each tactor, where no stroke and no mark hides it, and for what the tactor may show. `marks`: px.
+export function place_labels(strokes, marks = []) {
   const r = array.radius * view.scale, centres = array.places.map(to_px);
   circles = [...centres.map(c => [...c, r + 2]), ...state.outside.map(w => [...to_px(w.place), 13])];
   boxes = [];
@@ -43,10 +43,12 @@ export function place_labels(strokes) {
     const step = Math.max(1, Math.floor(s.timed.length / POINTS));
     return s.timed.filter((_, i) => i % step === 0).map(q => [...to_px(q.slice(1)), 6]);
   });
-  const off = r > 16 ? r * 0.6 : 0, hidden = ([x, y]) => path.some(q => Math.hypot(q[0] - x, q[1] - y) < 13);
-  number_places = centres.map(([x, y]) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q)) ?? [x, y]);
+  const marked = [...path, ...marks.map(q => [...q, 9])], reach_px = i => 4 + 3 * String(array.tactors[i].tactor ?? i).length;
+  const off = r > 16 ? r * 0.6 : 0, hidden = ([x, y], i) => marked.some(q => Math.hypot(q[0] - x, q[1] - y) < q[2] + reach_px(i));
+  number_places = centres.map(([x, y], i) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q, i)) ?? [x, y, true]);
   circles.push(...path);
 }
+// Returns x, y, and true where what is drawn crosses it there, too.
 export const number_place = i => number_places[i];
 // Draws the names of the ends of a stroke, where there is a place.
 export function draw_labels(p, {timed: rows}) {

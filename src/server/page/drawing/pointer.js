@@ -7,7 +7,7 @@ import {array, to_mm, to_px, view, tactor_at, zoom, zoom_by_two, pan, ARROWS} fr
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
 import {say_if_kept} from "../takes/keeping.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
-import {grasp_felt, pull, step_felt} from "./felt.js";
+import {felt_points, grasp_felt, pull, step_felt} from "./felt.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
 import {show_tactor} from "../service/device.js";
 import {fault_sentence} from "../words.js";
@@ -17,6 +17,7 @@ const LEAST_MM = 1;        // a shorter touch is a tap
 const HOLD_MS = 500;
 const LEAST_STEP_MS = 2;   // between points that are sent
 const REACH_PX = 22, LEAST_PX = 3; // of a point, and by which it is dragged
+const LINE_PX = 16, PINCH_PX = 200; // of a wheel: a line, and what zooms by e
 const LINE_MM_S = 60;
 const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1; // of a point, by keys
 export const PAUSE_S = 0.1; // between strokes of a take that were drawn, or copied, one after the other
@@ -267,8 +268,11 @@ listen(field, "wheel", e => {
   e.preventDefault();
   if (state.drawing) return;
   const r = field.getBoundingClientRect();
-  if (e.ctrlKey || Math.abs(e.deltaX) < 1) zoom(Math.exp(-e.deltaY / 400), [e.clientX - r.left, e.clientY - r.top]);
-    else pan(-e.deltaX, -e.deltaY);
+  // Two fingers on a touchpad come as a wheel, with ctrl where they pinch.
+  const by = e.deltaMode ? LINE_PX : 1;
+  if (e.ctrlKey) zoom(Math.exp(-e.deltaY * by / PINCH_PX), [e.clientX - r.left, e.clientY - r.top]);
+  else if (e.shiftKey && !e.deltaX) pan(-e.deltaY * by, 0);
+  else pan(-e.deltaX * by, -e.deltaY * by);
 }, {passive: false});
 function hover(e) { if (e.pointerType === "mouse" && array) set_hot(tactor_at(to_mm(...to_pixel(e)))); }
 function set_hot(i) {
@@ -284,8 +288,8 @@ function act_on_point(e) {
   if ((state.tool !== "points" && !felt) || !current_stroke()) return false;
   const {knots} = edited_stroke(), at = state.knot, k = knots[at], step = ARROWS[e.key];
   if (e.key === "Tab") {
-    const next = at < 0 && e.shiftKey ? knots.length - 1 : at + (e.shiftKey ? -1 : 1);
-    state.knot = knots[next] ? next : -1;
+    const all = felt ? felt_points().map(q => q.knot) : [...knots.keys()], place = all.indexOf(at);
+    state.knot = all[place < 0 && e.shiftKey ? all.length - 1 : place + (e.shiftKey ? -1 : 1)] ?? -1;
     changed("knot");
     return state.knot >= 0;
   }

@@ -7,7 +7,7 @@ import {body_corners} from "./body.js";
 
 const canvas = by_id("field");
 export const layers = {ground: by_id("ground"), ink: by_id("ink"), moment: canvas}; // each lies over the one before
-export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1, scale_bottom: 20};
+export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1, scale_bottom: 20, scale_left: 18};
 export const ARROWS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}; // keys
 export const stale = {ground: true, ink: true};
 export let array = null; // {tactors, edge, pitch, radius}
@@ -52,7 +52,7 @@ export function pan(dx, dy) { view.x += dx; view.y += dy; place(); outdated("gro
 // The free part of the stage: what tools, title and an open sheet leave.
 function insets() {
   const s = getComputedStyle(canvas), v = name => parseFloat(s.getPropertyValue(name)) || 0;
-  view.scale_bottom = v("--scale-bottom") || 20;
+  Object.assign(view, {scale_bottom: v("--scale-bottom") || 20, scale_left: v("--scale-left") || 18});
   const free = {left: v("--free-left"), right: v("--free-right"), top: v("--free-top"), bottom: v("--free-bottom")};
   const stage = by_id("stage").getBoundingClientRect(), gallery = by_id("p-gallery");
   const sheet = (gallery.matches(":popover-open") ? gallery : by_id(state.placing ? "place-bar" : "sheet-head")).getBoundingClientRect();

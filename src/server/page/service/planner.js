@@ -10,7 +10,6 @@ const COMPARED_MS = 500;   // quiet before other methods are predicted
 const COMPARED_S = 30;     // the longest take for which they are
 const MOST_KEPT = 200;
 const DRAFTED_POINTS = 2000; // of a drawing; more are thinned before they are sent
-export const LEAST_LEVEL_DB = -40;
 
 let draft = 0, busy = false, owed = false, compare_timer = 0, round = 0;
 

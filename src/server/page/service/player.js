@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops, and moves the moment on.
-import {state, changed, on_change, current_take, take_by_id, is_cardless, is_simulated, ceiling_dbfs, take_gain, marks, say, now_ms} from "../state.js";
+import {state, changed, on_change, current_take, take_by_id, is_cardless, is_simulated, ceiling_dbfs, take_gain, marks, say, now_ms, SILENT_DB} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
@@ -9,7 +9,7 @@ import {fault_text, fault_sentence} from "../words.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // before the end of a round, when what has changed is asked for
-const SILENT_DB = -60, TOGETHER_S = 0.3, ROUNDING_S = 0.001; // of sides of a comparison: the level of one, the time until both begin
+const TOGETHER_S = 0.3, ROUNDING_S = 0.001; // of sides of a comparison: the time until both begin
 const STOP_AGAIN_MS = 500; // between stops that are not answered
 const ended = new Set(), begun = new Map(); // of strokes: ends and starts that came before the answer that named them
 let speaker = null;

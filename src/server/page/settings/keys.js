@@ -12,13 +12,13 @@ import {remove_point} from "../drawing/pointer.js";
 import {show_place} from "../drawing/place.js";
 import {toggle_compare, close_compare, choose_side} from "./compare.js";
 
-const KEYS = [["Space", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E, W", "draw, straight line, edit points, move what is felt"],
+const KEYS = [["Space, X, Esc", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E, W", "draw, straight line, edit points, move what is felt"],
   ["B, 1, 2", "compare two methods, feel the one, the other"], ["F", "feel, or hear, on or off"], ["N", "new take"], ["G", "gallery"], ["0, +, −", "show all, larger, smaller"],
     ["T", "timeline: open, close"], ["J", "scrub is felt"], ["H, arrows", "place on the body"], ["Enter, Shift Enter", "in the timeline: start, range"],
     ["Shift Home", "clear both"], ["Ctrl D", "copy the stroke"], ["[, ], Z", "more time, less time, all of it"],
   [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
     ["Enter, arrows", "in the array: touch and lift, move"], ["Tab, arrows, Enter", "with Points, Felt: next point, move it (shift: less), curve or corner"],
-    ["Esc", "close; where nothing is open, stop"]];
+    ["Space, Esc", "in silence: press the button; close what is open"]];
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
 const is_field = e => e instanceof HTMLInputElement && ["text", "password"].includes(e.type);
@@ -31,7 +31,7 @@ export function new_take() {
 }
 const ACTIONS = {
   p: e => play(e.shiftKey ? {from_s: state.at_s} : undefined), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
-    w: () => choose_tool("felt"), b: toggle_compare, 1: () => choose_side(0), 2: () => choose_side(1), f: press("feel"), j: press("scrub"), n: new_take, g: press("gallery-open"),
+    w: () => choose_tool("felt"), b: toggle_compare, 1: () => choose_side(0), 2: () => choose_side(1), f: press("feel"), j: press("scrub"), n: new_take, g: press("gallery-open"), x: () => stop(),
   0: () => { look_at_all(); show_all_time(); }, "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
   h: () => { open_sheet(""); show_place(); }, t: () => fold_time(), "[": () => zoom_time(1.5), "]": () => zoom_time(1 / 1.5), z: show_all_time,
   ",": () => step_burst(-1), ".": () => step_burst(1),
@@ -67,9 +67,14 @@ export function choose_tool(tool) {
   Object.assign(state, {tool, knot: -1});
   changed("tool");
 }
-// Space stops, before any control sees it.
+// Space stops, before any control sees it; in silence it presses the button that has the focus.
+const may_sound = () => state.playing || state.stopping || state.drawing || state.speaker && state.tapped >= 0 || state.link !== "connected" || state.slow
+  || state.dbfs.some(v => v !== null) || state.status?.strokes.some(k => k.state === "started");
+let stops = false;
 for (const event of ["keydown", "keyup"]) addEventListener(event, e => {
   if (e.code !== "Space" && e.key !== " " || is_text(e.target)) return;
+  if (event === "keydown" && !e.repeat) stops = may_sound() || !e.target.closest?.("button, summary");
+  if (!stops) return;
   e.preventDefault();
   e.stopImmediatePropagation();
   if (event === "keydown" && !e.repeat) stop();

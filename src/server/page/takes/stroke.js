@@ -116,6 +116,15 @@ function catmull_rom(a, b, c, d, part) {
   });
 }
 
+// Returns the numbers of knots that are so far apart along the path: the ends, one that is wanted, and others between.
+export function handles_apart(knots, apart_mm, wanted = -1) {
+  let sum = 0;
+  const reached = knots.map((k, i) => i ? sum += Math.hypot(k.x - knots[i - 1].x, k.y - knots[i - 1].y) : 0);
+  const kept = [...new Set([0, wanted, knots.length - 1])].filter(i => knots[i]);
+  for (let i = 1; i < knots.length - 1; ++i) if (kept.every(k => Math.abs(reached[k] - reached[i]) >= apart_mm)) kept.push(i);
+  return kept.sort((a, b) => a - b);
+}
+
 // Finds knots on a base: at its corners, and between them so many that the spline stays within a tolerance, both ways.
 function find_knots(base, fit_mm = FIT_MM) {
   const rows = along(base.map(([t, x, y]) => [x, y, t]));

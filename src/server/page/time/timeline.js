@@ -140,8 +140,8 @@ for (const l of [full, mini]) {
     e.preventDefault();
     const x = e.clientX - l.canvas.getBoundingClientRect().left;
     if (e.ctrlKey) return zoom_time(Math.exp(e.deltaY / 300), to_time(l, x));
-    if (e.deltaX) show_time(full.from + e.deltaX / l.width * shown(l), shown(l));
-    scroll_to(l, l.scroll + e.deltaY);
+    const along = e.deltaX || (e.shiftKey || !most_scroll(l) ? e.deltaY : 0); // lanes that all show have nothing to scroll
+    if (along) show_time(full.from + along / l.width * shown(l), shown(l)); else scroll_to(l, l.scroll + e.deltaY);
   }, {passive: false});
   listen(l.canvas, "keydown", e => {
     const step = {ArrowLeft: -1, ArrowRight: 1}[e.key], rows = {ArrowUp: -1, ArrowDown: 1}[e.key];
