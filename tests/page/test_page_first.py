@@ -75,7 +75,7 @@ class Simulated(StudioTest):
         p.value(f"{CARDS}[3].click()")
         self.next_stroke(watcher, "started")
         p.until("heard.length >= 9 && tactor.state.dbfs.some(v => v > -30)")
-        # One button.
+        # A single button turns the sound off.
         p.click("#feel")
         p.until("document.querySelector('#feel-text').textContent === 'Hear off' && !tactor.state.speaker")
         self.assertFalse(p.value("document.querySelector('#speaker').checkVisibility()"))
@@ -110,7 +110,7 @@ class Gallery(StudioTest):
                     self.assertEqual(p.element_at(*at, "canvas"), "field", i)
                 p.value(f"{CARDS}[3].click()")
                 self.next_stroke(watcher, "started")
-                # What the card shows moves, and it stands still once the stroke has ended.
+                # The card's picture moves, and stands still once the stroke has ended.
                 p.until(f"{CARDS}[3].hasAttribute('data-playing') && tactor.state.at_s > 0.1")
                 first = p.value(f"{CARDS}[3].querySelector('canvas').toDataURL()")
                 p.until(f"{CARDS}[3].querySelector('canvas').toDataURL() !== {quoted(first)}")

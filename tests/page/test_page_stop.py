@@ -189,7 +189,7 @@ class Play(StudioTest):
             p.key(key)
             p.until(f"tactor.state.level_db === {db}")
         self.assertEqual(p.value(text), "silent")
-        # What plays is in the fader, too, and cannot pass the knob.
+        # The fader shows the loudest tactor, which cannot pass the knob.
         self.add_example(p)
         p.key("End")
         self.loop(p, watcher)
