@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strokes in a program that runs on Boost.Asio already: each UDP datagram names a preset, and is answered
-// when its stroke has been felt.
+// Strokes in a program on Boost.Asio: a UDP datagram names a preset, and is answered when it was felt.
 //   asio_server PORT [PCM]         then: echo -n park2016-1 | socat - UDP:localhost:PORT; PORT 0 takes any
 #include <array>
 #include <csignal>
@@ -28,9 +27,8 @@ asio::awaitable<void> draw(tactor::player& player, udp::socket& socket, udp::end
     std::string answer;
     try {
         const tactor::array palm = tactor::preset_array("palm-3x3");
-        // Weak, for the first time on a card: then come up in steps of 6 dB.
-        const tactor::score score(palm, tactor::make_plan(palm, tactor::preset_stroke(name)),
-                                  {.level_dbfs = -40.0});
+        const tactor::plan plan = tactor::make_plan(palm, tactor::preset_stroke(name));
+        const tactor::score score(palm, plan, {.level_dbfs = -40.0}); // weak: come up in steps of 6 dB
         const tactor::stroke_report report =
             co_await tactor::async_play(player, score, tactor::start_at::now(), asio::use_awaitable);
         answer = name + ": " + std::string(to_string(report.state));

@@ -15,7 +15,7 @@ namespace {
 struct felt {
     snd_pcm_ioplug_t io = {};
     int timer = -1;
-    std::int64_t began_ns = 0;
+    std::int64_t began_ns = 0; ///< 0: it does not run
 };
 
 std::int64_t now_ns()
@@ -45,13 +45,14 @@ int stop(snd_pcm_ioplug_t* io)
 
 snd_pcm_sframes_t pointer(snd_pcm_ioplug_t* io)
 {
-    if (self(io).began_ns == 0)
+    const auto written = static_cast<std::int64_t>(io->appl_ptr);
+    if (self(io).began_ns == 0 || written == 0)
         return 0;
     // It waits for a writer that is late, as a device without a DAC can.
-    const auto due = (now_ns() - self(io).began_ns) * static_cast<std::int64_t>(io->rate) / 1'000'000'000;
-    const auto written = static_cast<std::int64_t>(io->appl_ptr);
-    return static_cast<snd_pcm_sframes_t>((due < written ? due : written - 1) %
-                                          static_cast<std::int64_t>(io->buffer_size));
+    const std::int64_t due =
+        (now_ns() - self(io).began_ns) * static_cast<std::int64_t>(io->rate) / 1'000'000'000;
+    const std::int64_t played = due < written ? due : written - 1;
+    return static_cast<snd_pcm_sframes_t>(played % static_cast<std::int64_t>(io->buffer_size));
 }
 
 snd_pcm_sframes_t transfer(snd_pcm_ioplug_t*, const snd_pcm_channel_area_t*, snd_pcm_uframes_t,

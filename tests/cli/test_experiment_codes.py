@@ -97,7 +97,7 @@ class Codes(PersonTest):
                                ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'up to number 265 (void), and 255 is the greatest'),
                                ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8]', 'up to number 24 (void), and 15 is the greatest (more lines, or'),
                                ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8, 9], pulse_ms = 800',
-                                "array.toml:4:8: code: pulse_ms is 800, and 7"),
+                                "array.toml:4:8: code: pulse_ms is 800, and the answer's number may come 7"),
                                ('code = { channel = 15 }', 'out = { chip = "c", offset = 5, pulse_ms = 2000 }', "[sync] out: pulse_ms is 2000"),
                                ("channel = 15", "lsl = 1", "array.toml:4:16: lsl is 1"),
                                ("channel = 15", 'chip = "c", offsets = [5, 6.7]', "array.toml:4:36: an offset is 6.7")):

@@ -97,7 +97,7 @@ class AtTheTerminal(PersonTest):
         t.answer(asked, "0\n")
         t.answer(asked, "57\x7f5\n")
         t.answer(asked, "101\n")
-        t.answer("101\\s+That is no answer: 0 \\(not\\) to 100 \\(all\\) ", "1p1\n")  # a pause comes
+        t.answer("101\\s+That is no answer: 0 \\(not\\) to 100 \\(all\\): ", "1p1\n")  # a pause comes
         t.answer("A pause", "g")
         t.answer(asked, "100\n")
         t.answer("Any key ends", " ")
@@ -318,7 +318,7 @@ class ByLines(PersonTest):
     def test_a_session_goes_on_after_a_rating_of_0(self):
         self.write("short.toml", LINE)
         shown = self.refused(1, *self.args(), stdin=AGREED + "0\n57\n101\n").stdout
-        self.assertIn("How even? 0 (not) to 100 (all): That is no answer: 0 (not) to 100 (all) ", shown)
+        self.assertIn("How even? 0 (not) to 100 (all): That is no answer: 0 (not) to 100 (all): ", shown)
         self.ok(*self.args("--resume"), stdin="y\ny\n100\n9\n")
         rows = self.rows("01", "marks")
         self.assertEqual([r["rating"] for r in rows], ["0", "57", "100", "9"])

@@ -316,7 +316,7 @@ class Tasks(ExperimentTest):
         adaptive = toml("run", "quest", task="adaptive", procedure="quest", range=[0.05, 0.13], standard=0.09, **soa)
         plain = toml("run", "which", task="rate", attribute="uniformity", trials=2)
         for text, line, says in (
-                (toml("method", "a") + adaptive, "range", 'soa_s = 0.1 of motion "across" by method "a": soa_s: 0.1 s is out of bounds'),
+                (toml("method", "a") + adaptive, "range", 'soa_s = 0.072 of motion "across" by method "a": soa_s: 0.072 s is out of bounds'),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.2], standard=0.07, **soa), "values", "soa_s = 0.2 of motion"),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.06], standard=0.2, **soa), "standard", "soa_s = 0.2 of motion"),
                 (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" by method "a": soa: 0.01 s is out of bounds'),
@@ -325,7 +325,7 @@ class Tasks(ExperimentTest):
             told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says]).stderr
             self.assertIn(f"tasks.toml:{1 + [x.split(' =')[0] for x in (head + text).splitlines()].index(line)}:", told)
         # No value mends a motion that leaves the array.
-        text = head.replace("H 38", "H 380") + toml("method", "a") + adaptive.replace("0.13", "0.09")
+        text = head.replace("H 38", "H 380") + toml("method", "a") + adaptive.replace("0.13", "0.07").replace("0.09", "0.06")
         self.write("tasks.toml", text)
         told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=["leaves the array"]).stderr
         self.assertIn(f"tasks.toml:{1 + text.splitlines().index('[[motion]]')}:", told)
@@ -350,13 +350,13 @@ class Tasks(ExperimentTest):
         self.assertRegex(said, r"\d+ east park standard track \d 0\.")
 
     def test_figures_have_the_digits_of_their_values(self):
-        run = toml("run", "taps", task="constant", question="?", methods=["park"], vary="soa_s", values=[0.06, 0.07, 0.08, 0.09], standard=0.075, trials=80)
+        run = toml("run", "taps", task="constant", question="?", methods=["park"], vary="soa_s", values=[0.052, 0.058, 0.064, 0.07], standard=0.061, trials=80)
         text = measures("desk.toml", run)
         for code in ("01", "02"):
-            self.hold(text, code, spec=f"seed={code},pse=0.075,jnd=0.004")
+            self.hold(text, code, spec=f"seed={code},pse=0.061,jnd=0.004")
         told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["taps"]["psychometric"]
         said = self.ok("analyze", "study").stdout
-        self.assertRegex(said, rf"\n  pse against 0\.075 +{told['mean']['pse']:.4f} \(se 0\.\d{{4}}\), 95 % -?0\.\d{{4}} \.\.\. 0\.\d{{4}}")
+        self.assertRegex(said, rf"\n  pse against 0\.061 +{told['mean']['pse']:.4f} \(se 0\.\d{{4}}\), 95 % -?0\.\d{{4}} \.\.\. 0\.\d{{4}}")
         self.assertIn(f"jnd {told['participants']['01']['jnd']:.4f}", said)
 
     def test_the_shipped_studies_run_from_definition_to_figure(self):

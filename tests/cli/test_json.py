@@ -26,10 +26,10 @@ SAMPLES = pathlib.Path(sys.argv[4]).resolve()
 PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # Keys that an object may lack. All others are always there, null where there is no value.
-OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
+OPTIONAL = {"tactor-plan/1": {"faces", "weakened_db", "meets", "render.together", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova"}}
+            "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
@@ -165,10 +165,11 @@ class Schemas(ToolTest):
         self.write("o.toml", PAIR.partition("[sync]")[0])
         self.write("felt.toml", FELT)
         self.write("line.toml", LINE)
+        self.write("meet.toml", 2 * "[[stroke]]\npath = 'M 0 20 L 40 20'\nduration_s = 0.5\nstart_s = 0\n")
         self.write("grouped.toml", FELT.replace("name", "sessions = 2\nname", 1) + '[[group]]\nname = "a"\n')
         self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a", "--session", "1")
         self.write("measured.toml", MEASURED + TRACKS)
-        self.write("coded.toml", '[array]\npreset = "palm-3x3"\n[sync]\ncode = { channel = 9 }\n')
+        self.write("coded.toml", '[array]\npreset = "palm-3x3"\n[sync]\ncode = { channel = 9 }\n[sync.codes]\nstimulus = { by = ["motion", "method"] }\n')
         for code in "123":
             self.ok("experiment", "measured.toml", "--participant", code, "-o", "measured", "--simulate", f"seed={code},jnd=4,sigma=0.2,dprime=1")
         studies.grouped(self.dir / "compared")
@@ -180,7 +181,7 @@ class Schemas(ToolTest):
             ("plan", *BRUSH, "--duration", "1"), ("plan", "park2016-1", "--faces", "nearest"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),
-            ("plan", "--path", "M 0 0 L 10 0", "--array", "slow.toml"), ("plan", "sounds.toml"), ("plan", "eased.toml"), ("plan", "--path", "M 0 0 L 10 0", "--waveform", "noise:50-500", "--am", "20", "--envelope", "tukey"),
+            ("plan", "--path", "M 0 0 L 10 0", "--array", "slow.toml"), ("plan", "sounds.toml"), ("plan", "eased.toml"), ("plan", *BRUSH, "--duration", "1", "--overlap", "sum"), ("plan", *BRUSH, "--duration", "1", "--together", "sum"), ("plan", "meet.toml"), ("plan", "--path", "M 0 0 L 10 0", "--waveform", "noise:50-500", "--am", "20", "--envelope", "tukey"),
             ("plan", "--path", "M 0 0 L 10 0", "--waveform", "grain.wav", "--texture", "length", "--attack", "0.01", "--release", "0.02"),
             ("compare", "park2016-1"), ("compare", "park2016-1", "--faces", "nearest"), ("compare", "--path", "M 1 1 L 9 9"), ("compare", "strokes.toml", "--array", "o.toml"),
             ("compare", "park2016-1", "--observer", "low-speed", "--spread", "9"), ("compare", "park2016-1", "--spread", "5"),
@@ -189,7 +190,7 @@ class Schemas(ToolTest):
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
             ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
-            ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"))]
+            ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"), ("play", "meet.toml", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:
             self.told.setdefault(one["schema"], []).append(one)

@@ -294,9 +294,11 @@ class KeptDrive(ToolTest):
         return sorted(self.runtime.rglob("drive-time-*"))
 
     def test_runs_of_a_user_on_a_device_count_together(self):
+        self.write("alsa.conf", ALSA_CONFIG)
         self.ok("render", "park2016-1", "-o", "x.wav")
         self.refused(3, "play", *self.STILL, "-D", "nowhere")
-        self.refused(2, "play", *self.STILL, "--max-drive-s", "0", "-D", "felt")
+        self.refused(2, "play", *self.STILL, "--max-drive-s", "0", "-D", "null")
+        self.write("alsa.conf", ALSA_CONFIG + FELT_CONFIG)
         self.assertEqual(self.kept(), [])  # nothing was opened
         self.assertEqual(self.cuts(), 0)
         self.assertEqual([(f.name, f.parent.stat().st_mode & 0o777) for f in self.kept()], [("drive-time-felt", 0o700)])
@@ -325,13 +327,12 @@ class KeptDrive(ToolTest):
 
     def test_a_run_beside_a_service_counts_together_with_it(self):
         config = "[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n"
-        s = Server(self, config=config, env={"XDG_RUNTIME_DIR": str(self.runtime)}, device=("-D", "felt"))
-        client = s.client()
+        s = Server(self, "--log", self.dir / "log", config=config, env={"XDG_RUNTIME_DIR": str(self.runtime)}, device=("-D", "felt"))
         self.ok("play", *self.STILL, "--duration", "0.1", "--socket", s.where["socket"])  # its stream runs from now on
         self.assertEqual(self.cuts(seconds=0.39), 0)
         self.run_tool("play", *self.STILL, "--duration", "0.3", "--socket", s.where["socket"])
-        self.assertEqual(client.ok("status")["counters"]["drives_cut"], 1)
         self.assertEqual(s.terminate()[0], 0)
+        self.assertIn("cut short or silent: a tactor was driven for too long", (self.dir / "log").read_text())
 
     def test_a_file_that_is_cut_counts_as_the_limit_and_is_said_once(self):
         self.assertEqual(self.cuts(seconds=0.05), 0)
@@ -340,9 +341,10 @@ class KeptDrive(ToolTest):
         check = self.ok("check", "-D", "felt").stdout
         self.assertRegex(check, r"(?m)^warning +drive time ")
         r = self.play(seconds=0.05)
-        self.assertEqual(r.stderr, f"tactor: warning: {file} cannot be read as a whole: each tactor counts as driven for as long as it may be\n")
-        self.assertEqual(json.loads(r.stdout)["counters"]["drives_cut"], 1)
-        self.assertEqual(self.play(seconds=0.05).stderr, "")
+        warning = f"tactor: warning: {file} cannot be read as a whole: each tactor counts as driven for as long as it may be\n"
+        self.assertEqual(r.stderr.count(warning), 1)
+        self.assertGreater(json.loads(r.stdout)["counters"]["drives_cut"], 0)
+        self.assertNotIn(str(file), self.play(seconds=0.05).stderr)
         self.assertRegex(self.ok("check", "-D", "felt").stdout, r"(?m)^ok +drive time ")
 
 

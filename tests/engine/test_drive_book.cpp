@@ -388,8 +388,9 @@ TEST_CASE("each channel begins with the level that an earlier run has left")
     played.play(slow_rate);
     const std::vector<std::vector<double>> used{played.channel(4)};
     const std::vector<std::vector<double>> fresh{played.channel(3)};
-    CHECK(driven_s(used) == doctest::Approx(0.1).epsilon(0.4));
-    CHECK(driven_s(fresh) == doctest::Approx(0.5).epsilon(0.05));
+    CHECK(driven_s(used) >= 0.06);
+    CHECK(driven_s(used) <= 0.14);
+    CHECK(driven_s(fresh) >= 0.48);
 }
 
 TEST_CASE("a long stroke is entered while it sounds, so that a killed run counts")

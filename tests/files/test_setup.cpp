@@ -203,7 +203,7 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = 256") ==
           "t.toml:4:12: stimulus is 256 (allowed: 1 to 255)");
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = { by = [\"motions\"] }") ==
-          "t.toml:4:19: by has \"motions\" (some of run, motion, method, value, interval, answer)");
+          "t.toml:4:19: by has 'motions' (some of run, motion, method, value, interval, answer)");
     CHECK(complaint("[sync.codes]\nstimulus = 1\n") ==
           "t.toml:1:1: nothing sends these numbers (code = { channel }, or { chip, offsets })");
     CHECK(complaint("[sync]\nchannel = 4\ncode = { channel = 4 }\n") ==

@@ -69,7 +69,7 @@ double share(const layout& l, double step_mm, const Count& counts)
 bool warns(const plan& p, const std::string& of)
 {
     return std::any_of(p.warnings.begin(), p.warnings.end(),
-                       [&](const std::string& w) { return has(w, of); });
+                       [&](const std::string& w) { return w.find(of) != w.npos; });
 }
 
 constexpr phantom_kind followed[] = {phantom_kind::inverse_distance, phantom_kind::barycentric,

@@ -142,9 +142,10 @@ TEST_CASE(
     rig.clocks.clear();
     const std::uint64_t together = listen(rig.card, 6).first;
     CHECK(listen(rig.card, 7).first == together);
-    CHECK((together - listen(rig.card, 0).first) % block == 0);
-    CHECK(together - listen(rig.card, 0).last <= 2);
-    CHECK(together - listen(rig.card, 1).last <= 2);
+    const sounds first = listen(rig.card, 0);
+    const sounds second = listen(rig.card, 1);
+    CHECK((together - std::max(first.first, second.first)) % block == 0);
+    CHECK(together - std::max(first.last, second.last) <= 2);
 }
 
 TEST_CASE("strokes of one file that repeat end with the same round")
@@ -166,11 +167,12 @@ TEST_CASE("strokes of one file that repeat end with the same round")
         CHECK(c.box->stroke_messages(n).size() == 2);
     }
     rig.clocks.clear();
-    // Rounds of 0.6 s, four in a submission: as many rounds of the one as of the other.
-    CHECK(listen(rig.card, 8).first - listen(rig.card, 0).first == rate / 2);
-    CHECK(listen(rig.card, 8).last - listen(rig.card, 0).last == rate / 2);
-    CHECK((listen(rig.card, 0).last - listen(rig.card, 0).first + rate / 2) % (4 * 6 * rate / 10) <
-          rate / 2 + 10);
+    // Rounds last 0.6 s, and a submission has four: both strokes have as many.
+    const sounds other = listen(rig.card, 8);
+    constexpr std::uint64_t four_rounds = 4 * 6 * rate / 10;
+    const sounds one = listen(rig.card, 0); // and half a second of silence before the next round
+    CHECK((one.last - one.first + rate / 2 + 10) % four_rounds < 20);
+    CHECK(other.last - one.last == other.first - one.first);
 }
 
 TEST_CASE("a round lasts as long as its client says, or as its strokes")

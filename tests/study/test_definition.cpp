@@ -320,12 +320,14 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + line,
          "e.toml:17:", "labels has 0 texts for a visual analogue scale (one for each end)");
     says(head + motion + methods + line + "labels = [\"a\"]\n", "e.toml:18:", "labels has 1 text for");
-    says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n", "e.toml:18:", "labels has 3 texts for a visual analogue scale");
+    says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n",
+         "e.toml:18:", "labels has 3 texts for a visual analogue scale");
     says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n",
          "e.toml:17:", "choices is not of runs that rate (leave it out)");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
          "e.toml:17:", "choices has 1 text (one for each of the two answers)");
-    says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n", "e.toml:17:", "choices has 3 texts");
+    says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n",
+         "e.toml:17:", "choices has 3 texts");
     says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
     says(head + motion + methods + run + run, "e.toml:18:", "one name");
     says(head + "order = \"latn\"\n" + motion + methods + run, "e.toml:3:", "did you mean 'latin'");

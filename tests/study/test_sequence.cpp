@@ -586,7 +586,7 @@ TEST_CASE("a stimulus that cannot be planned or played is refused with its motio
     const std::string loud = refusal("path = \"M0 0H40\"", "{ sl_db = 60 }");
     CHECK_MESSAGE(has(loud, "lower level.sl_db by"), loud);
     const std::string own = refusal("path = \"M0 0H40\"", "{ dbfs = -12 }", "sl_db = 60\n");
-    CHECK_MESSAGE(has(own, "method \"brush\" (line 7)"), own);
+    CHECK_MESSAGE(has(own, "x.toml:10:9: motion \"m\" by method \"brush\": tactor "), own);
     CHECK_MESSAGE(has(own, "lower sl_db by"), own);
 }
 

@@ -538,7 +538,7 @@ TEST_CASE("codes that cannot be sent are refused by name before the session")
         refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5, 6], pulse_ms = 250") ==
         "array.toml:6:8: code: pulse_ms is 250, and the answer's number may come 200 ms after the stimulus "
         "of "
-        "motion \"east\" by method \"b\" begins (a shorter pulse_ms, or longer stimuli)");
+        "motion \"east\" by method \"a\" begins (a shorter pulse_ms, or longer stimuli)");
     CHECK(refusal("bit_ms = 1.5", "bit_ms = 4") == "array.toml:6:8: code: it takes 0.036 s, and the gap "
                                                    "between two stimuli is 0.0321 s (a longer gap_s in "
                                                    "the definition, or a shorter bit_ms)");

@@ -248,7 +248,8 @@ void print_measures(const study::run_analysis& r)
             else if (k == 0 && t.t && study::measured_against(r.run))
                 test = ", " + t_text(t);
             say(stdout, "  {:<22} {:>8} (se {}), 95 % {}{}\n", figure_text(r.run, figure, k == 0),
-                value_text(t.mean, decimals), value_text(t.se, decimals), interval_text(t.ci, decimals), test);
+                value_text(t.mean, decimals), value_text(t.se, decimals), interval_text(t.ci, decimals),
+                test);
         }
         if (!c.name.empty())
             continue;
@@ -259,8 +260,7 @@ void print_measures(const study::run_analysis& r)
                 row += fmt::format("  {} {}", figure, value_text(value, count_decimals(r.run, figure)));
             if (const auto& b = c.people[i].bootstrap; b.p_gof)
                 row += fmt::format("  {} {}  fit p {}", c.figures.front().first,
-                                   interval_text(b.threshold,
-                                                 count_decimals(r.run, c.figures.front().first)),
+                                   interval_text(b.threshold, count_decimals(r.run, c.figures.front().first)),
                                    p_text(b.p_gof));
             say(stdout, "    sub-{:<{}}{}\n", r.codes[i], w, row);
         }

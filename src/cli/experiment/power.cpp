@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <string>
@@ -181,10 +182,10 @@ void write_part(const std::string& file, json j, const study::power_request& ask
 void check_other_part(const std::string& file, const json& common, const study::power_request& asked)
 {
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
+    if (!std::filesystem::is_regular_file(file, ignored))
         return;
-    const json there =
-        json::parse(std::string_view(detail::read_text_file(file, detail::max_setup_bytes)), nullptr, false);
+    std::ifstream stream(file); // read_text_file() would note an input, which no output may replace
+    const json there = json::parse(stream, nullptr, false);
     if (!there.is_object() || there.value("schema", json()) != common.at("schema"))
         return;
     json own = common;

@@ -640,8 +640,12 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         const std::string of = fmt::format("motion \"{}\" by method \"{}\"", motion.name, method.name);
         if (option != nullptr)
             if (const auto at = method.keys.find(options::index(*option)); at != method.keys.end())
-                throw error(e.kind(), at->second.where,
-                            fmt::format("{}: {}: {}", of, at->second.key, e.why()), hint);
+                throw error(
+                    e.kind(), at->second.where,
+                    fmt::format("{}: {}: {}", of,
+                                e.subject() == e.field() ? at->second.key : detail::plain(e.subject()),
+                                e.why()),
+                    hint);
         throw error(
             e.kind(), motion.where,
             fmt::format("{} (line {}): {}: {}", of, method.where.line, detail::plain(e.subject()), e.why()),

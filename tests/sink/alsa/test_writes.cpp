@@ -215,7 +215,8 @@ TEST_CASE("the played position never goes back, whatever delay a driver reports"
     const stream_position p = s.out->position();
     REQUIRE(p.valid);
     REQUIRE(p.played == 96);
-    const device_says it({.delay = static_cast<snd_pcm_sframes_t>(p.written) - 40});
+    const device_answers late{.delay = static_cast<snd_pcm_sframes_t>(p.written) - 40};
+    const device_says it(late);
     CHECK(s.out->position().played == 96);
 }
 
@@ -223,7 +224,8 @@ TEST_CASE("the drive time of a PCM on a card is kept under the card's place")
 {
     alsa_options o{.channels = 2};
     CHECK(open_alsa(o)->setup().device.empty()); // the null device
-    const device_says it({.card = 30});
+    const device_answers card{.card = 30};
+    const device_says it(card);
     CHECK(open_alsa(o)->setup().device == "hw:CARD=30,DEV=0,SUBDEV=0");
 }
 

@@ -75,7 +75,7 @@ const side_of = new Map(); // by number of a stroke
 export function tell_level(anew = false) {
   const on = state.compare?.on, now = `${on} ${state.level_db}`;
   if (!is_connected() || !anew && sent_level === now) return;
-  if (!state.compare || !sent_level?.startsWith(`${on} `)) tell("level", {db: state.compare ? SILENT_DB : state.level_db});
+  if (!state.compare || !sent_level?.startsWith(`${on} `)) tell("level", {db: !state.compare ? state.level_db : SILENT_DB});
   sent_level = now;
   if (state.compare) for (const n of state.playing?.numbers ?? []) if (side_of.get(n) === on) tell("level", {db: state.level_db, stroke: n});
 }

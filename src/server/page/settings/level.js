@@ -15,7 +15,7 @@ const KEYS = {ArrowRight: KEY_DB, ArrowUp: KEY_DB, ArrowLeft: -KEY_DB, ArrowDown
 const SILENCE_DB = LEAST_DB - STEP_DB;
 const input = make("input", {id: "level-db", type: "range", min: SILENCE_DB, max: 0, step: STEP_DB});
 const output = make("output", {for: "level-db"}), bar = make("i"), ticks = make("div", {class: "ticks", "aria-hidden": "true"});
-const limited = db => db < LEAST_DB ? SILENT_DB : Math.min(0, db);
+const limited = db => db >= LEAST_DB ? Math.min(0, db) : SILENT_DB;
 const place = db => 100 * (Math.max(SILENCE_DB, db) - SILENCE_DB) / (BEYOND_DB - SILENCE_DB); // per cent of the groove
 let tapped = false;
 function set_level(db) {
