@@ -62,8 +62,9 @@ void score_table::follow_gains() noexcept
     if (!link_.gains.take_changed())
         return;
     for (std::uint32_t i = 0; i < top_; ++i)
-        if (entries_[i].used)
-            follow_gain(entries_[i], ramp_);
+        // Before its first point nothing of a live stroke sounds.
+        if (entry& e = entries_[i]; e.used)
+            follow_gain(e, e.base == never ? 0 : ramp_);
 }
 
 void score_table::forget(entry& e) noexcept
