@@ -233,16 +233,16 @@ class Play(StudioTest):
     def test_a_loop_goes_on_while_its_page_does_nothing(self):
         s = self.serve()
         p, watcher = self.ready(s)
-        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.add_example(p)
         p.value("document.querySelector('[data-value=continuous]').click()")
         number = self.loop(p, watcher)
         total_s = p.value("tactor.state.playing.total_s")
         asker = s.client()
         asker.ok("subscribe", events=["levels"], levels_hz=10)
         clock = asker.notification(lambda m: m["method"] == "levels")["params"]["t_s"]
-        p.send("Runtime.evaluate", expression=f"for (const end = performance.now() + {4000 * total_s}; performance.now() < end;);")
+        p.browser.send("Runtime.evaluate", p.session, expression=f"for (const end = performance.now() + {2500 * total_s}; performance.now() < end;);")
         t = clock
-        while t < clock + 3.5 * total_s:
+        while t < clock + 2.2 * total_s:
             levels = asker.notification(lambda m: m["method"] == "levels")["params"]
             t = levels["t_s"]
             self.assertTrue(any(v is not None for v in levels["dbfs"]), t - clock)
@@ -272,7 +272,7 @@ class Play(StudioTest):
 
     def test_a_loop_that_is_switched_on_late_begins_without_a_gap(self):
         p, watcher = self.ready(self.serve())
-        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.add_example(p)
         self.planned(p)
         number = self.play(p, watcher)
         p.key("KeyL", "l")
