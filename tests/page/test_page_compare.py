@@ -178,7 +178,7 @@ class Felt(StudioTest):
         p = self.felt()
         points, before = self.diamonds(p), p.value(f"JSON.stringify({TAKE}.strokes[0].timed)")
         at = len(points) // 2
-        wish = [points[at][0] + 2, points[at][1] + 2]
+        wish = [points[at][0] + 2, points[at][1] - 2]
         self.assertIn("Felt here, within", self.pull(p, points[at], wish))
         for a, b in zip(self.diamonds(p)[at], wish):
             self.assertAlmostEqual(a, b, delta=0.3)
