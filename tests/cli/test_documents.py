@@ -193,7 +193,7 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
     "man/tactor-raspberry-pi.7": [
         (r"^tactor (play|check)(?!.*--no-gpio)", r"tactor \1 --no-gpio", "the GPIO lines of a Raspberry Pi are left alone"),
         (r" --require-realtime", "", "rights of step 4 are not asked for"),
-        (r"/tmp/", "", "the test's own folder"),
+        (r"/tmp/", "pi-", "the test's own folder"),
     ],
     "man/tactor-json.5": [(r"/usr/local/share/tactor/", str(TOOL.parent / "schemas") + "/", "schemas of the build")],
 }
