@@ -70,10 +70,9 @@ try {
         else if (stroke)
             stroke->end(); // fades out
     }
-    if (!stroke)
-        return 0;
-    stroke->end();
-    return player.wait(stroke->id())->state == tactor::state_kind::finished ? 0 : 1;
+    if (stroke)
+        stroke->end();
+    return !stroke || player.wait(stroke->id())->state == tactor::state_kind::finished ? 0 : 1;
 } catch (const std::exception& e) {
     std::fprintf(stderr, "live_touch: %s\n", e.what());
     return 1;

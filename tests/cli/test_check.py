@@ -233,15 +233,13 @@ class Walk(ToolTest):
         self.assertIn("above its limit of -41 dBFS", self.walk([0, 1], "--max-dbfs", "-41", "--level-dbfs", "-40", status=2).stderr)
         self.refused(2, "check", "--max-dbfs", "-12")
         self.refused(2, "check", "--walk", "--max-dbfs", "1")
-        # The guide shows the head of a file that a walk has written, with one line more.
+        # The guide shows a line for the head of a file that a walk has written.
         self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "-o", "palm.toml", array=())
         for guide in ("start.md", "study.md"):
-            shown = re.search(r"(?m)^    \[array\]\n    .*\n    max_dbfs = (-\d+) .*\n", (ROOT / "man/guide" / guide).read_text(encoding="utf-8"))
-            block, limit = shown[0].replace("    ", "", 1).replace("\n    ", "\n"), int(shown[1])
-            head = "".join(block.splitlines(keepends=True)[:2])
+            limit = int(re.search(r"under\s`\[array\]`.{1,10}`max_dbfs = (-\d+)`", (ROOT / "man/guide" / guide).read_text(encoding="utf-8"), re.S)[1])
             felt = (self.dir / "palm.toml").read_text()
-            self.assertIn(head, felt)
-            self.write("limited.toml", felt.replace(head, block, 1))
+            self.assertIn("[array]\n", felt)
+            self.write("limited.toml", felt.replace("[array]\n", f"[array]\nmax_dbfs = {limit}\n", 1))
             self.refused(2, "render", "park2016-3", "--array", "limited.toml", "--level-dbfs", limit + 1, "-o", "x.wav",
                          says=[f"above its limit of {limit} dBFS"])
         self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "--max-dbfs", "-12", "-o", "all.toml", array=())
