@@ -95,7 +95,7 @@ void bind_tool(py::module_& m)
         .def("svg",
              [](const compared& c, double width_mm) {
                  const without_lock free;
-                 return plot::to_svg(draw(c, width_mm));
+                 return plot::to_bytes(draw(c, width_mm), plot::file_format::svg, plot::usual_dpi);
              })
         .def("save",
              [](const compared& c, const std::string& file, double width_mm, unsigned dpi, bool force) {
@@ -105,7 +105,8 @@ void bind_tool(py::module_& m)
     m.def("svg",
           [](const array_handle& on, const plans& all, const std::string& name, const std::string& view) {
               const without_lock free;
-              return plot::to_svg(draw(on, all, name, nullptr, view, plot::figure_options().width_mm));
+              return plot::to_bytes(draw(on, all, name, nullptr, view, plot::figure_options().width_mm),
+                                    plot::file_format::svg, plot::usual_dpi);
           });
     m.def("save_picture",
           [](const array_handle& on, const plans& all, const std::string& name, const score* sound,

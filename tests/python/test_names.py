@@ -51,7 +51,7 @@ HAS_NOT = {
     "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",
-    "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings code_settings edge_kind pull_kind":
+    "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings code_settings code_numbering edge_kind pull_kind":
         "lines are the configuration's; a player opens them",
     "reopen_alsa": "make a Player again",
     "drive_time_fault": "a Player warns",
@@ -66,7 +66,7 @@ def public_names(root):
     names = set()
     for header in (root / "include/tactor").glob("*.hpp"):
         text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8"))
-        names |= set(re.findall(r"^(?:class|struct|enum class)\s+(?:TACTOR_API\s+)?(\w+)\b(?!::)(?=[^;]*\{)", text, re.M))
+        names |= set(re.findall(r"^(?:class|struct|enum class)\s+(?:\[\[\w+\]\]\s+)?(?:TACTOR_API\s+)?(\w+)\b(?!::)(?=[^;]*\{)", text, re.M))
         names |= set(re.findall(r"^(?:\[\[\w+\]\] )*TACTOR_API\s[^;{(]*?\b(\w+)(?:<\w+>)?\s*\(", text, re.M))
         names |= set(re.findall(r"^inline\s[^;{(]*?\b(\w+)\s*[(=]", text, re.M))
         names |= set(re.findall(r"^using (\w+) =", text, re.M))

@@ -94,7 +94,7 @@ class RemoteStroke(Reply):
         self.weakened_db = 0.0
         """How much weaker than asked for its strokes are, so that no tactor exceeds the level, dB; 0 or less."""
         self.meets: dict[str, _t.Any] | None = None
-        """Where they would be loudest: "tactor", "at_s" and "strokes" (from 0); None where they are not weakened."""
+        """Place where they would be loudest, with "tactor", "at_s" and "strokes" (from 0); None where they are not weakened."""
 
     @property
     def id(self) -> int | None:

@@ -133,8 +133,8 @@ class Score(_Value):
 
     @property
     def meets(self) -> dict[str, _t.Any] | None:
-        """Where it would be loudest: "tactor", "at" (s) and "plans" (numbers of those that sound there); None where it is not weakened."""
-        return _t.cast(_t.Any, self._core.meets)
+        """Place where it would be loudest, with "tactor", "at" (s) and "plans" (numbers of those that sound there); None where it is not weakened."""
+        return _t.cast("dict[str, _t.Any] | None", self._core.meets)
 
     def render(self, dtype: _DTypeLike = "float32", *, start: int = 0, frames: int | None = None,
                out: _NDArray[_t.Any] | None = None) -> _NDArray[_t.Any]:
