@@ -70,7 +70,7 @@ function lane_moved(e) {
   const high = (held.l.height - 8 - y) / (held.l.curves - 20) + held.rise, limited = (v, a, b) => Math.min(b, Math.max(a, v));
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
   if (held.kind === "scroll") return scroll_to(held.l, held.from + (y - held.y) * held.by);
-  // What is only chosen does not move; what is dragged keeps its distance from the pointer.
+  // A handle that is only chosen stays in its place; a dragged one keeps its distance from the pointer.
   if (Math.abs(held.rise === undefined ? x - held.x : y - held.y) < 3 && !held.moved) return;
   const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t + held.off_s, e, held.index, held.kind !== "move");
   held.moved = true;
