@@ -26,9 +26,10 @@ SHAPES = ["line", "circle", "eight", "spiral"]
 # How each array of examples is shown.
 ON_ARRAY = {"arm-line-4": '--path "M 0 0 L 120 0"', "lra-row-3": '--path "M 0 0 H 60" --sl 12 --carrier 170'}
 PYTHON = "python-reference/index"
+EXAMPLES = [f"examples/{folder}/README" for folder in ("python", "jspsych", "octave", "psychopy", "systemd")]
 SECTIONS = {"Start": ["start", "safety", "studio", "how-to", "study", "examples/experiments/README", "runners", "psychportaudio", "files", "cpp", "python", "parts", "machines", "examples/rtp/README", "questions", "trouble", "glossary"],
             "Understand": ["method", "predictions", "performance", "compared", "architecture"],
-            "Reference": ["manuals", "cpp-reference", PYTHON, "schemas", "gallery", "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
+            "Reference": ["manuals", "cpp-reference", PYTHON, "schemas", "gallery", *EXAMPLES, "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
 
 
 def on_the_site(text, root):
@@ -117,6 +118,9 @@ def gallery(root, stage, tool):
 def stage_pages(root, stage, tool, schemas, reference):
     """Writes what Sphinx reads: all pages, side by side, with pictures and files beside them."""
     shutil.copytree(root / "examples", stage / "examples", ignore=shutil.ignore_patterns("debian"))
+    for picture in (root / "man/guide").iterdir():
+        if picture.suffix in (".svg", ".png"):
+            shutil.copy(picture, stage)
     pages = {page.name for page in (root / "man").glob("*.[1-8]")}
     (stage / "manual").mkdir()
     for page in sorted((root / "man").glob("*.[1-8]")):

@@ -284,10 +284,10 @@ class Goldens(PlotTest):
     NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
     PICTURES = (
         ("examples/park2016-3.svg", "park2016-3", "--animate"),
-        ("examples/reach.svg", ROOT / "examples/strokes/reach.toml"),
-        ("examples/knocks.svg", KNOCKS),
-        ("examples/textures.svg", ROOT / "examples/strokes/textures.toml", "--view", "wave"),
-        ("examples/comb.svg", ROOT / "examples/strokes/comb.toml", "--view", "wave"),
+        ("man/guide/reach.svg", ROOT / "examples/strokes/reach.toml"),
+        ("man/guide/knocks.svg", KNOCKS),
+        ("man/guide/textures.svg", ROOT / "examples/strokes/textures.toml", "--view", "wave"),
+        ("tests/plot/golden/comb.svg", ROOT / "examples/strokes/comb.toml", "--view", "wave"),
         ("tests/plot/golden/tactile-brush.svg", "park2016-1", *BRUSH),
         ("tests/plot/golden/continuous.svg", "park2016-2", "--algorithm", "continuous", "--phantom", "barycentric"),
         ("tests/plot/golden/wave.svg", "park2016-1", "--view", "wave"),
