@@ -126,7 +126,7 @@ class Compare(StudioTest):
     def test_a_study_of_it_runs(self):
         p, _ = self.compare(self.serve())
         text = self.runs(self.study(p, 3))
-        self.assertEqual(p.value(TEXT.format("#study-command")), "tactor experiment two-methods.toml --participant P01 -o results")
+        self.assertEqual(p.value(TEXT.format("#study-command")), "tactor experiment two-methods.toml --participant P01 -o results -D array")
         for line in ('question = "Which \\"one\\"?"', 'name = "park2016"', 'name = "tactile-brush"', f"name = {quoted(self.take(p)['name'])}"):
             self.assertIn(f"{line}\n", text)
 

@@ -169,7 +169,7 @@ SETTINGS = (
     {"algorithm": "continuous", "phantom": "barycentric", "waveform": "noise:100-400", "noise_seed": 7, "am": "30:0.5", "outside": "error"},
     {"algorithm": "park2016", "faces": "nearest", "soa": 0.06, "burst": 0.03, "carrier": 200, "phase": "burst", "attack": 0.004, "release": 0.006, "envelope": "linear"},
     {"waveform": "square", "am": "30", "slope": 0.3, "intercept": 0.05, "timing": "fit", "min_duration": 0.01, "ramp": 0.003},
-    {"algorithm": "tactile-brush", "snap": True, "drop_points": True, "overlap": "max", "intensity_scale": "stevens", "stevens_exponent": 0.9},
+    {"algorithm": "tactile-brush", "snap": True, "drop_points": True, "overlap": "max", "together": "sum", "intensity_scale": "stevens", "stevens_exponent": 0.9},
     {"compensate": "low-speed", "sigma_mm": 4, "sigma_v_mm_s": 90},
     {"sl": 20, "phantom": "log"})
 NOT_SET = {"level_dbfs", "duration", "speed", "intensity_max"}  # the page's level, what is drawn, and what recordings alone have

@@ -83,7 +83,8 @@ class Screens(StudioTest):
             with self.subTest(size=size):
                 p, _ = self.ready(s, size=size, fingers=size[0] < 1100)
                 self.assertEqual(p.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), list(size))
-                boxes = p.value(f"""{self.CONTROLS}.map(e => {{ const r = (e.type === 'range' ? e.parentElement : e).getBoundingClientRect();
+                boxes = p.value(f"""{self.CONTROLS}.map(e => {{ const all = e.type === 'range' ? [e, e.parentElement] : [e];
+                    const r = all.map(b => b.getBoundingClientRect()).reduce((a, b) => b.height > a.height ? b : a);
                     return [e.id || e.dataset.tool || e.textContent.trim() || e.getAttribute('aria-label'), r.x, r.y, r.width, r.height]; }})""")
                 for name, x, y, w, h in boxes:
                     with self.subTest(size=size, name=name):
