@@ -279,7 +279,7 @@ py::tuple report_tuple(const stroke_report& r)
     if (r.started_ns)
         started_s = static_cast<double>(*r.started_ns) * 1e-9;
     return py::make_tuple(r.id.number, r.state, r.why, r.frames, started_s, r.late_s, r.delay, r.held_points,
-                          r.outside_points);
+                          r.outside_points, r.doubt);
 }
 
 py::object next_event(player_handle& h)

@@ -68,11 +68,12 @@ struct planned : session::piece {
     render_options render = {};
     std::uint64_t rounds = 1; ///< how often one submission plays them, each round_s() after the last
     double least_round_s = 0.0;
+    double pause_s = 0.0;                  ///< silence after each round
     detail::observer_choice observer = {}; ///< of the view percept
     double over_db = 0.0;                  ///< of a view: how much weaker it must be to be played
     weakening weakened = {};               ///< of all plans together
 
-    double round_s() const { return std::max(total_s(), least_round_s); }
+    double round_s() const { return std::max(total_s(), least_round_s) + pause_s; }
     std::vector<std::string> warnings() const;
     /// Returns the bursts of one round; a continuous stroke counts as one.
     double count_bursts() const;

@@ -245,6 +245,7 @@ private:
         double gain_db = 0.0;     ///< of all its strokes
         std::uint64_t rounds = 1; ///< 0: until they are cancelled
         double round_s = 0.0;     ///< least length of a round
+        double pause_s = 0.0;     ///< silence after it
         view_choice view = {};
         std::optional<double> draft = {};
 

@@ -72,7 +72,7 @@ void service::read_job(plan_job& j) const
     const json& params = j.params;
     if (j.plays())
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
-                            "repeat", "round_s"});
+                            "repeat", "round_s", "pause_s"});
     else if (!j.is_file())
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
                             "draft", "bins", "observer"});
@@ -92,6 +92,7 @@ void service::read_job(plan_job& j) const
         j.rounds =
             *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
     j.round_s = number_or(params, "round_s", {0.0, options_.plans.max_stroke_s}, 0.0);
+    j.pause_s = number_or(params, "pause_s", {0.0, options_.plans.max_stroke_s}, 0.0);
 }
 
 // Makes the result. Runs on a planner's thread.
@@ -123,6 +124,7 @@ void service::make_scores(plan_job& j, const go_on_check& go_on)
 {
     j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, j.settled, go_on));
     j.made->least_round_s = j.round_s;
+    j.made->pause_s = j.pause_s;
     j.made->rounds = count_rounds(j, *j.made);
     for (std::size_t i = 0; i < j.made->plans.size(); ++i) {
         go_on();

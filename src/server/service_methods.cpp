@@ -236,7 +236,8 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
                                                 {"started_unix_s", from(rt::unix_ns() - options_.now_ns())},
                                                 {"late_s", how.late_s},
                                                 {"held_points", how.held_points},
-                                                {"outside_points", how.outside_points}});
+                                                {"outside_points", how.outside_points},
+                                                {"doubt", how.doubt}});
     if (!r.released) {
         r.held.push_back(std::move(n));
         return;

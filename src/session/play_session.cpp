@@ -110,6 +110,10 @@ std::vector<double> play_session::drive_levels_s() const
 std::optional<stroke_report> play_session::submit(const score& s, start_at start)
 {
     player& p = *stream_.current();
+    if (followed_by_) {
+        playing_ = *std::exchange(followed_by_, {});
+        return {};
+    }
     try {
         playing_ = p.submit(s, options_.arm ? start_at::trigger() : start);
     } catch (const error&) {
@@ -119,6 +123,21 @@ std::optional<stroke_report> play_session::submit(const score& s, start_at start
         return stroke_report{.state = state_kind::interrupted, .reason = end->reason, .why = end->why};
     }
     return {};
+}
+
+void play_session::follow_with(const score* s, std::uint64_t frames) noexcept
+{
+    follower_ = s;
+    follows_after_ = frames;
+}
+
+void play_session::submit_follower()
+{
+    player& p = *stream_.current();
+    const auto first = follower_ != nullptr ? p.first_frame(playing_) : std::nullopt;
+    if (!first || p.ended())
+        return;
+    followed_by_ = p.submit(*std::exchange(follower_, nullptr), start_at::frame(*first + follows_after_));
 }
 
 live_stroke play_session::begin(const live_options& o)
@@ -144,6 +163,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
                 wait_for(-1, settled_ms);
             return *report;
         }
+        submit_follower();
         const look l = each ? each() : look{};
         const bool go_on =
             wait_for(stream_.descriptor(), milliseconds_until(stream_.step(), l.most_ms), l.descriptor);
@@ -170,6 +190,7 @@ bool play_session::reopen()
 {
     if (!waits())
         return false;
+    followed_by_.reset(); // of the stream that ended
     for (bool announced = false;;) {
         const auto again = stream_.step();
         if (stream_.is_over())

@@ -56,6 +56,10 @@ public:
     /// Hands a score to the stream. With stream_options::arm it waits for the trigger instead of `start`.
     /// Returns a report if the stream has ended, else nothing. \throws error.
     std::optional<stroke_report> submit(const score& s, start_at start = start_at::now());
+    /// Names the score that follows the next one submitted, `frames` after its first frame. follow() hands it
+    /// to the stream once that frame is known, and the next submit() takes it. Null: none follows. `s` lives
+    /// as long as it is named.
+    void follow_with(const score* s, std::uint64_t frames) noexcept;
     /// Begins a stroke that points move. \throws error.
     live_stroke begin(const live_options& o);
     /// Follows what was submitted or begun to its end, or until a signal comes, see signal(), and looks at it
@@ -98,6 +102,7 @@ private:
     stream_parts make_parts(alsa_options device, const stream_source& source);
     /// Logs why the device could not be opened, if so. \throws error (bad_input) if it never can be.
     void check_failure();
+    void submit_follower();
 
     stream_options options_;
     const environment& environment_;
@@ -107,6 +112,9 @@ private:
     bool locked_ = false;
     device_stream stream_;
     stroke_id playing_ = {};
+    const score* follower_ = nullptr;           ///< not handed to the stream yet
+    std::uint64_t follows_after_ = 0;           ///< first frame to first frame
+    std::optional<stroke_id> followed_by_ = {}; ///< of the stream that runs
     unsigned reopened_ = 0;
     int signal_ = 0;
 };

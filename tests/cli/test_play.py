@@ -69,6 +69,28 @@ class Play(ToolTest):
             self.assertLessEqual(max(abs(a - b) for a, b in zip(heard[9:], heard)), 32768 * 0.0328)
             raw.unlink()
 
+    def test_strokes_are_repeated_with_a_pause(self):
+        raw = self.dir / "out.raw"
+        short = ("--path", "M 0 10 H 1", "--duration", "0.1", "--algorithm", "continuous", "--sample-format", "s16", "--format", "json")
+        told = json.loads(self.ok("play", *short, "-D", f"raw:{raw}", "--repeat", "3", "--pause", "0.25").stdout)
+        (stroke,) = told["strokes"]
+        self.assertEqual((stroke["rounds"], stroke["state"], stroke["frames"]), (3, "finished", 3 * stroke["length_frames"]))
+        frames = [any(frame) for frame in zip(*[iter(memoryview(raw.read_bytes()).cast("h"))] * 9)]
+        begins = [i for i, sounds in enumerate(frames) if sounds and not any(frames[max(i - 1000, 0):i])]
+        self.assertEqual(len(begins), 3)
+        lines = self.ok("play", *self.SHORT, "-D", "null", "--repeat", "2").stdout
+        self.assertEqual(lines.count(": played 0."), 2)
+        p = self.start_tool("play", "park2016-1", *short[2:], "-D", f"raw:{self.dir}/f.raw", "--repeat", "forever", stdout=subprocess.PIPE)
+        self.heard_for(p, self.dir / "f.raw", 18 * 20000)
+        p.send_signal(signal.SIGINT)
+        out, _ = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual(p.returncode, 130)
+        self.assertGreaterEqual(json.loads(out)["strokes"][0]["rounds"], 2)
+        for options in (("--repeat", "0"), ("--repeat", "1.5"), ("--repeat", "always"), ("--pause", "1"), ("--repeat", "2", "--pause", "-1"),
+                        ("--repeat", "2", "--arm", "--pause", "1")):
+            self.refused(2, "play", *self.SHORT, *options, says=(options[-2] if options[-1] != "always" else "--repeat",))
+        self.refused(2, "play", "--live", "-", "--repeat", "2", says=("--repeat",))
+
     def test_latency_is_periods_times_period(self):
         self.write("c.toml", '[output]\npcm = "null"\nperiod_frames = 500\nperiods = 5\n')
         self.write("d.toml", "[defaults]\nlatency-ms = 5\n[output]\nperiod_frames = 128\n")

@@ -274,6 +274,20 @@ class Remote(ServeTest):
         self.assertEqual(r.stderr.count("warning: standard input:1: the place (640, 480) mm is outside the array: moved to its edge"), 1)
         self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points outside the array moved to its edge\n")
 
+    def test_points_in_metres_are_reported(self):
+        lines = "0.005 0.005\n0.02 0.02\n0.035 0.03\n"
+        for where in (("-D", "null"), ("--socket", self.serve().where["socket"])):
+            self.assertIn("if they are metres, multiply them by 1000", self.ok("play", "--live", "-", *where, stdin=lines).stdout)
+
+    def test_a_server_repeats_a_stroke(self):
+        where = ("--socket", self.serve().where["socket"])
+        stroke = ("--path", "M 0 10 H 1", "--duration", "0.1")
+        played = self.ok("play", *stroke, *where, "--repeat", "3", "--pause", "0.2", "--format", "json").stdout
+        (told,) = json.loads(played)["strokes"]
+        self.assertEqual((told["rounds"], told["state"]), (None, "finished"))
+        self.assertAlmostEqual(told["played_s"], 3 * 0.3, delta=0.21)  # the last pause may be left out
+        self.refused(2, "play", "park2016-1", "park2016-2", *where, "--repeat", "2", says=("--repeat: a server repeats one STROKE",))
+
     def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"
         warning = "tactor: warning: standard input:1: an intensity of 80 sounds as 1: the level asked for is the ceiling "

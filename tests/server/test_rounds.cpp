@@ -188,7 +188,10 @@ TEST_CASE("a round lasts as long as its client says, or as its strokes")
     };
     CHECK(frames(0.25) == 2 * rate / 4 + rate / 10);
     CHECK(frames(0.05) == 3 * rate / 10);
+    const json paused = touch(0, 0, {{"repeat", 3}, {"pause_s", 0.25}});
+    CHECK(rig.find_end(c, rig.ok(c, "play", paused)["stroke"])["frames"] == 2 * rate / 4 + 3 * rate / 10);
     CHECK(rig.code(c, "play", touch(0, 0, {{"repeat", 3}, {"round_s", -1}})) == -32602);
+    CHECK(rig.code(c, "play", touch(0, 0, {{"repeat", 3}, {"pause_s", -1}})) == -32602);
     CHECK(rig.code(c, "plan", touch(0, 0, {{"round_s", 1}})) == -32602);
 }
 

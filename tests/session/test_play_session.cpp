@@ -5,12 +5,16 @@
 #include <atomic>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <functional>
 #include <list>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -51,22 +55,26 @@ struct run {
     session::environment where;
     std::optional<session::play_session> session;
 
-    /// `device`: none: its drive time begins anew each time.
-    explicit run(double reopen_s, bool stuck = false, const std::string& device = {})
+    /// `device`: none: its drive time begins anew each time. `tick`: called after each period, in the thread
+    /// of the clock; then the card keeps what it plays.
+    explicit run(double reopen_s, bool stuck = false, const std::string& device = {},
+                 const std::function<void()>& tick = {})
     {
+        using kept = running_clock::capture_kind;
         where.tactors = palm();
         where.config.limits.emplace();
         where.config.limits->max_drive_s = 0.5;
         where.config.limits->window_s = 3600.0; // of a clock that runs as fast as it can
         session::stream_options o;
         o.reopen_s = reopen_s;
-        session.emplace(nine(), o, where, [this, stuck, device](session::stream_parts& p) {
-            p.open = [this, device] {
+        session.emplace(nine(), o, where, [this, stuck, device, tick](session::stream_parts& p) {
+            p.open = [this, device, tick] {
                 before_open();
                 clocks.clear();
                 cards.emplace_back();
                 auto s = alsa::adopt(cards.back().pcm(), nine(), false, device);
-                clocks.emplace_back(cards.back());
+                clocks.emplace_back(
+                    cards.back(), tick ? kept::kept : kept::dropped, tick ? tick : [] {});
                 return s;
             };
             if (stuck) // elsewhere none: it would be switched off where a machine is slow
@@ -208,6 +216,57 @@ TEST_CASE("a signal ends the stream, with all that plays, not one stroke alone")
     CHECK(r.session->follow().state == state_kind::cancelled);
     CHECK(r.session->signal() == SIGINT);
     CHECK(r.session->lost()); // the first stroke would go on in a stream that has not ended
+}
+
+TEST_CASE("rounds begin as many frames apart as they were asked for")
+{
+    // The clock goes on by at most ten periods for each look at the stroke, so that no stroke is overlooked.
+    std::atomic<int> periods = 1000;
+    std::atomic<bool> free = false;
+    run r(0.0, false, {}, [&] {
+        while (!free && periods-- <= 0)
+            std::this_thread::yield();
+    });
+    const score s = tone(0.1, 3);
+    constexpr std::uint64_t apart = 48000 + 4801;
+    for (int k = 0; k < 3; ++k) {
+        r.session->follow_with(k < 2 ? &s : nullptr, apart);
+        REQUIRE_FALSE(r.session->submit(s));
+        const stroke_report end = r.session->follow([&] {
+            periods = 10;
+            return session::look{.most_ms = 1};
+        });
+        CHECK(end.state == state_kind::finished);
+        CHECK(end.frames == 4800);
+    }
+    free = true;
+    r.session->finish();
+    r.clocks.clear();
+    // The first sample of each round is a zero of the sine, and no other silence lasts.
+    const auto bytes = r.cards.back().captured();
+    std::vector<std::uint64_t> begins;
+    std::uint64_t silent = 48000;
+    for (std::uint64_t i = 0; (i + 1) * 36 <= bytes.size(); ++i) {
+        std::int32_t v = 0;
+        std::memcpy(&v, bytes.data() + i * 36 + 4 * 3, sizeof v);
+        if (v != 0 && silent > 100)
+            begins.push_back(i);
+        silent = v == 0 ? silent + 1 : 0;
+    }
+    REQUIRE(begins.size() == 3);
+    CHECK(begins[1] - begins[0] == apart);
+    CHECK(begins[2] - begins[1] == apart);
+}
+
+TEST_CASE("a stroke plays by one call, and what cannot begin is thrown")
+{
+    const array a = preset_array("palm-3x3");
+    const stroke s = preset_stroke("park2016-1");
+    const stroke_report end = play("null", a, s, {.level_dbfs = -40.0});
+    CHECK(end.state == state_kind::finished);
+    CHECK(end.frames == score(a, make_plan(a, s)).frames());
+    CHECK_THROWS_AS(static_cast<void>(play("null", a, s, {.level_dbfs = 3.0})), error);
+    CHECK_THROWS_AS(static_cast<void>(play("no such card", a, s)), error);
 }
 
 } // namespace play_session_test

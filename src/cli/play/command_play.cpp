@@ -123,25 +123,63 @@ std::optional<error> judge(const session::play_session& session, const stroke_ou
     return {};
 }
 
-std::optional<error> play_all(session::play_session& session, bool as_json, const array& a,
+std::optional<error> play_all(session::play_session& session, const play_options& o, const array& a,
                               const std::vector<piece>& pieces, const std::vector<score>& scores,
                               std::vector<stroke_outcome>& outcomes)
 {
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        outcomes.push_back({pieces[i].name, scores[i].frames(), {}, scores[i].weakened()});
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const bool there = play_piece(session, as_json, a, pieces[i], scores[i], outcomes[i]);
+        outcomes.push_back({pieces[i].name, scores[i].frames(), {}, scores[i].weakened(), 0});
+    const auto pause = static_cast<std::uint64_t>(std::llround(o.pause_s * session.setup().rate));
+    const std::uint64_t all = o.rounds == 0 ? ~std::uint64_t{0} : o.rounds * pieces.size();
+    for (std::uint64_t k = 0; k < all; ++k) {
+        const std::size_t i = k % pieces.size();
+        const bool followed = o.rounds != 1 && k + 1 < all && !session.asked().arm;
+        session.follow_with(followed ? &scores[(k + 1) % pieces.size()] : nullptr,
+                            scores[i].frames() + pause);
+        stroke_outcome round{pieces[i].name, scores[i].frames(), {}, scores[i].weakened(), 1};
+        const bool there = play_piece(session, o.json(), a, pieces[i], scores[i], round);
         if (!there && session.signal() == 0)
             return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
                          session.waits() ? "it did not come back in time" : wait_hint);
-        session.log_end(shown_name(pieces[i].name), *outcomes[i].report);
-        tell(outcomes[i], session.setup().rate, as_json);
+        if (!round.report) // a signal came while it waited for the device
+            return {};
+        session.log_end(shown_name(pieces[i].name), *round.report);
+        tell(round, session.setup().rate, o.json());
+        add_report(outcomes[i].report, *round.report);
+        *outcomes[i].rounds += 1;
         if (session.signal() != 0)
             return {};
-        if (auto broken = judge(session, outcomes[i], i + 1 == pieces.size()))
+        if (auto broken = judge(session, round, k + 1 == all))
             return broken;
     }
     return {};
+}
+
+// Reads how often STROKEs are played.
+std::uint64_t read_rounds(const std::string& text)
+{
+    constexpr double most_rounds = 1e6; // as a server
+    constexpr const char* range = "1 to 1000000, or forever";
+    if (text == "forever")
+        return 0;
+    const double n = options::parse_number("--repeat", text, {1.0, most_rounds}, "", range);
+    if (n != std::floor(n))
+        refuse_option("--repeat", fmt::format("{} is not a whole number", text), range);
+    return static_cast<std::uint64_t>(n);
+}
+
+void check_rounds(const settings& s, const play_options& o)
+{
+    if (o.rounds == 1 && o.pause_s > 0.0)
+        refuse_option("--pause", "only rounds have a pause between them",
+                      "add --repeat N or --repeat forever");
+    if (s.stream.arm && o.pause_s > 0.0)
+        refuse_option("--pause", "with --arm each round waits for its own edge", "leave one of them out");
+    if (o.rounds != 1 && s.stream.live)
+        refuse_option("--repeat", "a live stroke cannot be repeated", "leave it out");
+    if (o.rounds != 1 && o.socket && s.strokes.size() > 1)
+        refuse_option("--repeat", "a server repeats one STROKE",
+                      "give one STROKE, or a file that has several");
 }
 
 // Opens the device for so many channels at that rate, Hz, calls play(session, report.strokes), ends, and
@@ -242,6 +280,7 @@ int play(settings& s, const play_options& o)
     else if (s.stream.smooth_s)
         refuse_option("--smooth", "only points that come one by one are smoothed",
                       "use it with --live, or leave it out");
+    check_rounds(s, o);
     if (o.socket)
         return play_remote(s, o);
     if (s.stream.live)
@@ -254,7 +293,7 @@ int play(settings& s, const play_options& o)
     const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
     return hold_run(s, e, scores.front().channels(), scores.front().rate(), o,
                     [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
-                        return play_all(session, o.json(), e.tactors, pieces, scores, outcomes);
+                        return play_all(session, o, e.tactors, pieces, scores, outcomes);
                     });
 }
 
@@ -353,6 +392,12 @@ int run_play(command_line& line)
     add_strokes(line, max_strokes);
     settings& s = add_options(line, options::on_play);
     line.app.add_option("--socket", o.socket, "play through the server at this socket")->type_name("PATH");
+    add_text(line.app, "--repeat", "N|forever", "play N times, or until Ctrl-C (default 1)",
+             [&o](const std::string& text) { o.rounds = read_rounds(text); });
+    add_text(line.app, "--pause", "S", "silence between rounds, exact to the frame (default 0)",
+             [&o](const std::string& text) {
+                 o.pause_s = options::parse_number("--pause", text, {0.0, 86400.0}, "s");
+             });
     add_format_option(line.app, o.format, {"text", "json"}, "format of the report (default text)");
     line.app.footer("tactor play park2016-3 -D hw:CARD=Tactor --level-dbfs -40\n"
                     "tactor play --shape circle --duration 2 --level-dbfs -20 -D null\n"

@@ -24,6 +24,8 @@ namespace tactor::cli {
 struct play_options {
     std::optional<std::string> socket = {}; ///< socket of a server; none: plays here
     std::string format = "text";
+    std::uint64_t rounds = 1; ///< 0: until a signal comes
+    double pause_s = 0.0;     ///< between two strokes of rounds
 
     bool json() const { return format == "json"; }
 };
@@ -99,17 +101,21 @@ private:
 stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
                            bool wanted);
 
-/// A STROKE argument and its report; no report: it was not played.
+/// A STROKE argument and its report, of all rounds together; no report: it was not played.
 struct stroke_outcome {
     std::string name;
-    std::uint64_t length_frames = 0;
+    std::uint64_t length_frames = 0; ///< of one round
     std::optional<stroke_report> report = {};
     weakening weakened = {};
+    std::optional<std::uint64_t> rounds = {}; ///< that have ended, if known
 };
 
 struct play_report : session::run_facts {
     std::vector<stroke_outcome> strokes = {};
 };
+
+/// Adds the report of a further stroke or round: the first beginning, the worst end, and the sum of the rest.
+void add_report(std::optional<stroke_report>& sum, stroke_report r);
 
 /// Returns "played 1.4 s", "interrupted after 0.2 s: reason".
 std::string fate(const stroke_outcome& s, unsigned rate);

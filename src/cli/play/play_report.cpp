@@ -36,7 +36,10 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
               {"finished", "cancelled", "interrupted", "not played"},
               {"finished, cancelled, interrupted or not played"});
     io("frames", frames, {"how many were played"});
-    io("length_frames", s.length_frames, {"how many it has"});
+    io("length_frames", s.length_frames, {"how many it has, in one round"});
+    io.or_null(
+        "rounds", s.rounds,
+        {"how often it was played, with --repeat; null of a live stroke, and where a server repeated it"});
     io("played_s", seconds(frames, rate), {"how long it was played", detail::from_0});
     files::weakening_members(io, s.weakened);
     io("late_s", r.late_s, {"how much later than asked for it began", detail::from_0});
@@ -137,6 +140,20 @@ std::string xruns_text(const player_stats& s)
 }
 
 } // namespace
+
+void add_report(std::optional<stroke_report>& sum, stroke_report r)
+{
+    if (sum) {
+        r.frames += sum->frames;
+        r.started_ns = sum->started_ns ? sum->started_ns : r.started_ns;
+        r.late_s = std::max(r.late_s, sum->late_s);
+        if (sum->state != state_kind::finished) {
+            r.state = sum->state;
+            r.why = sum->why;
+        }
+    }
+    sum = std::move(r);
+}
 
 std::string fate(const stroke_outcome& s, unsigned rate)
 {

@@ -147,8 +147,12 @@ public:
         flush_output();
         for (const auto& [name, params] : pieces)
             report_.strokes.push_back({name});
-        for (std::size_t i = 0; i < pieces.size() && server_.signal() == 0 && !broken_; ++i)
+        const auto goes_on = [this] { return server_.signal() == 0 && !broken_; };
+        for (std::size_t i = 0; i < pieces.size() && goes_on(); ++i)
             play_one(report_.strokes[i], pieces[i].second, i + 1 == pieces.size());
+        if (stream_.arm) // each round waits for its own edge
+            for (std::uint64_t k = 1; k != options_.rounds && goes_on(); ++k)
+                play_one(report_.strokes.front(), pieces.front().second, true);
         return finish();
     }
 
@@ -223,6 +227,13 @@ private:
         params["options"] = asked_;
         if (stream_.arm)
             params["start"] = "armed";
+        const bool server_repeats = options_.rounds != 1 && !stream_.arm;
+        if (server_repeats) {
+            params["repeat"] = options_.rounds == 0 ? net::json(true) : net::json(options_.rounds);
+            params["pause_s"] = options_.pause_s;
+        } else {
+            out.rounds = out.rounds.value_or(0) + 1;
+        }
         net::json r;
         server_.let_finish(to_finish);
         try {
@@ -275,20 +286,12 @@ private:
                         .why = found->value("reason", ""),
                         .late_s = found->value("late_s", 0.0),
                         .held_points = found->value("held_points", std::uint64_t{0}),
-                        .outside_points = found->value("outside_points", std::uint64_t{0})};
+                        .outside_points = found->value("outside_points", std::uint64_t{0}),
+                        .doubt = found->value("doubt", "")};
         if ((*found)["started_s"].is_number())
             r.started_ns = std::llround((*found)["started_s"].get<double>() * 1e9);
         ends_.erase(found);
-        if (out.report) {
-            r.frames += out.report->frames;
-            r.started_ns = out.report->started_ns ? out.report->started_ns : r.started_ns;
-            r.late_s = std::max(r.late_s, out.report->late_s);
-            if (out.report->state != state_kind::finished) {
-                r.state = out.report->state;
-                r.why = out.report->why;
-            }
-        }
-        out.report = r;
+        add_report(out.report, std::move(r));
         return true;
     }
 

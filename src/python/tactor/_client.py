@@ -140,7 +140,7 @@ class RemoteStroke(Reply):
         self._open.discard(event["stroke"])
         if not self._open:
             self._end(Report(event["state"], event["reason"], event["frames"], event["started_s"], event["late_s"],
-                             held_points=event["held_points"], outside_points=event["outside_points"]))
+                             held_points=event["held_points"], outside_points=event["outside_points"], doubt=event["doubt"]))
         self._client.strokes.pop(event["stroke"], None)
 
 

@@ -62,6 +62,8 @@ class Report(_t.NamedTuple):
         Points of a live stroke with an intensity above 1, which sounded as 1.
     outside_points : int
         Points of a live stroke outside the array, which were moved to its edge.
+    doubt : str
+        The unit that a live stroke's points are likely in, if not millimetres; else empty.
     """
 
     state: _State
@@ -72,6 +74,7 @@ class Report(_t.NamedTuple):
     delay: Delay | None = None
     held_points: int = 0
     outside_points: int = 0
+    doubt: str = ""
 
 
 class _Awaited(_Unique, _t.Generic[_T]):
