@@ -20,6 +20,7 @@ import sys
 UNTRIED = {
     "async_wait": "Boost.Asio's own throws; what the player throws comes as the exception that the handler gets",
     "async_play": "the same",
+    "play": "it calls make_plan(), open_alsa() and the player, which have rows",
 }
 IGNORED = re.compile(r"//[^\n]*|/\*.*?\*/|^\s*#(?:[^\n]*\\\n)*[^\n]*", re.S | re.M)
 ACCESS = re.compile(r"^\s*(public|protected|private)\s*:(?!:)")

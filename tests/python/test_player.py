@@ -513,3 +513,11 @@ def test_python_s_signal_handlers_stay(player, short):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         player.play(short)
+
+
+def test_a_stroke_plays_by_one_call(palm):
+    stroke = tactor.Stroke.preset("park2016-1")
+    report = tactor.play("null", palm, stroke, level_dbfs=-40, rate=44100)
+    assert (report.state, report.frames) == ("finished", tactor.Score(palm, tactor.plan(palm, stroke), rate=44100).frames)
+    assert "level_dbfs" in str(refused(lambda: tactor.play("null", palm, stroke, level_dbfs=3)))
+    refused(lambda: tactor.play("no such card", palm, stroke), tactor.DeviceError)

@@ -20,7 +20,7 @@ from tactor._stroke import Fitting, Path, Stroke, apply_fits, fit_strokes, load,
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl, study as study
     from tactor._client import Client, RemoteLive, RemoteStroke, Reply
-    from tactor._player import Player
+    from tactor._player import Player, play
     from tactor._ticket import Delay, LiveStroke, Report, Ticket
     from tactor._tool import Comparison, compare, devices, plot
 
@@ -30,7 +30,7 @@ __all__ = [
     "Array", "Burst", "Client", "Comparison", "Conflict", "Curve", "Delay", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke",
     "Meeting", "Path", "Percept", "PerceptMap", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "RemoteLive",
     "RemoteStroke", "Reply", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
-    "array_presets", "build_facts", "burst_duration", "compare", "devices", "apply_fits", "fit_strokes", "load", "load_plan", "parse", "plan", "plot",
+    "array_presets", "build_facts", "burst_duration", "compare", "devices", "apply_fits", "fit_strokes", "load", "load_plan", "parse", "plan", "play", "plot",
     "stroke_presets", "stroke_shapes",
 ]
 
@@ -42,7 +42,7 @@ def build_facts() -> str:
 
 # Names that few scripts need are loaded when they are first used: they take a fifth of the import's time.
 _LATER = {
-    "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
+    "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "play": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
     "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",
 }
 

@@ -14,13 +14,14 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import encoded, _need, _number, _Unique, _whole
 from tactor._errors import InputError
-from tactor._plan import Plan
+from tactor._plan import Plan, plan
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
     from tactor._plan import _Algorithm, _Faces, _IntensityScale, _Outside, _Phantom, _Phase, _SampleFormat, _Texture, PhantomModel
+    from tactor._stroke import Stroke
     from tactor._ticket import _LogKind
     _At = _t.Literal["now", "armed"]
 
@@ -315,3 +316,32 @@ def _close_all() -> None:
     for player in list(_open):
         if not player._shared.core.forked:
             _call(player.close)
+
+
+def play(device: str, array: Array, stroke: Stroke, **options: _t.Any) -> Report:
+    """Plays a stroke once and waits until it has ended; Ctrl-C fades it out. A script that plays more keeps a `Player`.
+
+    Parameters
+    ----------
+    device : str
+        An ALSA name, as `Player` takes it.
+    array : Array
+    stroke : Stroke
+    **options
+        Those of `plan`: level_dbfs=-40, phantom="barycentric", ...
+
+    Returns
+    -------
+    Report
+        How it ended, and when it began.
+
+    Raises
+    ------
+    InputError
+        For options or a stroke that cannot be planned, and for a level that a tactor may not have.
+    DeviceError
+        When the device cannot be opened.
+    """
+    rate = options.get("rate")
+    with Player(device, array, rate=rate) as player:
+        return player.play(Score(player.array, plan(player.array, stroke, **options)))
