@@ -119,7 +119,9 @@ class Install(FolderTest):
 
         # Complete, as printed, with the printed command.
         readme = (ROOT / "README.md").read_text(encoding="utf-8").partition("## From C++")[2]
-        body = re.match(r"\n*((?:    .*\n|\n)*)", readme)[1]
+        short, body = re.findall(r"(?:^    .*\n(?:\n(?=    ))?)+", readme.partition("\n## ")[0], re.M)
+        (self.dir / "short.cpp").write_text(f"#include <tactor/tactor.hpp>\nint main()\n{{\n{short}    return end.frames == 0;\n}}\n", encoding="utf-8")
+        self.compile(self.dir / "short.cpp", "-o", self.dir / "short")
         (self.dir / "curve.cpp").write_text(body, encoding="utf-8")
         command = re.search(r"`(c\+\+ .*?)`", readme)[1].replace("c++", os.environ.get("CXX", "c++"), 1)
         run("sh", "-c", command, cwd=self.dir, env=self.env)
