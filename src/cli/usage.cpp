@@ -23,6 +23,7 @@
 #include "cli/settings.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -169,22 +170,16 @@ std::string list_options(const CLI::App& app, const std::string& title, F shows)
     return lines.empty() ? "" : fmt::format("{}:\n{}\n", title, lines);
 }
 
-std::string name_groups(const CLI::App& app)
+// Returns the line about the options that --help leaves out.
+std::string count_others(const CLI::App& app)
 {
-    std::string lists;
-    for (const std::string& group : app.get_groups()) {
-        std::vector<std::string> names;
-        for (const CLI::Option* o : app.get_options())
-            if (o->nonpositional() && o->get_group() == group && group != own_group && !is_first(*o))
-                names.push_back("--" + o->get_lnames().front());
-        if (!names.empty())
-            lists += fmt::format("  {:<12}{}\n", group, fmt::join(names, " "));
-    }
-    if (lists.empty())
+    const auto others = app.get_options([](const CLI::Option* o) {
+        return o->nonpositional() && o->get_group() != own_group && !o->get_group().empty() && !is_first(*o);
+    });
+    if (others.empty())
         return {};
-    return fmt::format("More, by group:\n{}\ntactor help OPTION explains one option, "
-                       "tactor {} --help-all explains all.\n",
-                       lists, app.get_name());
+    return fmt::format("{}: tactor {} --help-all lists them, tactor help OPTION explains one.\n",
+                       counted(others.size(), "more option"), app.get_name());
 }
 
 std::string nearest(const std::string& given, const std::vector<std::string>& names)
@@ -532,7 +527,7 @@ std::string help_page(const CLI::App& app, bool whole)
         return o.get_group() == own_group && &o != app.get_help_ptr() && &o != app.get_help_all_ptr();
     };
     return text + list_options(app, fmt::format("Options of {}", app.get_name()), is_own) +
-           list_options(app, "Often used", is_first) + name_groups(app);
+           list_options(app, "Often used", is_first) + count_others(app);
 }
 
 void parse_words(CLI::App& app, const words_type& words)
