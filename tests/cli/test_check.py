@@ -236,7 +236,7 @@ class Walk(ToolTest):
         # The guide shows a line for the head of a file that a walk has written.
         self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "-o", "palm.toml", array=())
         for guide in ("start.md", "study.md"):
-            limit = int(re.search(r"under\s`\[array\]`.{1,10}`max_dbfs = (-\d+)`", (ROOT / "man/guide" / guide).read_text(encoding="utf-8"), re.S)[1])
+            limit = int(re.search(r"under\s`\[array\]`.{1,90}`max_dbfs = (-\d+)`", (ROOT / "man/guide" / guide).read_text(encoding="utf-8"), re.S)[1])
             felt = (self.dir / "palm.toml").read_text()
             self.assertIn("[array]\n", felt)
             self.write("limited.toml", felt.replace("[array]\n", f"[array]\nmax_dbfs = {limit}\n", 1))

@@ -28,7 +28,7 @@ class Block:
 
 def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
-    for kind, pattern in (("c++", r"^#include"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
+    for kind, pattern in (("c++", r"^#include|^const tactor::"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
                           ("drawing", r"-->"), ("runner", r"PsychPortAudio|TcpClient|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):
@@ -441,7 +441,7 @@ class OneName(ToolTest):
         self.assertGreater(len(first), 8)
         self.assertEqual({name: line for name, line in first.items() if " --level-dbfs -40" not in line}, {})
         code = [block.text for block in code_of_markdown((ROOT / "README.md").read_text(encoding="utf-8")) if "hw:CARD" in block.text]
-        self.assertEqual(sum(bool(re.search(r"level_dbfs ?= ?-40\b", text)) for text in code), 2)  # C++ and Python
+        self.assertEqual(sum(bool(re.search(r"level_dbfs ?= ?-40\b", text)) for text in code), 3)  # C++ twice, and Python
 
     def test_the_version_is_the_same_everywhere(self):
         version = re.search(r"version: '([\d.]+)'", (ROOT / "meson.build").read_text(encoding="utf-8"))[1]
