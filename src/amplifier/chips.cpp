@@ -74,7 +74,7 @@ std::string words(int code)
 }
 
 constexpr const char* without_gpio = "tactor was built without GPIO";
-constexpr const char* build_with_gpio = "build it anew with -Dgpio=enabled, where libgpiod is";
+constexpr const char* build_with_gpio = "build it again with -Dgpio=enabled and libgpiod";
 
 std::string open_reason(const chip& c)
 {
@@ -102,9 +102,8 @@ std::string open_hint(const chip& c)
     if (c.code != EACCES && c.code != EPERM)
         return "{command:devices} lists the chips";
     if (c.group == "root")
-        return "the device is root's alone: sudo groupadd --system --force gpio, install the udev rules, "
-               "which give it "
-               "to that group, then sudo usermod -aG gpio $USER, and log in again";
+        return "only root may open the device: sudo groupadd --system --force gpio, install the udev rules, "
+               "which give the device to that group, then sudo usermod -aG gpio $USER, and log in again";
     return fmt::format("sudo usermod -aG {} $USER, then log in again", c.group.empty() ? "gpio" : c.group);
 }
 
@@ -181,8 +180,7 @@ std::size_t find_chip(std::span<const chip> chips, const gpio_line_name& wanted)
         fail(wanted, fmt::format("there is no {}", wanted.chip), list_chips(chips));
     for (const chip& c : chips)
         if (c.info.name == wanted.chip)
-            fail(wanted,
-                 fmt::format("\"{}\" is a number that the kernel gives anew at each start", wanted.chip),
+            fail(wanted, fmt::format("the kernel may change the number \"{}\" at each start", wanted.chip),
                  c.code == 0
                      ? fmt::format("use the label, chip = \"{}\", or the path {}", c.info.label, c.info.path)
                      : fmt::format("use the chip's label, or the path {}", c.info.path));
@@ -198,7 +196,7 @@ unsigned check_offset(const chip& c, const gpio_line_name& wanted)
     fail(wanted,
          n == 0 ? fmt::format("chip {} has no lines", chip_text(c))
                 : fmt::format("chip {} has lines 0 to {}, no line {}", chip_text(c), n - 1, *wanted.offset),
-         "an offset counts the chip's own lines from 0");
+         "offsets count the lines of the chip from 0");
 }
 
 std::vector<std::string> all_names(std::span<const chip> chips)
@@ -218,7 +216,7 @@ std::vector<std::string> all_names(std::span<const chip> chips)
     const std::string why = wanted.chip.empty() ? "no line has this name"
                                                 : fmt::format("no line of {} has this name", wanted.chip);
     if (names.empty())
-        fail(wanted, why, "no line here has a name: give chip and offset");
+        fail(wanted, why, "no line of this machine has a name: give chip and offset");
     const std::vector<std::string_view> known(names.begin(), names.end());
     const std::string_view near = detail::nearest_name(wanted.name, known);
     fail(wanted, why, near.empty() ? list(names) : fmt::format("did you mean \"{}\"?", near));
@@ -239,7 +237,7 @@ line_place find_named(std::span<const chip> chips, const gpio_line_name& wanted,
     for (const line_place& p : found)
         places.push_back(fmt::format("line {} of {}", p.offset, chips[p.chip - first].info.path));
     fail(wanted, fmt::format("{} lines have this name: {}", found.size(), fmt::join(places, ", ")),
-         "say which by chip and offset");
+         "select one by chip and offset");
 }
 
 } // namespace
@@ -319,7 +317,7 @@ line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)
                     "line = { chip = \"pinctrl-rp1\", offset = 17 } or { name = \"GPIO17\" }");
     if (chips.empty())
         fail(wanted, "there is no GPIO chip on this machine",
-             "GPIO chips are /dev/gpiochip*; a container has to be given them");
+             "GPIO chips are /dev/gpiochip*; give them to a container");
     if (wanted.chip.empty())
         return find_named(chips, wanted, 0);
     const std::size_t i = find_chip(chips, wanted);
@@ -367,7 +365,8 @@ error request_error(const gpio_line_name& l, int code, const std::string& holder
                 fmt::format("the chip cannot do this with the line: {}", words(code)),
                 "not every chip has pull resistors, edges or outputs; choose another line"};
     default:
-        return {error_kind::not_available, thing(l), fmt::format("the line cannot be had: {}", words(code))};
+        return {error_kind::not_available, thing(l),
+                fmt::format("the line cannot be opened: {}", words(code))};
     }
 }
 

@@ -71,8 +71,8 @@ std::string sizes_text(const pcm_abilities& a)
 
 std::string pcm_text(const pcm_info& p, const session::device_list& d)
 {
-    std::string s = fmt::format("\n  {}{}\n", p.name,
-                                p.wanted && d.pcm_is_configured ? "   <- the one that is configured" : "");
+    std::string s =
+        fmt::format("\n  {}{}\n", p.name, p.wanted && d.pcm_is_configured ? "   <- the configured one" : "");
     if (!p.description.empty())
         s += wrapped("    ", p.description);
     s += row("held by", process_names(p.holders));
@@ -90,8 +90,8 @@ std::string pcms_text(const session::device_list& d)
     const auto is_card = [](const pcm_info& p) { return p.hardware; };
     std::string s = "Sound cards\n";
     if (std::none_of(d.pcms.begin(), d.pcms.end(), is_card))
-        s += wrapped("  none; ", "load the card's driver or overlay, or plug it in; a container has to be "
-                                 "given /dev/snd. The PCM null needs no card.");
+        s += wrapped("  none; ", "load the card's driver or overlay, or plug it in; give /dev/snd to a "
+                                 "container. The PCM null needs no card.");
     for (const pcm_info& p : d.pcms)
         if (p.hardware)
             s += pcm_text(p, d);
@@ -103,10 +103,12 @@ std::string pcms_text(const session::device_list& d)
         else if (!p.hardware)
             s += pcm_text(p, d);
     if (!untried.empty())
-        s += fmt::format("\n{}{}",
-                         wrapped("  ", "Not tried, since to open them may start a card or a sound server (-D "
-                                       "NAME tries one):"),
-                         wrapped("    ", untried));
+        s += fmt::format(
+            "\n{}{}",
+            wrapped(
+                "  ",
+                "Not tried, because opening them may start a card or a sound server (-D NAME tries one):"),
+            wrapped("    ", untried));
     return s;
 }
 
@@ -141,9 +143,8 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
 {
     std::string s = "\nGPIO chips\n";
     if (chips.empty())
-        s += wrapped("  none; ",
-                     "they are /dev/gpiochip*: load the chip's driver; a container has to be given them. "
-                     "Only [amplifier] and [sync] need one.");
+        s += wrapped("  none; ", "they are /dev/gpiochip*: load the chip's driver; give them to a container. "
+                                 "Only [amplifier] and [sync] need one.");
     for (const gpio_chip_info& c : chips) {
         if (!c.error.empty()) {
             s += fmt::format("\n{}", wrapped("  ", c.error));
@@ -188,7 +189,7 @@ void switch_off(settings& s)
     const environment e = session::read_environment(s);
     if (!e.config.amplifier)
         throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
-                    "say its line there, see tactor.toml(5), or name the file that does with --array");
+                    "add its line there, see tactor.toml(5), or name another file with --array");
     const amplifier_settings& a = *e.config.amplifier;
     const gpio_line_place p = wait_until_free(a.line);
     // Requested as off, so it goes there at once; asked once more for what the driver says.
@@ -220,7 +221,7 @@ int run_devices(command_line& line)
 {
     std::string format;
     settings& s = add_options(line, options::on_devices);
-    add_format_option(line.app, format, {"text", "json"}, "how to print it (default text)");
+    add_format_option(line.app, format, {"text", "json"}, "format of the output (default text)");
     line.app.footer("tactor devices\n"
                     "tactor devices --array palm-2x4\n"
                     "tactor devices --format json");

@@ -83,9 +83,9 @@ std::vector<std::string> stroke_arguments(const settings& s)
 {
     const std::string option = s.path_data ? "--path" : s.shape ? "--shape " + *s.shape : "";
     if (s.path_data && s.shape)
-        refuse_option(option, "there is also --shape " + *s.shape, "give one of them");
+        refuse_option(option, "it cannot be combined with --shape " + *s.shape, "give one of them");
     if (!option.empty() && !s.strokes.empty())
-        refuse_option(option, fmt::format("there is also the stroke \"{}\"", s.strokes[0]),
+        refuse_option(option, fmt::format("it cannot be combined with the stroke \"{}\"", s.strokes[0]),
                       "give one of them");
     if (!option.empty())
         return {option};
@@ -105,7 +105,7 @@ std::optional<stroke> find_preset(const std::string& argument)
     const auto& shapes = stroke_shapes();
     if (std::find(shapes.begin(), shapes.end(), argument) != shapes.end())
         throw error(error_kind::bad_input, argument, "it is a shape, not a preset",
-                    fmt::format("--shape {}", argument));
+                    fmt::format("use --shape {}", argument));
     return preset_stroke(argument); // its error lists the presets
 }
 

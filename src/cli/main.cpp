@@ -55,8 +55,8 @@ constexpr std::array commands{
     command{"devices", "List sound devices with their abilities, and GPIO lines", run_devices},
     command{"check", "Check array, device, rights, limits, lines and wiring", run_check},
     command{"off", "Switch the amplifier off", run_off},
-    command{"serve", "Own the array and let other programs draw through it", run_serve},
-    command{"status", "Print what the server does", run_status},
+    command{"serve", "Own the array and let other programs play on it", run_serve},
+    command{"status", "Print what the server is doing", run_status},
     command{"stop", "Fade out all strokes of the server", run_stop}};
 
 std::string version_text()
@@ -280,7 +280,7 @@ int unprinted(int code)
         return status_unread;
     const bool full = code == ENOSPC || code == EDQUOT;
     say_error("tactor: standard output: {}{}\n", std::strerror(code),
-              full            ? " (free some space, or write to another disk; what was written is cut short)"
+              full            ? " (free some space, or write to another disk; the output is incomplete)"
               : code == EBADF ? " (it is closed: send it to a file or a pipe)"
                               : "");
     return status_failed;

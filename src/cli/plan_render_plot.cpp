@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 std::string fit_note(const fitting& f)
 {
     return fmt::format(
-        "fitted: ({:.6g}, {:.6g}) mm as drawn is ({:.6g}, {:.6g}) mm here, lengths times {:.6g}{}\n",
+        "fitted: ({:.6g}, {:.6g}) mm as drawn becomes ({:.6g}, {:.6g}) mm, lengths times {:.6g}{}\n",
         f.from.x_mm, f.from.y_mm, f.to.x_mm, f.to.y_mm, f.scale,
         f.line ? ", onto the line of the array" : "");
 }
@@ -43,7 +43,7 @@ std::string level_text(const render_options& sound, const stroke& s)
     std::string text = sound.sl_db ? fmt::format("{} dB SL", plain_number(*sound.sl_db))
                                    : fmt::format("{} dBFS", plain_number(sound.level_dbfs));
     if (s.choices.level_db != 0.0)
-        text += fmt::format(" and {} dB of its own", plain_number(s.choices.level_db));
+        text += fmt::format(" and its own {} dB", plain_number(s.choices.level_db));
     return text;
 }
 
@@ -155,7 +155,7 @@ fs::path checked_output(const std::string& name)
     fs::path file = name == "-" ? standard_output : name;
     if (file == standard_output) {
         if (isatty(STDOUT_FILENO) != 0)
-            refuse_option("-o", "standard output is a terminal, which samples would garble",
+            refuse_option("-o", "standard output is a terminal, which cannot show samples",
                           "name a file, or pipe it into another program");
         return file;
     }
@@ -164,10 +164,10 @@ fs::path checked_output(const std::string& name)
     if (name.empty() || fs::is_directory(there) || (fs::exists(there) && !fs::is_regular_file(there)))
         return file;
     if (in_small_letters(file.extension().string()) != ".wav")
-        throw error(error_kind::bad_input, name, "the name of a WAV file ends in .wav",
-                    "name it so, or write -o - > FILE");
+        throw error(error_kind::bad_input, name, "the name does not end in .wav",
+                    "end it in .wav, or write -o - > FILE");
     if (fs::exists(there) && !holds_wav(file))
-        throw error(error_kind::bad_input, name, "there is such a file, which is not a WAV file",
+        throw error(error_kind::bad_input, name, "it exists and is not a WAV file",
                     "choose another name, or remove it first");
     return file;
 }
@@ -209,9 +209,9 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     f.heading = o.has_title();
     const plot::file_format format = plot::find_format(o.file); // before the work
     if (f.animated && format != plot::file_format::svg)
-        refuse_option("--animate", "only SVG can move", "name a file .svg");
+        refuse_option("--animate", "only SVG can be animated", "name a file .svg");
     if (f.animated && f.view == plot::figure_view::wave)
-        refuse_option("--animate", "the waveform does not move", "leave out --view wave");
+        refuse_option("--animate", "the waveform cannot be animated", "leave out --view wave");
     const environment e = session::read_environment(s);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
@@ -277,8 +277,7 @@ int run_plot(command_line& line)
              [&f](const std::string& t) {
                  f.view = plot::figure_view(choose("--view", t, {"array", "timing", "wave", "both"}));
              });
-    line.app.add_flag("--animate", f.animated,
-                      "SVG: light up the tactors that play, again and again, in real time");
+    line.app.add_flag("--animate", f.animated, "SVG: animate it in real time and in a loop");
     add_picture_options(line.app, o, "85, one print column");
     line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
                     "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"

@@ -35,7 +35,7 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 }
 
 constexpr std::array own_words{options::own_word{"command:plan", "tactor plan STROKE --format json"},
-                               options::own_word{"array=none", "say no --array"},
+                               options::own_word{"array=none", "leave out --array"},
                                options::own_word{"force=true", "--force"},
                                options::own_word{"wider=true", "without a number of channels it"},
                                options::own_word{"participants", "--participants"},
@@ -61,7 +61,7 @@ void add_force_option(CLI::App& command, bool& into)
 {
     command.add_flag(
         "--force", into,
-        "replace a file that tactor did not write, or that was changed since; never one that is read");
+        "replace a file that tactor did not write, or that somebody changed since; never an input");
 }
 
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
@@ -83,7 +83,7 @@ std::size_t choose(std::string_view option, const std::string& text, const std::
 {
     const auto at = std::find(names.begin(), names.end(), text);
     if (at == names.end())
-        refuse_option(option, fmt::format("\"{}\" is not known", text),
+        refuse_option(option, fmt::format("\"{}\" is unknown", text),
                       fmt::format("one of {}", fmt::join(names, ", ")));
     return static_cast<std::size_t>(at - names.begin());
 }

@@ -86,7 +86,7 @@ std::string describe_row(const options::option& o)
     const auto row = [](std::string_view name) { return option_name(*options::find(name)); };
     if (o.what == options::kind::number || o.what == options::kind::whole)
         line("Range:", spelled(options::range_text(o)));
-    line("Not beside:", o.rival.empty() ? "" : row(o.rival));
+    line("Not with:", o.rival.empty() ? "" : row(o.rival));
     line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
     line("Commands:", places_text(options::command_names(), o.where));
     const bool is_default = (o.where & options::in_defaults) != 0;
@@ -115,17 +115,17 @@ constexpr std::array file_keys{
              "writes it"},
     file_key{"gain_db", "DB", "[[tactor]]",
              "added to --level-dbfs for this tactor, -200 to 60 dB (default 0)"},
-    file_key{"threshold_dbfs", "DB", "[[tactor]]",
-             "weakest vibration that is felt, from which --sl counts; tactor calibrate measures it"},
     file_key{
-        "max_level_dbfs", "DB", "[serve]",
-        "highest level that clients may ask for, -200 to 0 dBFS (default: level-dbfs of [defaults], else "
-        "-12); serve --max-level-dbfs is lower"},
+        "threshold_dbfs", "DB", "[[tactor]]",
+        "weakest vibration that the participant feels; --sl is relative to it; tactor calibrate measures it"},
+    file_key{"max_level_dbfs", "DB", "[serve]",
+             "highest level that clients may use, -200 to 0 dBFS (default: level-dbfs of [defaults], else "
+             "-12); serve --max-level-dbfs is lower"},
     file_key{"token_file", "FILE", "[serve]", "file with the token that TCP and HTTP need"},
     file_key{"osc_peers", "[...]", "[serve]", "other machines that may send OSC"},
     file_key{"allow_hosts", "[...]", "[serve]", "other names by which browsers may call the service"},
     file_key{"limits", "", "[limits]",
-             "power_dbfs, max_drive_s and window_s: what all tactors together, and each one, may get"},
+             "power_dbfs, max_drive_s and window_s: limits on all tactors together, and on each one"},
 };
 
 // Returns a page about a key of files, "max_dbfs" or "[limits]"; nothing for others.
@@ -211,10 +211,10 @@ struct other_way {
 };
 constexpr std::array other_ways{
     other_way{"serve", "level-dbfs",
-              "--max-level-dbfs is the ceiling of its clients, who say the level of each stroke"},
-    other_way{"serve", "sl", "each client says it with its strokes; --max-level-dbfs is their ceiling"},
-    other_way{"experiment", "level-dbfs", "the definition says it: level = { dbfs = -18 }"},
-    other_way{"experiment", "sl", "the definition says it: level = { sl_db = 7 }"},
+              "--max-level-dbfs is the ceiling of its clients, which set the level of each stroke"},
+    other_way{"serve", "sl", "each client sets it with its strokes; --max-level-dbfs is their ceiling"},
+    other_way{"experiment", "level-dbfs", "the definition sets it: level = { dbfs = -18 }"},
+    other_way{"experiment", "sl", "the definition sets it: level = { sl_db = 7 }"},
     other_way{"calibrate", "level-dbfs", "--start-dbfs is the level at which it begins"},
 };
 
@@ -283,11 +283,11 @@ error missing(const CLI::App& app, const CLI::App& command)
     const auto o = std::find_if(options.begin(), options.end(),
                                 [](const CLI::Option* x) { return x->get_required() && x->count() == 0; });
     if (o == options.end())
-        return {error_kind::bad_input, "command line", "something is missing", help};
+        return {error_kind::bad_input, "command line", "an argument is missing", help};
     const std::string name = (*o)->get_name();
     if (name.starts_with('-'))
         return {error_kind::bad_input, name, "this option is missing",
-                fmt::format("say {} {}; {}", name, (*o)->get_type_name(), help)};
+                fmt::format("add {} {}; {}", name, (*o)->get_type_name(), help)};
     return {error_kind::bad_input, "command line", "no " + name,
             fmt::format("tactor {} {}; {}", command.get_name(), name, help)};
 }
@@ -300,9 +300,9 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
     if (o == nullptr)
         return {error_kind::bad_input, "command line", said, help_command(app, command)};
     if (o->count() > 1)
-        return {error_kind::bad_input, name, "it is given more than once", "give it once"};
+        return {error_kind::bad_input, name, "it occurs more than once", "give it once"};
     return {error_kind::bad_input, name, "its value is missing",
-            fmt::format("say {} {}; {}", name, o->get_type_name(), help_command(app, command))};
+            fmt::format("write {} {}; {}", name, o->get_type_name(), help_command(app, command))};
 }
 
 // Refuses a value that the option does not list.
@@ -311,8 +311,8 @@ error unlisted(const CLI::App& command, const std::string& said)
     const std::string name = said.substr(0, said.find(':'));
     const CLI::Option& o = *command.get_option(name);
     if (o.count() > 1)
-        return {error_kind::bad_input, name, "it is given more than once", "give it once"};
-    return {error_kind::bad_input, name, fmt::format("\"{}\" is not known", o.results().front()),
+        return {error_kind::bad_input, name, "it occurs more than once", "give it once"};
+    return {error_kind::bad_input, name, fmt::format("\"{}\" is unknown", o.results().front()),
             fmt::format("one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
 }
 
@@ -334,7 +334,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
         const std::string name = given.substr(0, given.find('='));
         for (const other_way& o : other_ways)
             if (o.command == command.get_name() && o.name == bare_name(name))
-                return {error_kind::bad_input, name, fmt::format("tactor {} does not take it", o.command),
+                return {error_kind::bad_input, name, fmt::format("tactor {} does not accept it", o.command),
                         o.hint};
         const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
                                                   : nearest_option(name, option_names(command));
@@ -344,9 +344,9 @@ error unknown(const CLI::App& app, const CLI::App& command)
     if (&command == &app)
         return no_such_command(app, given);
     const auto takes = command.get_options([](const CLI::Option* o) { return o->get_positional(); });
-    return {error_kind::bad_input, given, "one argument too many",
+    return {error_kind::bad_input, given, "there is one argument too many",
             takes.empty() ? help
-                          : fmt::format("{} takes one {}; quote a name that has blanks", command.get_name(),
+                          : fmt::format("{} accepts one {}; quote a name that has blanks", command.get_name(),
                                         takes.front()->get_name(true))};
 }
 
@@ -444,7 +444,7 @@ std::optional<error> find_typeset(const words_type& words)
             continue;
         const std::string typed = retype(word, found);
         const bool quote = found->meant.find('-') == std::string_view::npos;
-        return error(error_kind::bad_input, word, fmt::format("it has {}, as in print", found->name),
+        return error(error_kind::bad_input, word, fmt::format("it has {}, as printed texts do", found->name),
                      quote ? fmt::format("type {} on the keyboard", found->meant) : "type " + typed);
     }
     return {};
@@ -463,7 +463,7 @@ std::optional<error> find_late_command(const words_type& words, const words_type
     for (auto w = words.begin(); w != words.end(); ++w)
         if (w != at)
             line += w->find(' ') == std::string::npos ? " " + *w : fmt::format(" \"{}\"", *w);
-    return error(error_kind::bad_input, words.front(), "it stands before the command",
+    return error(error_kind::bad_input, words.front(), "it comes before the command",
                  "the command comes first: " + line);
 }
 
@@ -490,7 +490,7 @@ std::optional<error> find_open_path(const words_type& words)
     const std::string data = end < first + 2 ? "" : join(words, first, end);
     if (!is_path(data))
         return {};
-    return error(error_kind::bad_input, "--path", "its data are without quotes",
+    return error(error_kind::bad_input, "--path", "its data have no quotes",
                  fmt::format("quote the path: --path \"{}\"", data));
 }
 

@@ -55,7 +55,7 @@ void check_values(const array& a, std::size_t i)
     const bool x_fits = std::abs(t.position.x_mm) <= detail::max_mm;
     if (!x_fits || !(std::abs(t.position.y_mm) <= detail::max_mm))
         refuse(a, i, fmt::format("is at ({}, {}) mm", t.position.x_mm, t.position.y_mm),
-               "coordinates are millimetres, within 1000000 of 0", x_fits ? "y_mm" : "x_mm");
+               "give coordinates in millimetres, within 1000000 of 0", x_fits ? "y_mm" : "x_mm");
     if (t.channel >= detail::max_channels)
         refuse(a, i, fmt::format("is on channel {}", t.channel), "channels count from 0", "channel");
     if (!(t.gain_db >= detail::min_db && t.gain_db <= detail::max_gain_db))
@@ -81,8 +81,8 @@ void check_values(const array& a, std::size_t i)
         refuse(a, i, fmt::format("has a threshold of {} dBFS", *t.threshold_dbfs), "allowed: -200 to 0",
                "threshold_dbfs");
     if (t.polarity != 1 && t.polarity != -1)
-        refuse(a, i, fmt::format("has a polarity of {}", t.polarity),
-               "1, or -1 where it is wired the other way round", "polarity");
+        refuse(a, i, fmt::format("has a polarity of {}", t.polarity), "1, or -1 if its wires are swapped",
+               "polarity");
 }
 
 // Refuses a tactor that is where an earlier one is, or on its channel.
@@ -94,11 +94,11 @@ void check_own(const array& a, std::size_t i)
             refuse(a, i,
                    fmt::format("is at ({}, {}) mm, the place of {}", t.position.x_mm, t.position.y_mm,
                                other(a, j)),
-                   "give each tactor a place of its own");
+                   "give each tactor its own place");
     for (std::size_t j = 0; j < i; ++j)
         if (a.tactors[j].channel == t.channel)
             refuse(a, i, fmt::format("is on channel {}, that of {}", t.channel, other(a, j)),
-                   "give each tactor a channel of its own");
+                   "give each tactor its own channel");
 }
 
 } // namespace

@@ -58,7 +58,7 @@ struct kind_table {
         const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
         if (at < N)
             return kinds[at];
-        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not known", name),
+        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is unknown", name),
                     fmt::format("one of {}", fmt::join(names, ", ")))
             .with_field(what);
     }

@@ -68,9 +68,9 @@ double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor
     if (from + *start_s >= 0.0)
         return from + *start_s;
     throw error(error_kind::bad_input, "start of the stroke",
-                fmt::format("{:g} s before the {} of what comes before it is before the piece", -*start_s,
-                            to_string(anchor.from)),
-                fmt::format("{:g} s before is the start of the piece", from))
+                fmt::format("{:g} s before the {} of the previous stroke is before the start of the piece",
+                            -*start_s, to_string(anchor.from)),
+                fmt::format("give at most {:g} s before it", from))
         .with_field("start_s");
 }
 

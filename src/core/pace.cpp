@@ -111,12 +111,12 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
         if (!bounds_of::part.holds(part))
             refuse(fmt::format("part {}", part), "0 is the path's start, 1 its end");
         if (i > 0 && !(part > points[i - 1].part))
-            refuse(fmt::format("part {} does not come after {}", part, points[i - 1].part), "parts ascend");
+            refuse(fmt::format("part {} is not after {}", part, points[i - 1].part), "parts ascend");
         if (!allowed.holds(value))
             refuse(fmt::format("{}", value),
                    allowed.above_low
-                       ? fmt::format("it is more than {:g} and at most {:g}", allowed.low, allowed.high)
-                       : fmt::format("it is from {:g} to {:g}", allowed.low, allowed.high));
+                       ? fmt::format("give more than {:g} and at most {:g}", allowed.low, allowed.high)
+                       : fmt::format("give {:g} to {:g}", allowed.low, allowed.high));
     }
 }
 
@@ -167,7 +167,7 @@ void check_movement(const movement& m)
     for (const rest& r : m.rests)
         if (!bounds_of::part.holds(r.intensity))
             throw bad_field("pauses", fmt::format("intensity {:g}", r.intensity),
-                            "it is a factor from 0 to 1");
+                            "give a factor from 0 to 1");
 }
 
 pace::pace(movement m, double moving_s) : given_(std::move(m)), moving_s_(moving_s)

@@ -41,23 +41,24 @@ void check_samples(const recording& r)
     if (!(r.rate_hz >= 1.0 && r.rate_hz <= 1e6))
         refuse(fmt::format("its rate is {} Hz", r.rate_hz), "give 1 to 1000000 Hz");
     if (!std::all_of(r.samples.begin(), r.samples.end(), [](float x) { return std::isfinite(x); }))
-        refuse("a sample of it is no number", "");
+        refuse("it has a sample that is not a number", "");
     if (std::adjacent_find(r.samples.begin(), r.samples.end(), std::not_equal_to<>()) == r.samples.end())
-        refuse("it is silence: its samples are all the same", "give a recording of a vibration");
+        refuse("it is silent: all its samples are equal", "give a recording of a vibration");
 }
 
 void check_recording(const waveform& w)
 {
     if (!w.recorded)
-        throw error(error_kind::bad_input, "waveform", "there are no samples of the recording",
+        throw error(error_kind::bad_input, "waveform", "the recording has no samples",
                     "give them as recorded")
             .with_field("waveform");
     check_samples(*w.recorded);
     if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
-        throw error(error_kind::bad_input, recording_name(*w.recorded),
-                    fmt::format("{} are too many for texture {}",
-                                counted(w.recorded->samples.size(), "sample"), to_string(w.texture)),
-                    fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples))
+        throw error(
+            error_kind::bad_input, recording_name(*w.recorded),
+            fmt::format("{} are too many for texture {}", counted(w.recorded->samples.size(), "sample"),
+                        to_string(w.texture)),
+            fmt::format("give at most {}, which is 8 s at 8 kHz, or use texture time", most_cycle_samples))
             .with_field("recorded");
     if (!detail::bounds_of::texture_mm.holds(w.texture_mm))
         throw detail::bad_field("texture_mm", fmt::format("{} mm is not a length", w.texture_mm),
@@ -127,10 +128,10 @@ void validate(const modulation& m)
 {
     if (!detail::bounds_of::am_hz.holds(m.hz))
         throw detail::bad_field("am", fmt::format("{} Hz cannot modulate", m.hz),
-                                "give 0 to 20000 Hz; 0 is none");
+                                "give 0 to 20000 Hz; 0 means none");
     if (!detail::bounds_of::part.holds(m.depth))
         throw detail::bad_field("am", fmt::format("{} is not a depth", m.depth),
-                                "give 0 to 1, which goes down to silence");
+                                "give 0 to 1; 1 falls to silence");
 }
 
 TACTOR_KIND_NAMES(envelope_kind, "envelope", {raised_cosine, "raised-cosine"}, {linear, "linear"},
@@ -146,7 +147,7 @@ burst_envelope parse_envelope(std::string_view text)
     std::size_t at = colon + 1;
     const auto part = detail::scan_number(text, at);
     if (e.kind != envelope_kind::tukey || !part || at != text.size() || !detail::bounds_of::part.holds(*part))
-        throw detail::bad_field("envelope", fmt::format("\"{}\" is not known", text),
+        throw detail::bad_field("envelope", fmt::format("\"{}\" is unknown", text),
                                 "only tukey has a part, 0 to 1, as tukey:0.5");
     e.tukey_part = *part;
     return e;

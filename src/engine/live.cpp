@@ -326,13 +326,13 @@ error refused(std::string_view field, std::string_view why, std::string_view hin
 void check(const live_options& o, unsigned rate)
 {
     if (o.plan.algorithm == algorithm_kind::tactile_brush)
-        throw refused("algorithm", "Tactile Brush must know the whole path beforehand",
+        throw refused("algorithm", "Tactile Brush needs the whole path in advance",
                       "use continuous or park2016");
     if (!(o.plan.carrier_hz > 0.0 && o.plan.carrier_hz < 0.5 * rate))
         throw refused(
             "carrier_hz",
             fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
-            "250 is usual");
+            "use 250, for example");
     if (!detail::bounds_of::timeout_s.holds(o.timeout_s))
         throw refused("timeout_s", fmt::format("a time-out of {} s", o.timeout_s), "give 0.001 to 86400 s");
     if (o.longest_s && !detail::bounds_of::timeout_s.holds(*o.longest_s))
@@ -348,8 +348,8 @@ void check(const live_options& o, unsigned rate)
 plan sound_plan(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
-        throw refused("texture", "the length of its path is not known beforehand",
-                      "lay the recording along it with texture time or cycle");
+        throw refused("texture", "the length of its path is not known in advance",
+                      "play the recording with texture time or cycle");
     plan p;
     p.carrier_hz = o.carrier_hz;
     p.wave = o.wave;
@@ -378,7 +378,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     const double duration_s = burst_duration_s(o.plan);
     if (o.plan.soa_s < least_live_soa_s)
         throw refused("soa_s", fmt::format("an SOA of {} s", o.plan.soa_s),
-                      fmt::format("{} s or more", least_live_soa_s));
+                      fmt::format("give {} s or more", least_live_soa_s));
     l.soa = synth::frame_at(o.plan.soa_s, s.rate);
     l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
     l.restart = o.render.phase == phase_kind::burst;
@@ -445,13 +445,12 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
         throw refused(std::isfinite(p.x_mm) ? "y_mm" : "x_mm",
-                      fmt::format("the point ({}, {})", p.x_mm, p.y_mm), "finite millimetres");
+                      fmt::format("the point ({}, {})", p.x_mm, p.y_mm), "give finite millimetres");
     if (stamp < 0)
         throw refused("at_ns", fmt::format("a point at {} ns", stamp),
-                      "CLOCK_MONOTONIC, ns, or none for now");
+                      "give ns of CLOCK_MONOTONIC, or none for now");
     if (model_thread.load(std::memory_order_relaxed) == std::this_thread::get_id())
-        throw error(error_kind::runtime, "live stroke",
-                    "its phantom model moves it while it is asked about a point",
+        throw error(error_kind::runtime, "live stroke", "its phantom model moves the stroke inside weights()",
                     "move it from outside weights()");
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
@@ -545,7 +544,7 @@ bool live_stroke::impl::amplitudes_at(point p, double intensity, std::span<doubl
             continue;
         if (d.amplitude > most * (1.0 + 1e-9) && excess.empty())
             excess = fmt::format(
-                "phantom model \"{}\" gave tactor {} amplitude {:.6g}, above the {:.6g} asked for",
+                "phantom model \"{}\" gave tactor {} amplitude {:.6g}, above the requested {:.6g}",
                 model->name(), d.tactor, d.amplitude, most);
         const double wanted = t.gain * d.amplitude;
         const double limit = limits[t.channel];

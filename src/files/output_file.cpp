@@ -132,11 +132,11 @@ void check_replaced(const fs::path& file, bool force,
             .with_field("force");
     };
     if (!is_ours(begin, end))
-        refuse_foreign("there is such a file already, and tactor did not write it");
+        refuse_foreign("it exists, and tactor did not write it");
     in.clear();
     in.seekg(0);
     if (!has_own_hash(std::string(std::istreambuf_iterator<char>(in), {}), note))
-        refuse_foreign("it was changed after tactor wrote it");
+        refuse_foreign("somebody changed it after tactor wrote it");
 }
 
 void sync_folder(const fs::path& folder) noexcept
@@ -170,7 +170,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     const fs::path folder = parent_folder(target_);
     if (!fs::is_directory(folder, failed)) {
         refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
-               "make it first, or name another", ENOENT);
+               "create it first, or name another", ENOENT);
     }
     if (fs::exists(there) && ::access(target_.c_str(), W_OK) != 0)
         fail(errno);
@@ -261,16 +261,16 @@ void output_file::fail(int code) const
     const std::string why = std::error_code(code, std::generic_category()).message();
     std::string_view hint = "check the folder's rights and space";
     if (code == ENOSPC || code == EDQUOT) {
-        hint = directly_ ? "free some space, or write to another disk; what was written is cut short"
+        hint = directly_ ? "free some space, or write to another disk; the output is incomplete"
                          : "free some space, or name a file on another disk; nothing was left behind";
     } else if (code == EPIPE) {
-        hint = "the program that reads it ended before all was written";
+        hint = "the program that reads it ended too early";
     } else if (code == EBADF) {
         hint = "it is closed: send it to a file or a pipe, or name a file";
     } else if (code == EFBIG) {
         hint = "the file system or a limit (ulimit -f) does not allow a file of this size";
     } else if (code == EACCES || code == EPERM || code == EROFS) {
-        hint = "name a file where you may write";
+        hint = "name a file that you may write";
     }
     throw_caused(error(error_kind::runtime, source_place{asked_.string()},
                        fmt::format("cannot be written: {}", why), hint),

@@ -129,7 +129,7 @@ stroke shape_stroke(std::string_view name)
                 .speed_mm_s = has_time ? std::nullopt : std::optional(default_speed_mm_s),
                 .fit = stroke_fit{}};
     }
-    throw detail::bad_field("shape", fmt::format("{} is not known", detail::quoted(name)),
+    throw detail::bad_field("shape", fmt::format("{} is unknown", detail::quoted(name)),
                             fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
 }
 

@@ -70,7 +70,7 @@ struct wav_parts {
 wav_format read_format(std::string_view chunk, const std::string& name)
 {
     if (chunk.size() < 16)
-        refuse_wav(name, "its format chunk is cut off");
+        refuse_wav(name, "its format chunk is incomplete");
     wav_format f{get<std::uint16_t>(chunk, 0), get<std::uint16_t>(chunk, 2), get<std::uint32_t>(chunk, 4),
                  get<std::uint16_t>(chunk, 14), 0};
     const auto frame_bytes = get<std::uint16_t>(chunk, 12);
@@ -174,7 +174,7 @@ wav_parts find_wav_parts(std::string_view file, const std::string& name)
     const std::string_view kind = file.substr(0, 4);
     if (file.size() < 12 || (kind != "RIFF" && kind != "RF64" && kind != "BW64") ||
         file.substr(8, 4) != "WAVE")
-        refuse_wav(name, "it is no WAV file");
+        refuse_wav(name, "it is not a WAV file");
     std::optional<wav_format> format;
     std::optional<std::uint64_t> long_size;
     for (std::size_t at = 12; at + head_bytes <= file.size();) {
@@ -194,7 +194,7 @@ wav_parts find_wav_parts(std::string_view file, const std::string& name)
         }
         at = after(file, at, chunk.size());
     }
-    refuse_wav(name, "there are no samples in it");
+    refuse_wav(name, "it has no samples");
 }
 
 } // namespace
@@ -251,7 +251,7 @@ recording load_recording(const std::filesystem::path& file)
     if (std::filesystem::is_fifo(file, unknown) &&
         std::filesystem::exists(std::filesystem::canonical(file, unknown)))
         throw error(error_kind::bad_input, source_place{file.string()}, "is a pipe",
-                    "name a WAV file, which can be read as often as it is needed");
+                    "name a WAV file: it is read several times");
     const detail::whole_text bytes = detail::read_text_file(file, max_file_bytes);
     return detail::parse_recording(bytes, file.string());
 }
@@ -276,7 +276,7 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
         return w;
     }
     if (!waveform_names_file(text))
-        throw error(error_kind::bad_input, "waveform", fmt::format("{} is not known", detail::quoted(text)),
+        throw error(error_kind::bad_input, "waveform", fmt::format("{} is unknown", detail::quoted(text)),
                     "one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav")
             .with_field("waveform");
     w.kind = waveform_kind::recording;

@@ -48,7 +48,7 @@ gpio_line_name read_line(const toml_table& t)
     line.where = t.where();
     if (t.one_of({"chip", "name"}) == "name") {
         if (t.has("offset"))
-            t.fail("offset", fmt::format("{} has both name and offset", t.title()), "a name is enough");
+            t.fail("offset", fmt::format("{} has both name and offset", t.title()), "keep the name");
         line.name = *t.text("name");
         return line;
     }
@@ -76,7 +76,7 @@ constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 void note_entry(const toml_table& t, unsigned i, std::vector<const toml_table*>& entries, const char* hint)
 {
     if (entries[i] != nullptr)
-        t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, entries[i]->where().text()),
+        t.fail("tactor", fmt::format("tactor {} has another entry ({})", i, entries[i]->where().text()),
                hint);
     entries[i] = &t;
 }
@@ -117,7 +117,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     const std::filesystem::path file = source.folder / *table.text("file");
     if (source.depth == longest_chain)
         table.fail("file", "a chain of too many files",
-                   fmt::format("at most {}, and none that names itself", longest_chain));
+                   fmt::format("use at most {}, and no file that names itself", longest_chain));
     std::error_code ignored;
     // Opening a pipe that someone else's file names could block, and a device may take it for a command.
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
@@ -167,12 +167,12 @@ void read_threshold(const toml_table& entry, tactor_spec& t)
                                 entry.to_number(pair[1], "the threshold", limit_db)};
         if (!t.thresholds.empty() && p.hz <= t.thresholds.back().hz)
             fail_at(entry.where(e),
-                    fmt::format("the frequency {} does not come after {}", p.hz, t.thresholds.back().hz),
+                    fmt::format("the frequency {} is not after {}", p.hz, t.thresholds.back().hz),
                     "put thresholds in order of frequency, each once");
         t.thresholds.push_back(p);
     }
     if (t.thresholds.empty())
-        entry.fail("threshold_dbfs", "there is no threshold in it", "give [[100, -20], [250, -41]]");
+        entry.fail("threshold_dbfs", "it has no threshold", "give [[100, -20], [250, -41]]");
 }
 
 void read_tactor(const toml_table& entry, tactor_spec& t)
@@ -188,8 +188,7 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
         t.displacement_um_at_0dbfs = um;
     if (const auto sign = entry.number("polarity", {-1.0, 1.0})) {
         if (*sign != 1.0 && *sign != -1.0)
-            entry.fail("polarity", fmt::format("polarity is {}", *sign),
-                       "1, or -1 where it is wired the other way round");
+            entry.fail("polarity", fmt::format("polarity is {}", *sign), "1, or -1 if its wires are swapped");
         t.polarity = *sign > 0.0 ? 1 : -1;
     }
     t.actuator = read_actuator(entry).value_or(t.actuator);
@@ -207,7 +206,7 @@ void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, arr
             e.fail(fmt::format("more than {} tactors", max_channels));
         if (const auto number = e.whole("tactor", 0, max_channels - 1); number && *number != i)
             e.fail("tactor", fmt::format("tactor is {}, but this is entry {}", *number, i),
-                   "without a grid, tactors are numbered from 0 in the order of the file");
+                   "without a grid, number the tactors from 0 in the order of the file");
         tactor_spec t;
         t.position = {e.need(e.number("x_mm", anywhere), "x_mm"), e.need(e.number("y_mm", anywhere), "y_mm")};
         t.channel = i;
@@ -225,15 +224,14 @@ void adjust_tactors(const std::vector<toml_table>& entries, std::string_view bas
     for (const toml_table& e : entries) {
         for (const char* key : {"x_mm", "y_mm"})
             if (e.has(key))
-                e.fail(key, fmt::format("[[tactor]] says {}, but its place comes from the {}", key, base),
-                       fmt::format("leave {} out, or the {}", key, base));
+                e.fail(key, fmt::format("[[tactor]] has {}, but its place comes from the {}", key, base),
+                       fmt::format("leave out {}, or the {}", key, base));
         e.only({"tactor", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
                 "rise_ms", "displacement_um_at_0dbfs"});
         if (!e.has("tactor"))
-            e.fail("[[tactor]] does not say which tactor it is",
-                   fmt::format("add tactor = INDEX, 0 to {}", last));
+            e.fail("[[tactor]] has no tactor number", fmt::format("add tactor = INDEX, 0 to {}", last));
         const unsigned i = *e.whole("tactor", 0, last);
-        note_entry(e, i, by_tactor, "join the two");
+        note_entry(e, i, by_tactor, "join the two entries");
         read_tactor(e, a.tactors[i]);
     }
 }
@@ -346,7 +344,7 @@ void check_lines(const setup& s)
         for (std::size_t j = 0; j < i; ++j)
             if (same_line(*lines[i], *lines[j]))
                 fail_at(lines[i]->where, fmt::format("the line is in use at {}", lines[j]->where.text()),
-                        "give each purpose a GPIO line of its own");
+                        "give each purpose its own GPIO line");
 }
 
 void read_output(const toml_table& t, located_setup& out)
@@ -397,14 +395,14 @@ void read_code(const toml_table& t, code_settings& c)
         const toml::array* offsets = t.list("offsets", "lines, [5, 6]");
         if (offsets == nullptr || offsets->empty() || offsets->size() > 8)
             t.fail("offsets", fmt::format("there are {}", counted(offsets ? offsets->size() : 0, "offset")),
-                   "give one to eight lines, that of the least significant bit first");
+                   "give one to eight lines, the least significant bit first");
         for (const toml::node& n : *offsets) {
             if (!n.is_integer())
                 fail_at(t.where(n), fmt::format("an offset is {}", shown(n)), "give a whole number");
             c.offsets.push_back(static_cast<unsigned>(t.to_number(n, "an offset", {0.0, 65535.0})));
         }
     } else if (!c.channel && !c.lsl) {
-        t.fail("code says neither channel nor chip", "code = { channel = 15 }, or { chip, offsets }");
+        t.fail("code has neither channel nor chip", "code = { channel = 15 }, or { chip, offsets }");
     }
 }
 
@@ -463,8 +461,8 @@ void read_sync(const toml_table& t, located_setup& out)
         s.code->made_void = read_numbering(*numbers, "void");
     }
     if (s.code && s.channel && s.code->channel == s.channel)
-        t.fail("channel", fmt::format("channel {} is that of the code, too", *s.channel),
-               "give the marker and the code a channel each");
+        t.fail("channel", fmt::format("channel {} is also that of the code", *s.channel),
+               "give the marker and the code different channels");
     out.sync_channel_at = t.where("channel");
     out.contents.sync = s;
 }
@@ -504,7 +502,7 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
     t.only({"tactor", "threshold_dbfs", "sd_db", "posterior_sd_db", "trials", "reversals_dbfs", "check_right",
             "check_below_right", "staircases"});
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
-    note_entry(t, i, entries, "it is measured once in a calibration");
+    note_entry(t, i, entries, "give each tactor one entry in [[calibration.tactor]]");
     for (const char* key : {"check_right", "check_below_right", "staircases"})
         t.whole(key, 0, any_number);
     if (const toml::array* all = t.list("reversals_dbfs", "levels"))
@@ -519,8 +517,7 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
 void read_calibration(const toml_table& t, located_setup& out)
 {
     if (!out.contents.array)
-        t.fail("there is no array that it is of",
-               "it stands in an array file, as {command:calibrate} writes it");
+        t.fail("its array is missing", "put it into an array file, as {command:calibrate} writes it");
     t.only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date", "seed",
             "simulated", "tactor"});
     calibration_origin r;
@@ -550,7 +547,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
     const toml_table table =
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
-        table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
+        table.fail("tactor", "tactors inside [array]", "write [[tactor]], at the top level of the file");
     table.only({"name", "site", "up", "place", "turn", "body", "grid", "preset", "file", "actuator", "mirror",
                 "rotate_deg", "displacement_um_at_0dbfs", "max_dbfs"});
     const std::vector<toml_table> entries = root.tables("tactor");

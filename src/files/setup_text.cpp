@@ -284,7 +284,7 @@ void add_choices(lines& out, const stroke& s)
     out.add("burst_s", s.choices.burst_s);
     out.add_unusual("level_db", s.choices.level_db, 0.0);
     if (s.fit && s.fit->group != 0)
-        refuse(s, "it is fitted together with others of its group", "apply_fits() fits them");
+        refuse(s, "its group is fitted as a whole", "call apply_fits() first");
     if (s.fit) {
         out.add("fit", true);
         out.add("fit_margin_mm", s.fit->margin_mm);

@@ -148,7 +148,7 @@ void note_input(const fs::path& file, owner_kind owner)
     if (guards_standard_output && (writes_to(STDOUT_FILENO, s) || writes_to(STDERR_FILENO, s)))
         throw error(error_kind::bad_input,
                     source_place{file == "/dev/fd/0" ? "standard input" : file.string()},
-                    "is where this program writes to", "write to another file");
+                    "is the output of this program", "write to another file");
     std::error_code ignored;
     fs::path whole = fs::absolute(file, ignored);
     inputs& i = known_inputs();
@@ -170,9 +170,8 @@ void refuse_input(const struct stat& file, const fs::path& output, owner_kind wr
         std::error_code ignored;
         const bool named_so = fs::absolute(output, ignored) == read || read.string().starts_with("/dev/fd/");
         throw error(error_kind::bad_input, source_place{output.string()},
-                    named_so
-                        ? "it is read as input"
-                        : fmt::format("it is the same file as {}, which is read as input", read.string()),
+                    named_so ? "it is an input"
+                             : fmt::format("it is the same file as {}, an input", read.string()),
                     "name another file for the output");
     }
 }
@@ -202,7 +201,7 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
         text.size_ += static_cast<std::size_t>(got);
         if (text.size_ > max_bytes)
             throw error(error_kind::bad_input, source_place{std::string(name)},
-                        fmt::format("longer than {} MB", max_bytes >> 20), "is it the right file?");
+                        fmt::format("longer than {} MB", max_bytes >> 20), "check that it is the right file");
     }
 }
 

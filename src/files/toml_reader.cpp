@@ -88,7 +88,7 @@ void refuse_deep_keys(std::string_view t, const std::string& name)
         else if (!bare(masked[i]))
             dots = 0;
         if (dots > max_dots)
-            fail_at(find_place(t, i, name), "a key of too many parts", "no key has more than three");
+            fail_at(find_place(t, i, name), "a key has too many parts", "use at most three parts");
     }
 }
 
@@ -171,8 +171,8 @@ toml::table parse_toml(std::string_view text, const std::string& name, const tom
         refuse_foreign_number(masked.text, {name, at.line, 0});
         const std::string manual = fmt::format("see {}", hints.manual);
         if (e.description().find("could not determine value type") != std::string_view::npos)
-            fail_at({name, at.line, at.column}, "this is no value",
-                    "a text stands in quotes, as name = \"palm\"; numbers have no unit; " + manual);
+            fail_at({name, at.line, at.column}, "this is not a value",
+                    "put texts in quotes, as name = \"palm\"; numbers have no unit; " + manual);
         fail_at({name, at.line, at.column}, e.description(), manual);
     }
 }
@@ -247,7 +247,7 @@ std::vector<std::string> toml_table::texts(std::string_view key, std::size_t mos
         all.push_back(n.as_string()->get());
     }
     if (all.size() > most)
-        fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("at most {}", most));
+        fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("use at most {}", most));
     return all;
 }
 
@@ -338,7 +338,7 @@ std::optional<std::string> toml_table::text(std::string_view key) const
         wrong_type(key, *n, "a string in quotes");
     const std::string& s = n->as_string()->get();
     if (s.empty() || s.find('\0') != std::string::npos)
-        fail_at(where(*n), fmt::format("{} is {}", key, s.empty() ? "empty" : "not text"), {}, key);
+        fail_at(where(*n), fmt::format("{} is {}", key, s.empty() ? "empty" : "not a text"), {}, key);
     return s;
 }
 
@@ -430,7 +430,7 @@ std::string_view toml_table::one_of(const std::vector<std::string_view>& keys) c
         found = k;
     }
     if (found.empty())
-        fail(fmt::format("{} says nothing of what it is", title_),
+        fail(fmt::format("{} does not say what it is", title_),
              fmt::format("add one of: {}", fmt::join(keys, ", ")));
     return found;
 }

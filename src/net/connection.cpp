@@ -70,7 +70,7 @@ bool connection::handled(bool go_on)
     if (closed_ || finishing_)
         return false;
     if (!go_on)
-        turn_out("this is not taken");
+        turn_out("this is not accepted");
     if (reading_ && !met_ && (!handlers_.met || handlers_.met())) {
         met_ = true;
         disarm();

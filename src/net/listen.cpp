@@ -48,7 +48,7 @@ sockaddr_un unix_address(const std::string& path)
     if (path.empty() || path.size() >= sizeof a.sun_path)
         throw error(error_kind::bad_input, "socket " + path,
                     fmt::format("its name has {} bytes", path.size()),
-                    fmt::format("1 to {}", sizeof a.sun_path - 1));
+                    fmt::format("give 1 to {}", sizeof a.sun_path - 1));
     std::memcpy(static_cast<char*>(a.sun_path), path.c_str(), path.size() + 1);
     return a;
 }
@@ -77,8 +77,8 @@ void make_free(const std::string& path)
         refused("socket " + path, errno);
     }
     if (!S_ISSOCK(s.st_mode))
-        throw error(error_kind::bad_input, "socket " + path, "there is something else that is no socket",
-                    "choose another name, or remove it");
+        throw error(error_kind::bad_input, "socket " + path,
+                    "another file that is not a socket has this name", "choose another name, or remove it");
     const owned_fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const sockaddr_un a = unix_address(path);
     // EAGAIN: its queue is full, so a process listens.
@@ -88,7 +88,7 @@ void make_free(const std::string& path)
         const bool known = ::getsockopt(probe.get(), SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && who.pid > 0;
         throw error(error_kind::not_available, "socket " + path,
                     fmt::format("{} listens there already", known ? process_name(who.pid) : "somebody"),
-                    "draw through that one, end it, or name another socket");
+                    "use that one, end it, or name another socket");
     }
     if (errno != ECONNREFUSED)
         refused("socket " + path, errno);
@@ -164,11 +164,11 @@ bool holds(const fs::path& process, const std::set<std::string>& sockets)
     const std::string holder = code == EADDRINUSE ? find_port_holder(port, stream) : "";
     if (holder.empty())
         refused(what, code,
-                code == EACCES && port < 1024 ? "ports below 1024 need rights; take another, such as 4003"
+                code == EACCES && port < 1024 ? "ports below 1024 need rights; use another, such as 4003"
                                               : "");
     detail::throw_caused(error(error_kind::not_available, what,
                                fmt::format("{}: by {}", std::strerror(code), holder),
-                               "choose another port, or end it"),
+                               "choose another port, or end that program"),
                          code);
 }
 
@@ -214,11 +214,11 @@ host_and_port parse_host(std::string_view text, const std::string& what)
     const auto number = detail::number_in<decltype(at.port)>(port);
     const bool is_digits = !port.empty() && port.find_first_not_of("0123456789") == std::string_view::npos;
     if (!at.host.empty() && !number && is_digits)
-        throw error(error_kind::bad_input, what, fmt::format("{} is no port", port),
-                    "ports are 0 to 65535; 0 takes a free one");
+        throw error(error_kind::bad_input, what, fmt::format("{} is not a port", port),
+                    "ports are 0 to 65535; 0 selects a free one");
     if (at.host.empty() || !number)
-        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is no address", all),
-                    "[HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 takes a free one");
+        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not an address", all),
+                    "[HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 selects a free one");
     at.port = *number;
     return at;
 }
@@ -233,9 +233,10 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!lock) {
         const int code = errno;
-        detail::throw_caused(error(error_kind::bad_input, what, std::strerror(code),
-                                   code == EACCES ? "name a folder of your own" : "its folder must be there"),
-                             code);
+        detail::throw_caused(
+            error(error_kind::bad_input, what, std::strerror(code),
+                  code == EACCES ? "name a folder that belongs to you" : "create its folder first"),
+            code);
     }
     constexpr int tries = 200;
     static_cast<void>(detail::lock_file(lock, tries)); // a process that keeps it is at fault

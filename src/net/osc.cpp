@@ -26,7 +26,7 @@ constexpr std::size_t most_messages = 256;
 
 [[noreturn]] void broken(std::string why)
 {
-    throw error(error_kind::bad_input, "packet", std::move(why), "OSC 1.0: a message or a bundle");
+    throw error(error_kind::bad_input, "packet", std::move(why), "send an OSC 1.0 message or bundle");
 }
 
 // Reads a big-endian number.
@@ -89,14 +89,14 @@ const char* words(int code)
 {
     switch (code) {
     case -LO_EINVALIDPATH:
-        return "its address is not filled up with zeros";
+        return "its address is not padded with zeros";
     case -LO_EINVALIDTYPE:
     case -LO_EBADTYPE:
-        return "its types do not begin with a comma, do not end, or are not filled up with zeros";
+        return "its types do not begin with a comma, do not end, or are not padded with zeros";
     case -LO_EINVALIDARG:
-        return "a value does not end within it, or is of no known type";
+        return "a value is incomplete, or has an unknown type";
     default:
-        return "its types and its length do not agree";
+        return "its types do not match its length";
     }
 }
 
@@ -105,7 +105,7 @@ osc_message read_message(std::string_view bytes)
 {
     if (!bytes.starts_with('/'))
         throw error(error_kind::bad_input, "message", "its address does not begin with /",
-                    "OSC 1.0: an address, types, values");
+                    "send an address, types and values, as OSC 1.0 requires");
     const std::size_t end = bytes.find('\0');
     if (end == std::string_view::npos)
         return {.address = std::string(bytes), .fault = "its address does not end"};
@@ -131,7 +131,7 @@ void read_element(std::vector<osc_message>& all, std::string_view bytes, std::op
 {
     if (!bytes.starts_with(bundle_mark)) {
         if (all.size() == most_messages)
-            broken(fmt::format("more than {} messages", most_messages));
+            broken(fmt::format("it has more than {} messages", most_messages));
         all.push_back(read_message(bytes));
         all.back().unix_ns = at;
         return;
@@ -140,16 +140,16 @@ void read_element(std::vector<osc_message>& all, std::string_view bytes, std::op
         broken(fmt::format("its bundles nest deeper than {}", most_depth));
     bytes.remove_prefix(bundle_mark.size());
     if (bytes.size() < time_bytes)
-        broken("a bundle without its time");
+        broken("a bundle has no time");
     at = unix_time(number(bytes.substr(0, time_bytes)));
     bytes.remove_prefix(time_bytes);
     while (!bytes.empty()) {
         if (bytes.size() < size_bytes)
-            broken("a bundle that ends within a size");
+            broken("a bundle ends within a size");
         const std::uint64_t size = number(bytes.substr(0, size_bytes));
         bytes.remove_prefix(size_bytes);
         if (size > bytes.size() || size == 0 || size % 4 != 0)
-            broken(fmt::format("an element of {} bytes where {} are left", size, bytes.size()));
+            broken(fmt::format("an element has {} bytes, but {} are left", size, bytes.size()));
         read_element(all, bytes.substr(0, size), at, depth + 1);
         bytes.remove_prefix(size);
     }
@@ -165,7 +165,7 @@ bool osc_is_built() noexcept
 std::vector<osc_message> parse_osc(std::string_view packet)
 {
     if (packet.empty() || packet.size() % 4 != 0)
-        broken(fmt::format("{} bytes are no multiple of 4", packet.size()));
+        broken(fmt::format("{} bytes are not a multiple of 4", packet.size()));
     std::vector<osc_message> all;
     read_element(all, packet, {}, 0);
     return all;

@@ -83,7 +83,7 @@ bool is_stop(const json& j)
 std::variant<rpc_request, rpc_refusal> read_request(json& j)
 {
     if (!j.is_object())
-        return invalid(nullptr, "it is no object");
+        return invalid(nullptr, "it is not an object");
     rpc_request r;
     const auto id = j.find("id");
     r.wants_reply = id != j.end();
@@ -155,7 +155,8 @@ rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
         for (const char c : cut_echo(why))
             plain += static_cast<unsigned char>(c) < 0x80U ? c : '?';
         return alone(
-            {{code_parse_error, "bad-input", "message", plain, "one JSON value a line, in UTF-8"}, nullptr});
+            {{code_parse_error, "bad-input", "message", plain, "send one JSON value on each line, in UTF-8"},
+             nullptr});
     }
     json& j = p.value;
     rpc_message m;
@@ -171,7 +172,7 @@ rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
     if (j.size() > most_requests)
         return refused(over("batch",
                             fmt::format("{} requests in a batch of at most {}", j.size(), most_requests),
-                            "send several"),
+                            "send several batches"),
                        j);
     if (p.too_deep)
         return refused(too_deep(), j);

@@ -117,7 +117,7 @@ void web_connection::read_first()
                 respond({413, "text/plain", "too much\n", ""});
             else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
                      e != http::error::end_of_stream && e != http::error::partial_message)
-                respond({400, "text/plain", "no request of HTTP\n", ""});
+                respond({400, "text/plain", "not an HTTP request\n", ""});
             else if (e)
                 close();
             else
@@ -145,9 +145,10 @@ void web_connection::answer_request()
     if (!ours)
         return respond(
             {403, "text/plain",
-             "another name or another page than this server's: its owner lists more in allow_hosts\n", ""});
+             "this name or page does not belong to this server: its owner can add names to allow_hosts\n",
+             ""});
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-        return respond({405, "text/plain", "GET and HEAD only\n", ""});
+        return respond({405, "text/plain", "only GET and HEAD\n", ""});
     if (parser_.chunked() || parser_.content_length().value_or(0) > 0)
         return respond({413, "text/plain", "too much\n", ""});
     if (to.path == "/rpc" && websocket::is_upgrade(request))
@@ -202,7 +203,7 @@ void web_connection::respond(web_reply r)
 void web_connection::upgrade()
 {
     if (!calls().upgrade())
-        return respond({503, "text/plain", "there is no place, try again later\n", ""});
+        return respond({503, "text/plain", "all places are taken, try again later\n", ""});
     ws_.emplace(socket_);
     look_after(true);
     ws_->read_message_max(limits().message_bytes);
@@ -268,7 +269,7 @@ void web_connection::received()
     }
     message_ends();
     if (!ws_->got_text()) {
-        why_ = {websocket::close_code::unknown_data, "text is taken"};
+        why_ = {websocket::close_code::unknown_data, "only text is accepted"};
         return finish();
     }
     std::string text = beast::buffers_to_string(buffer_.data());
@@ -364,7 +365,7 @@ web_reply make_page(const page_document& document, std::string_view host)
 
 void turn_away(int socket)
 {
-    const std::string why = unavailable("there is no place");
+    const std::string why = unavailable("all places are taken");
     static_cast<void>(::send(socket, why.data(), why.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }
 

@@ -34,7 +34,7 @@ value choose(const option& o, const value& v)
     if (name != nullptr && std::find(known.begin(), known.end(), *name) != known.end())
         return v;
     const std::string_view like = name == nullptr ? "" : detail::nearest_name(*name, known);
-    throw refusal(o, shown(v) + " is not known",
+    throw refusal(o, shown(v) + " is unknown",
                   like.empty() ? fmt::format("one of {}", choices_text(o))
                                : fmt::format("did you mean {}? One of {}", like, choices_text(o)));
 }
@@ -222,7 +222,7 @@ value read_value(const option& o, const value& v)
     if (std::holds_alternative<double>(v) && o.allowed.high > 0.0)
         return check_number(o, v);
     if (!std::holds_alternative<std::string>(v))
-        throw refusal(o, shown(v) + " is no text", "put it in quotes");
+        throw refusal(o, shown(v) + " is not a text", "put it in quotes");
     return v;
 }
 

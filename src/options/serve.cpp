@@ -33,7 +33,7 @@ std::string read_text_value(const written_value& d)
     if (text == nullptr)
         fail(d, fmt::format("{} is {}", d.name, shown(d.said)), "give a string in quotes");
     if (text->empty() || text->find('\0') != std::string::npos)
-        fail(d, fmt::format("{} is {}", d.name, text->empty() ? "empty" : "not text"), {});
+        fail(d, fmt::format("{} is {}", d.name, text->empty() ? "empty" : "not a text"), {});
     return *text;
 }
 
@@ -86,10 +86,9 @@ std::string read_host(const written_value& d)
     // Browsers write a port as it is counted, and no other.
     const bool has_port = colon != all.npos && is_port(all.substr(colon + 1)) && all[colon + 1] != '0';
     if (!is_host(all) && !(has_port && is_host(all.substr(0, colon))))
-        fail(
-            d, fmt::format("\"{}\" is no host", text),
-            "HOST[:PORT] without a scheme and a path, such as pi.lan, pi.lan:8080 or \"[fd00::7]\"; it holds "
-            "for http and https");
+        fail(d, fmt::format("\"{}\" is not a host", text),
+             "give HOST[:PORT] without a scheme and a path, such as pi.lan, pi.lan:8080 or \"[fd00::7]\"; it "
+             "applies to http and https");
     return text;
 }
 
@@ -100,9 +99,9 @@ std::string read_address(const written_value& d)
         return plain_number(read_number(d, {0.0, 65535.0}, true));
     std::string text = read_text_value(d);
     if (!is_address(text))
-        fail(d, fmt::format("\"{}\" is no address", text),
-             "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; ports are 0 to 65535, 0 takes a "
-             "free one");
+        fail(d, fmt::format("\"{}\" is not an address", text),
+             "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; ports are 0 to 65535, 0 selects "
+             "a free one");
     return text;
 }
 
@@ -201,7 +200,7 @@ serve_settings read_serve(const std::vector<written_value>& said)
     if (kept == nullptr)
         l.kept_clients = std::min(l.kept_clients, l.max_clients / 2);
     else if (l.kept_clients >= l.max_clients)
-        fail(*kept, fmt::format("{} places are kept of {}", l.kept_clients, l.max_clients),
+        fail(*kept, fmt::format("{} of {} places are kept", l.kept_clients, l.max_clients),
              "keep fewer than max_clients");
     return s;
 }

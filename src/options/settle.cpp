@@ -76,7 +76,8 @@ void give(wishes& w, const option& o, const value& v)
 {
     if (const option* rival = find(o.rival)) {
         if (w.gives(*rival))
-            throw refusal(o, fmt::format("there is also {{{}}}", rival->name), "give one of them");
+            throw refusal(o, fmt::format("it cannot be combined with {{{}}}", rival->name),
+                          "give one of them");
         forget(w, *rival);
     }
     put(w, o, v);
@@ -140,7 +141,7 @@ void settle(wishes& w)
         law.max_soa_s = law.intercept_s / (1.0 - law.slope);
     if (w.plan.scale.kind == scale_kind::sl && (find("sl")->where & w.place) != 0) {
         if (!(w.render.sl_db.value_or(0.0) > 0.0))
-            throw refusal(*find("intensity_scale"), "sl is a part of a sensation level above 0 dB",
+            throw refusal(*find("intensity_scale"), "the scale sl needs a sensation level above 0 dB",
                           "add {sl}, such as {sl=7}");
         w.plan.scale.sl_db = *w.render.sl_db;
     }
@@ -150,8 +151,8 @@ void refuse_planning(const wishes& w, const std::string& what)
 {
     for (const option& o : all())
         if ((o.where & planning) != 0 && w.gives(o))
-            throw refusal(o, fmt::format("{} is planned already", what),
-                          "plan the stroke anew with it, or leave it out");
+            throw refusal(o, fmt::format("{} is already a plan", what),
+                          "plan the stroke again with it, or leave it out");
 }
 
 error at_default(const wishes& w, const error& e)

@@ -146,7 +146,7 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
         throw error(error_kind::bad_input, "spread",
                     fmt::format("{} people are too many for a picture of a stroke of {}", people.size(),
                                 seconds_text(s.motion.duration_s())),
-                    "ask for fewer people, or draw no picture")
+                    "use fewer people, or draw no picture")
             .with_field("spread");
     std::vector<percept_summary> felt;
     std::vector<tap_summary> tapped;
@@ -190,7 +190,7 @@ prediction predict_low_speed(const array& a, const stroke& s, const plan& p, con
 {
     prediction r;
     if (p.curve) {
-        r.unpredicted = "continuous has no bursts, and this observer feels taps";
+        r.unpredicted = "continuous has no bursts, and this observer feels only taps";
     } else {
         r.taps = predict_taps(a, s, p, o);
         r.tapped = summarise(r.taps);
@@ -235,7 +235,7 @@ std::string prediction_note(const observer_choice& o)
     const std::string model = "a model's prediction, not a measurement: ";
     if (o.kind == observer_kind::low_speed)
         return model + describe(o.low_speed);
-    return model + "the felt position is taken to be the centre of energy of the tactors that sound";
+    return model + "the felt position is assumed to be the centre of energy of the tactors that sound";
 }
 
 prediction predict(const array& a, const stroke& s, const plan& p, const observer_choice& o,
@@ -294,7 +294,7 @@ std::string spread_note(const spread_choice& c, bool by_taps)
 {
     const std::string sigma =
         by_taps ? fmt::format("sigma from 1/{0} to {0} times as much, ", plain_number(c.sigma_factor)) : "";
-    return fmt::format("5 to 95 % of {} drawn with seed {}: {}each tactor's threshold give or take {} dB, "
+    return fmt::format("5 to 95 % of {} drawn with seed {}: {}each tactor's threshold plus or minus {} dB, "
                        "its place within {} mm",
                        counted(c.people, "person", "people"), c.seed, sigma, plain_number(c.threshold_db),
                        plain_number(c.place_mm));

@@ -42,7 +42,7 @@ void check_count(const array& a, const char* what, std::size_t n)
 {
     if (n != 0 && n != a.tactors.size())
         throw bad_field(what, fmt::format("there are {} for {}", n, counted(a.tactors.size(), "tactor")),
-                        "one for each, or none");
+                        "give one for each, or none");
 }
 
 // The low-speed observer pulls taps together as a chain: (I + K) x = m, K the Laplacian whose link i has the
@@ -60,7 +60,7 @@ std::vector<double> link_give(const low_speed_observer& o, std::span<const doubl
         if (!std::isfinite(onsets_s[i]) || (i > 0 && onsets_s[i] < onsets_s[i - 1]))
             throw bad_field(
                 "onsets_s",
-                fmt::format("number {}, {} s, is before the one before it or no time", i + 1, onsets_s[i]),
+                fmt::format("number {}, {} s, is before the previous one or not a time", i + 1, onsets_s[i]),
                 "give them in order");
         if (i > 0) {
             const double way = o.sigma_v_mm_s * (onsets_s[i] - onsets_s[i - 1]) / o.sigma_mm;
@@ -155,7 +155,7 @@ std::vector<double> person_gains(const array& a, const person& who)
     for (const double db : who.sensitivity_db) {
         gains.push_back(std::pow(10.0, db / 20.0));
         if (!(gains.back() > 0.0 && std::isfinite(gains.back())))
-            throw bad_field("sensitivity_db", fmt::format("{} dB is not one", db));
+            throw bad_field("sensitivity_db", fmt::format("{} dB is not a threshold", db));
     }
     return gains;
 }
@@ -172,7 +172,7 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
     if (onsets_s.size() != alone.size())
         throw detail::bad_field("onsets_s",
                                 fmt::format("there are {}, and {} places", onsets_s.size(), alone.size()),
-                                "one for each");
+                                "give one for each");
     for (const point& p : alone)
         if (!detail::finite(p))
             throw error(error_kind::bad_input, "place of a tap", "is not finite");
@@ -192,7 +192,7 @@ std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, co
     if (p.curve)
         throw error(error_kind::bad_input, "plan",
                     "it is continuous, and the low-speed observer predicts taps only",
-                    "take an algorithm that has bursts");
+                    "use an algorithm with bursts");
     const array felt_at = detail::felt_array(a, who);
     const std::vector<double> gains = detail::person_gains(a, who);
     std::vector<tap> taps;
@@ -392,17 +392,17 @@ std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
 std::string notice(const compensated_plan& p)
 {
     if (p.taps.empty())
-        return fmt::format("no burst sounds that could be moved for {}", describe(p.observer));
+        return fmt::format("there is no audible burst to move for {}", describe(p.observer));
     const tap_summary felt = summarise(p.taps);
-    std::string text = fmt::format("bursts are moved for {}; it is predicted to feel them {:.3f} mm RMS and "
-                                   "at most {:.3f} mm from the target",
+    std::string text = fmt::format("bursts are moved for {}, which is predicted to feel them {:.3f} mm RMS "
+                                   "and at most {:.3f} mm from the target",
                                    describe(p.observer), felt.rms_error_mm.value_or(0.0),
                                    felt.largest_error_mm.value_or(0.0));
     if (p.at_edge != 0)
-        text += fmt::format(
-            "; {} of {} cannot be moved far enough on this array, which alone leaves {:.3f} mm RMS "
-            "and at most {:.3f} mm; where many places do equally well, others would too",
-            p.at_edge, counted(p.taps.size(), "burst"), p.residual_rms_mm, p.residual_largest_mm);
+        text +=
+            fmt::format("; {} of {} cannot be moved far enough on this array, which alone leaves {:.3f} mm "
+                        "RMS and at most {:.3f} mm; other places may be as good",
+                        p.at_edge, counted(p.taps.size(), "burst"), p.residual_rms_mm, p.residual_largest_mm);
     if (p.plan.algorithm == to_string(algorithm_kind::tactile_brush))
         text += "; off the lines of the grid they are no longer the Tactile Brush's";
     return text;
@@ -428,16 +428,17 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
     static_cast<void>(felt_places(o, onsets_s, targets)); // checks the arguments
     const std::vector<double> give = detail::link_give(o, onsets_s);
     if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
-        throw error(error_kind::bad_input, "compensation",
-                    "bursts that begin together, or nearly so for this observer, cannot be felt apart",
-                    "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
+        throw error(
+            error_kind::bad_input, "compensation",
+            "this observer cannot feel bursts at different places if they begin together, or nearly so",
+            "use a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
             .with_field("compensate");
     r.played = detail::pushed(give, targets);
     if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); })) {
         if (targets.size() > most_taps)
             throw error(error_kind::bad_input, "compensation",
                         fmt::format("{} bursts are too many", targets.size()),
-                        fmt::format("at most {}; make the stroke shorter", most_taps))
+                        fmt::format("use at most {}: make the stroke shorter", most_taps))
                 .with_field("compensate");
         r.played = fit_on_array(l, give, targets);
         r.at_edge = count_on_edge(detail::access::of(l), r.played);
@@ -453,9 +454,8 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
         return make_compensated_plan(a, l, apply_fits({s}, l).front(), o, m);
     const plan_options own = detail::apply_choices(o, s.choices);
     if (own.algorithm == algorithm_kind::continuous)
-        throw detail::bad_field("algorithm",
-                                "continuous has no bursts that could be moved for the low-speed observer",
-                                "{algorithm=park2016}, or no compensation");
+        throw detail::bad_field("algorithm", "continuous has no bursts to move for the low-speed observer",
+                                "use {algorithm=park2016}, or no compensation");
     compensated_plan r;
     r.plan = make_plan(a, l, s, o);
     r.observer = m;

@@ -171,7 +171,7 @@ std::size_t count_samples(double duration_s)
 {
     if (!(duration_s <= longest_percept_s))
         throw error(error_kind::bad_input, "stroke",
-                    fmt::format("lasts {}, too long to predict what is felt", seconds_text(duration_s)),
+                    fmt::format("lasts {}, too long for a prediction", seconds_text(duration_s)),
                     fmt::format("at most {} s", longest_percept_s));
     return static_cast<std::size_t>((duration_s + detail::same_time_s) / percept_step_s) + 1;
 }

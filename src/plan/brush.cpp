@@ -72,7 +72,7 @@ std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& point
     for (std::size_t i = 0; i < std::min(named, out.dropped.size()); ++i)
         places += (i == 0 ? "" : ", ") + place(out.dropped[i].position);
     out.warnings.push_back(
-        fmt::format("{} of {} places on the grid left out, for which there is no time: {}{}",
+        fmt::format("{} of {} places on the grid left out, because there is no time for them: {}{}",
                     out.dropped.size(), points.size(), places, out.dropped.size() > named ? ", ..." : ""));
     return rest;
 }
@@ -238,7 +238,7 @@ virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path,
         v.moved_mm = 0.0;
     } else if (!j.options.snap)
         throw error(error_kind::bad_input, j.name(),
-                    fmt::format("{} at {}, which is on no line of the grid; the nearest point on one is {}",
+                    fmt::format("{} at {}, off the lines of the grid; the nearest point on a line is {}",
                                 start ? "starts" : "ends", place(p), place(v.place)),
                     "{snap=true} moves it there");
     return v;
@@ -300,7 +300,7 @@ void plan_brush(const job& j, plan& out)
     const std::optional<grid_lines> grid = find_grid(j.tactors);
     if (!grid)
         throw error(error_kind::bad_input, fmt::format("array \"{}\"", j.tactors.name),
-                    "is no rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
+                    "is not a rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
             .with_field("algorithm");
     std::vector<meeting> points = virtual_tactors(j, *grid);
     if (j.options.drop_points)

@@ -126,11 +126,11 @@ curve sample_model(const job& j)
 {
     const followed f(j);
     if (static_cast<double>(f.size) > most_bursts)
-        throw error(
-            error_kind::bad_input, j.name(),
-            fmt::format("would need {:.3g} samples of phantom model \"{}\"", static_cast<double>(f.size),
-                        j.model->name()),
-            fmt::format("at most {:.0f}, one each {} s; make it shorter", most_bursts, continuous_step_s));
+        throw error(error_kind::bad_input, j.name(),
+                    fmt::format("would need {:.3g} samples of phantom model \"{}\"",
+                                static_cast<double>(f.size), j.model->name()),
+                    fmt::format("use at most {:.0f}, one each {} s: make it shorter", most_bursts,
+                                continuous_step_s));
     curve_samples all;
     burst b;
     same_tactors seen;

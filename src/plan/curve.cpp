@@ -106,7 +106,7 @@ void check_sample(const curve_samples& s, std::size_t i, std::size_t first)
 {
     for (const double v : {s.positions[i].x_mm, s.positions[i].y_mm, s.intensities[i]})
         if (!std::isfinite(v))
-            refuse_sample(i, fmt::format("{} is no finite number", v));
+            refuse_sample(i, fmt::format("{} is not a finite number", v));
     if (s.ends[i] < first || s.ends[i] > s.drives.size())
         refuse_sample(i, fmt::format("its drives end at {} of {}", s.ends[i], s.drives.size()));
     for (std::size_t k = first; k < s.ends[i]; ++k) {

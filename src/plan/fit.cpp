@@ -104,15 +104,16 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
 
 [[noreturn]] void refuse_margin(double margin_mm, double room_mm)
 {
-    throw detail::bad_field(
-        "margin_mm", fmt::format("{:.6g} mm on each side leave no space in the array", margin_mm),
-        room_mm > 0.0 ? fmt::format("less than {:.4g} mm", room_mm) : "one tactor has none");
+    throw detail::bad_field("margin_mm",
+                            fmt::format("{:.6g} mm on each side leave no space in the array", margin_mm),
+                            room_mm > 0.0 ? fmt::format("use less than {:.4g} mm", room_mm)
+                                          : "use 0: one tactor has no space for a margin");
 }
 
 [[noreturn]] void refuse_across(const std::string& what)
 {
     throw error(error_kind::bad_input, what,
-                "goes across the line in which all tactors lie, and nothing of it along",
+                "only goes across the line in which all tactors lie, not along it",
                 "turn it, or use an array with two rows");
 }
 
@@ -202,7 +203,7 @@ affine make_map(const fitting& f)
 fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, double margin_mm)
 {
     if (!(margin_mm >= 0.0 && std::isfinite(margin_mm)))
-        throw detail::bad_field("margin_mm", fmt::format("{} mm", margin_mm), "0 mm or more");
+        throw detail::bad_field("margin_mm", fmt::format("{} mm", margin_mm), "give 0 mm or more");
     fitted_strokes all{strokes, {}};
     if (strokes.empty())
         return all;

@@ -69,8 +69,8 @@ std::string missed_places::warning(std::string_view what) const
         return {};
     const std::string line =
         in_line_ == 0 ? "" : fmt::format("; for {} of them the three are in one line", in_line_);
-    return fmt::format("{} of {} {} outside the triangle of the three closest tactors, first at {}{}: felt "
-                       "elsewhere (faces = delaunay)",
+    return fmt::format("{} of {} {} outside the triangle of the three closest tactors, first at {}{}: people "
+                       "feel them elsewhere (faces = delaunay)",
                        missed_, counted(all_, what), missed_ == 1 ? "lies" : "lie", place(first_), line);
 }
 
@@ -82,8 +82,9 @@ std::string job::name() const
 void check_burst_count(const job& j, double bursts)
 {
     if (bursts > most_bursts)
-        throw error(error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
-                    fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
+        throw error(
+            error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
+            fmt::format("use at most {:.0f}: make the stroke shorter or the SOA longer", most_bursts));
 }
 
 burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s)
@@ -128,7 +129,7 @@ void follower::refuse(double t_s) const
     const trajectory& motion = job_.motion.motion;
     const std::string& made_for = job_.motion.made_for;
     const std::string hint =
-        (made_for.empty() ? "" : fmt::format("{{array={}| is the one it is drawn for, }}", made_for)) +
+        (made_for.empty() ? "" : fmt::format("{{array={}| is its array, }}", made_for)) +
         "{fit=true| scales it to the array, }{outside=clamp} plays the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(error_kind::bad_input, job_.name(),

@@ -69,21 +69,20 @@ void warn_of_long_bursts(const detail::burst_count& c, plan& p)
 void warn_of_short_bursts(const detail::burst_count& c, plan& p)
 {
     if (c.too_short != 0)
-        p.warnings.push_back(
-            fmt::format("{} of {} {} shorter than one cycle of the carrier, {:.4g} ms at {:.6g} Hz (down "
-                        "to {:.4g} ms): too short to be felt as vibration",
-                        c.too_short, counted(c.all, "burst"), c.too_short == 1 ? "is" : "are",
-                        1e3 / p.carrier_hz, p.carrier_hz, c.shortest_s * 1e3));
+        p.warnings.push_back(fmt::format("{} of {} {} shorter than one cycle of the carrier, {:.4g} ms at "
+                                         "{:.6g} Hz (down to {:.4g} ms): too short to feel as vibration",
+                                         c.too_short, counted(c.all, "burst"),
+                                         c.too_short == 1 ? "is" : "are", 1e3 / p.carrier_hz, p.carrier_hz,
+                                         c.shortest_s * 1e3));
 }
 
 /// Warns of a stroke that hardly moves. A stroke that rests is not meant to.
 void warn_of_short_travel(double pitch_mm, plan& p)
 {
     if (p.stroke_length_mm > 0.0 && p.stroke_length_mm < least_travel * pitch_mm * (1.0 - 1e-9))
-        p.warnings.push_back(
-            fmt::format("its path of {:.4g} mm is shorter than a fifth of the {:.4g} mm between "
-                        "tactors: it may not be felt to move",
-                        p.stroke_length_mm, pitch_mm));
+        p.warnings.push_back(fmt::format("its path of {:.4g} mm is shorter than a fifth of the {:.4g} mm "
+                                         "between tactors: people may not feel it move",
+                                         p.stroke_length_mm, pitch_mm));
 }
 
 /// Warns of a movement whose numbers are likely in another unit.
@@ -121,8 +120,8 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
     std::nth_element(longest_mm.begin(), middle, longest_mm.end());
     if (*middle > widest_face * l.pitch_mm())
         p.warnings.push_back(fmt::format(
-            "gaussian spreads by the {:.4g} mm between the nearest tactors, and others are {:.4g} mm apart: "
-            "between those it is felt at the nearer one (phantom = inverse-distance or barycentric)",
+            "gaussian spreads by the {:.4g} mm between the nearest tactors, but others are {:.4g} mm apart: "
+            "between those people feel it at the nearer one (phantom = inverse-distance or barycentric)",
             l.pitch_mm(), *middle));
 }
 
@@ -150,7 +149,7 @@ void warn_of_missing_samples(plan& p)
 {
     const std::shared_ptr<const recording>& r = p.wave.recorded;
     if (p.wave.kind == waveform_kind::recording && r->missing > 0)
-        p.warnings.push_back(fmt::format("{}: the recording is cut short: it has {} of {}",
+        p.warnings.push_back(fmt::format("{}: the recording is incomplete: it has {} of {}",
                                          recording_name(*r), r->samples.size(),
                                          counted(r->samples.size() + r->missing, "sample")));
 }
@@ -162,7 +161,7 @@ void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, p
         return;
     if (!p.soa_s) {
         p.warnings.push_back(fmt::format(
-            "the duration asked for each burst, {}, is not used: {}", seconds_text(*o.burst_s),
+            "the requested burst duration, {}, is not used: {}", seconds_text(*o.burst_s),
             p.curve ? "continuous has no bursts" : "tactile-brush takes durations from path and timing law"));
         return;
     }
@@ -171,8 +170,8 @@ void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, p
     const double d = c.first_s;
     if (!in_bounds || std::abs(d - detail::law_duration_s(law, *p.soa_s)) > law_tolerance_s)
         p.warnings.push_back(
-            fmt::format("bursts of {} each {} leave the timing law, SOA = {:.6g} duration + {}, "
-                        "by which their SOA is {}: they may not be felt as one motion",
+            fmt::format("bursts of {} every {} break the timing law, SOA = {:.6g} duration + {}, which gives "
+                        "them an SOA of {}: people may not feel one motion",
                         seconds_text(d), seconds_text(*p.soa_s), law.slope, seconds_text(law.intercept_s),
                         seconds_text(law.slope * d + law.intercept_s, 4)));
 }
@@ -181,7 +180,7 @@ double check_carrier(double hz)
 {
     if (!(hz > 0.0 && std::isfinite(hz)))
         throw detail::bad_field("carrier_hz", fmt::format("{} Hz is not a frequency", hz),
-                                "more than 0; 250 is usual");
+                                "give more than 0, such as 250");
     return hz;
 }
 
@@ -189,17 +188,17 @@ double check_carrier(double hz)
 void check_profile(const timing_profile& p)
 {
     const auto refuse = [](std::string_view what, double value, std::string_view hint) {
-        throw error(error_kind::bad_input, "timing profile", fmt::format("{} {} cannot be", what, value),
+        throw error(error_kind::bad_input, "timing profile", fmt::format("{} {} is impossible", what, value),
                     hint)
             .with_field("profile");
     };
     if (!(p.slope > 0.0 && p.slope < 1.0))
-        refuse("a slope of", p.slope, "between 0 and 1; 0.32 on palm and forearm");
+        refuse("a slope of", p.slope, "give 0 to 1; 0.32 on palm and forearm");
     if (!(p.intercept_s >= 0.0 && std::isfinite(p.intercept_s)))
-        refuse("an intercept in seconds of", p.intercept_s, "0 or more; 0.0473 on palm and forearm");
+        refuse("an intercept in seconds of", p.intercept_s, "give 0 or more; 0.0473 on palm and forearm");
     if (!(p.max_soa_s > p.intercept_s && std::isfinite(p.max_soa_s)))
         refuse("a longest SOA in seconds of", p.max_soa_s,
-               fmt::format("more than the intercept, {}", p.intercept_s));
+               fmt::format("give more than the intercept, {}", p.intercept_s));
 }
 
 /// \throws error (bad_input) for options that the algorithm cannot use.
@@ -217,9 +216,9 @@ void check_options(const plan_options& o)
     const double longest = detail::law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
         throw error(error_kind::bad_input, "{timing=fit}",
-                    fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
+                    fmt::format("bursts of at least {} are impossible: an SOA of {} gives {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
-                    "lower {min_duration_s}, or take a longer SOA")
+                    "lower {min_duration_s}, or use a longer SOA")
             .with_field("min_duration_s");
 }
 
@@ -249,7 +248,7 @@ double burst_duration_s(const timing_profile& p, double soa_s)
     if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
         throw detail::bad_field(
             "soa_s",
-            fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
+            fmt::format("{} s is out of range: an SOA is longer than {} s and at most {} s", soa_s,
                         p.intercept_s, p.max_soa_s),
             fmt::format("use {}", p.max_soa_s));
     return detail::law_duration_s(p, soa_s);
@@ -263,13 +262,12 @@ double burst_duration_s(const plan_options& o)
     if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
         throw detail::bad_field(
             "soa_s",
-            fmt::format("{} s is out of bounds: with a duration of its own for the burst an SOA is {} to "
-                        "{} s",
-                        o.soa_s, shortest_burst_s, longest_free_soa_s),
+            fmt::format("{} s is out of range: with a set burst duration an SOA is {} to {} s", o.soa_s,
+                        shortest_burst_s, longest_free_soa_s),
             fmt::format("use {}", o.profile.max_soa_s));
     if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
         throw detail::bad_field(
-            "burst_s", fmt::format("{} s is no duration, {} s is the shortest", *o.burst_s, shortest_burst_s),
+            "burst_s", fmt::format("{} s is too short: {} s is the shortest", *o.burst_s, shortest_burst_s),
             fmt::format("use {} to {} s", shortest_burst_s, o.soa_s));
     if (*o.burst_s > o.soa_s)
         throw detail::bad_field(
@@ -288,7 +286,7 @@ double intensity_scale::amplitude(double intensity) const
     if (level_db != 0.0) {
         if (!(std::isfinite(level_db) && level_db < 0.0))
             throw detail::bad_field("level_db", fmt::format("{} is not a level of 0 dB or less", level_db),
-                                    "a stroke may be weaker than asked for, not stronger");
+                                    "a stroke may be weaker than the requested level, not stronger");
         return intensity_scale{kind, exponent, sl_db}.amplitude(intensity) * std::pow(10.0, level_db / 20.0);
     }
     if (kind == scale_kind::linear)
@@ -296,7 +294,7 @@ double intensity_scale::amplitude(double intensity) const
     if (kind == scale_kind::stevens) {
         if (!detail::bounds_of::stevens_exponent.holds(exponent))
             throw detail::bad_field(
-                "stevens_exponent", fmt::format("{} is not one", exponent),
+                "stevens_exponent", fmt::format("{} is not an exponent", exponent),
                 "give 0.1 to 3; 0.95 at 60 Hz and 0.6 at 250 Hz on the finger (Stevens 1968)");
         return std::pow(intensity, 1.0 / exponent);
     }
@@ -345,10 +343,10 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     const plan_options o = apply_choices(common, s.choices);
     check_chosen(o, s);
     if (l.places().size() != a.tactors.size())
-        throw error(
-            error_kind::bad_input, "layout",
-            fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
-            "build the layout from the same array");
+        throw error(error_kind::bad_input, "layout",
+                    fmt::format("has {}, but the array has {}", counted(l.places().size(), "tactor"),
+                                a.tactors.size()),
+                    "build the layout from the same array");
     burst_count bursts;
     const job j{a, l, s, o, choose_model(l, o), bursts, take};
     plan p;

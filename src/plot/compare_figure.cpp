@@ -302,7 +302,7 @@ std::string note(const detail::comparison& c)
     if (c.compensated)
         text += " Bursts are moved for " + describe(c.observer.low_speed) + ".";
     if (c.faces == faces_kind::nearest)
-        text += " Of inverse-distance the three closest tactors play (faces nearest).";
+        text += " With inverse-distance the three closest tactors play (faces nearest).";
     return text;
 }
 

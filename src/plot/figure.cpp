@@ -22,7 +22,7 @@ namespace {
 std::string describe_recording(const plan& p, const std::string& frequency)
 {
     const std::string file = std::filesystem::path(waveform_text(p.wave)).filename().string();
-    return p.wave.texture == texture_kind::time     ? file + " in its own time"
+    return p.wave.texture == texture_kind::time     ? file + " at its own rate"
            : p.wave.texture == texture_kind::length ? file + " along the path"
                                                     : file + " at " + frequency;
 }
@@ -181,7 +181,7 @@ canvas draw_figure(const scene& s, const figure_options& o)
     const timeline t = make_timeline(s);
     if (o.animated && !t.sampled && t.bursts.size() > most_animated_bursts)
         throw error(error_kind::bad_input, "picture",
-                    fmt::format("{} bursts are more than the {} of an animated picture", t.bursts.size(),
+                    fmt::format("{} bursts are more than an animated picture can have, {}", t.bursts.size(),
                                 most_animated_bursts),
                     "draw a part of the stroke, or a still picture");
     drawn d = draw_within(s, t, o, {});

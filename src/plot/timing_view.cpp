@@ -179,7 +179,7 @@ private:
         levels_.clear();
         rows_.levels = 1;
         rows_.fit(space);
-        notes_.push_back("strokes on one tactor lie on each other");
+        notes_.push_back("strokes on one tactor overlap");
     }
 
     // Returns true if there are too many bars, or too narrow ones, to draw each.

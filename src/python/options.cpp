@@ -37,7 +37,7 @@ std::string write_keyword(const option& o, std::string_view value)
 // Marks and fields of the library that no option stands for.
 constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
                                options::own_word{"command:plan", "Plan.write()"},
-                               options::own_word{"array=none", "take plan.array"},
+                               options::own_word{"array=none", "use plan.array"},
                                options::own_word{"array=FILE", "Array.from_file(FILE)"},
                                options::own_word{"array", "Array.preset(\"{}\")"},
                                options::own_word{"force=true", "force=True"},
@@ -86,8 +86,8 @@ std::string text(const option& o, py::handle v)
 {
     if (!py::isinstance<py::str>(v))
         throw refusal(o,
-                      o.choices == nullptr ? fmt::format("{} is no text", shown(v))
-                                           : fmt::format("{} is not known", shown(v)),
+                      o.choices == nullptr ? fmt::format("{} is not a text", shown(v))
+                                           : fmt::format("{} is unknown", shown(v)),
                       o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
     auto said = v.cast<std::string>();
     if (said.find('\0') != std::string::npos)
@@ -121,10 +121,10 @@ void refuse_rivals(const py::dict& given)
     };
     for (const option& o : options::all())
         if (!o.rival.empty() && o.name < o.rival && says(o.name) && says(o.rival))
-            throw refusal(o, fmt::format("there is also {{{}}}", o.rival), "give one of them");
+            throw refusal(o, fmt::format("it cannot be combined with {{{}}}", o.rival), "give one of them");
     if (says("tukey_part") && says("envelope") &&
         py::str(given["envelope"]).cast<std::string>().find(':') != std::string::npos)
-        throw refusal(*options::find("envelope"), "it has a part, and there is also {tukey_part}",
+        throw refusal(*options::find("envelope"), "it has a part, so it cannot be combined with {tukey_part}",
                       "give the part once");
 }
 

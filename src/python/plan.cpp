@@ -157,7 +157,7 @@ py::array_t<double> weights(phantom_kind kind, faces_kind of_faces, const array_
             throw error(error_kind::bad_input, "point",
                         fmt::format("({:.6g}, {:.6g}) mm is outside the array, {:.3g} mm from it", p.x_mm,
                                     p.y_mm, distance_mm(p, near)),
-                        "Array.nearest() gives the nearest place of it")
+                        "Array.nearest() returns the nearest point of the array")
                 .with_field("point");
         model->weights(near, intensity, drives);
         for (const drive& d : drives)
@@ -186,12 +186,11 @@ plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>&
     const auto& tactors = to->value().tactors;
     for (std::size_t i = 0; i < tactors.size(); ++i)
         if (i >= from.size() || distance_mm(from[i].position, tactors[i].position) > same_place_mm)
-            throw error(
-                error_kind::bad_input, "score",
-                fmt::format("it is for the array \"{}\", and the player has that of the configuration, "
-                            "whose tactor {} is elsewhere",
-                            p.on->value().name, i),
-                "plan the stroke for Player.array");
+            throw error(error_kind::bad_input, "score",
+                        fmt::format("it is for the array \"{}\", but the player has the configuration's "
+                                    "array, whose tactor {} is elsewhere",
+                                    p.on->value().name, i),
+                        "plan the stroke for Player.array");
     plan_handle moved = p;
     moved.on = to;
     return moved;
@@ -223,7 +222,7 @@ plan_handle plan_from_json(const std::string& text, const std::string& named)
     if (f.made.plans.size() != 1)
         throw error(error_kind::bad_input, named,
                     "there are " + counted(f.made.plans.size(), "plan") + " in it",
-                    "take one of its \"plans\"");
+                    "use one of its \"plans\"");
     return {std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.made), f.render};
 }
 
@@ -251,7 +250,7 @@ render_options settle_sound(const plan_handle& p, const py::dict& given, bool el
 [[noreturn]] void refuse_different(const std::string& name, const std::string& a, const std::string& b)
 {
     throw error(error_kind::bad_input, name, fmt::format("the plans differ: {} and {}", a, b),
-                fmt::format("say {}= here, which counts for all of them", name))
+                fmt::format("give {}= here, which applies to all of them", name))
         .with_field(name);
 }
 
@@ -441,8 +440,8 @@ session::piece place_stroke(const stroke& s, const layout& faces, const wishes& 
 {
     if (s.fit && s.fit->group != 0)
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
-                    "it is fitted together with others of its group",
-                    "give apply_fits() all strokes of the file, and what it returns here");
+                    "its group is fitted as a whole",
+                    "call apply_fits() with all strokes of the file, and pass its result here");
     session::piece p{.strokes = {s}};
     session::place_strokes(p, faces, w);
     return p;

@@ -165,8 +165,9 @@ public:
     void refuse_child() const
     {
         if (forked())
-            throw error(error_kind::runtime, "player", "this process was forked from the one that has it",
-                        "make one of its own, or play in the parent");
+            throw error(error_kind::runtime, "player",
+                        "it belongs to the process that this one was forked from",
+                        "open a player in this process, or play in the parent");
     }
 
     /// Calls `f` with the player; once it is closed, the other. \throws error (runtime) in a forked process.
@@ -183,7 +184,7 @@ public:
     auto use(F&& f) const
     {
         return use(std::forward<F>(f), []() -> std::invoke_result_t<F, player&> {
-            throw error(error_kind::runtime, "player", "it is closed", "make a new one");
+            throw error(error_kind::runtime, "player", "it is closed", "open a new one");
         });
     }
 

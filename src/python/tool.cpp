@@ -28,7 +28,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     w.place = options::in_compare;
     take_options(w, options, on->value().tactors.size(), file);
     if (w.gives("sl") && w.plan.scale.kind != scale_kind::sl)
-        throw error(error_kind::bad_input, "sl", "nothing here uses it", "say intensity_scale=\"sl\", too")
+        throw error(error_kind::bad_input, "sl", "nothing here uses it", "add intensity_scale=\"sl\"")
             .with_field("sl");
     const layout& faces = on->faces();
     const stroke target = place_stroke(s, faces, w).strokes.front();
@@ -58,7 +58,7 @@ plot::figure_view view_from(const std::string& name)
          {std::pair{"array", array}, {"timing", timing}, {"wave", wave}, {"both", both}})
         if (name == known)
             return view;
-    throw error(error_kind::bad_input, "view", "\"" + name + "\" is not known",
+    throw error(error_kind::bad_input, "view", "\"" + name + "\" is unknown",
                 "one of array, timing, wave, both");
 }
 

@@ -184,8 +184,8 @@ try {
     const std::string_view bytes = state;
     return nlohmann::json::from_msgpack(bytes.begin(), bytes.end()).template get<T>();
 } catch (const nlohmann::json::exception&) {
-    throw error(error_kind::bad_input, "pickle", "its bytes are not those of a path or stroke",
-                "make it anew with this version of tactor");
+    throw error(error_kind::bad_input, "pickle", "its bytes are not a path or stroke of this version",
+                "make it again with this version of tactor");
 }
 
 // Returns a property that reads a member of the array.

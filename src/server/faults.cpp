@@ -45,10 +45,9 @@ void limit_reached(std::string what, std::string why, std::string hint)
 
 void too_many_strokes(std::size_t strokes, std::size_t most)
 {
-    limit_reached(
-        "max_strokes",
-        fmt::format("{} strokes are more than the {} that a client may have at once", strokes, most),
-        "send fewer");
+    limit_reached("max_strokes",
+                  fmt::format("{} strokes are more than a client may have at once, {}", strokes, most),
+                  "send fewer");
 }
 
 void no_such_stroke(std::uint32_t number, std::string why)
@@ -116,12 +115,12 @@ rpc_fault current_fault(const std::string& source, const std::string& named)
 void allow_only(const json& params, std::initializer_list<std::string_view> known)
 {
     if (!params.is_object())
-        bad_param("params", "they are a list", "name them: an object");
+        bad_param("params", "they are a list, not an object", "send an object with named parameters");
     for (const auto& [name, value] : params.items())
         if (std::find(known.begin(), known.end(), name) == known.end())
             bad_param(name.empty() ? "params" : name,
-                      name.empty() ? "one of them has no name" : "there is no such parameter",
-                      known.size() == 0 ? "it takes none"
+                      name.empty() ? "one parameter has no name" : "it is unknown",
+                      known.size() == 0 ? "the method has no parameters"
                                         : detail::choice_hint(name, {known.begin(), known.size()}));
 }
 
@@ -137,7 +136,7 @@ double number(const json& v, const std::string& what, detail::bounds b)
                                   ? fmt::format("{} or more", plain_number(b.low))
                                   : fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
     if (!v.is_number())
-        bad_param(what, "it is no number", range);
+        bad_param(what, "it is not a number", range);
     const auto n = v.get<double>();
     if (!std::isfinite(n) || !b.holds(n))
         bad_param(what, fmt::format("{} is out of range", n), range);
@@ -162,7 +161,7 @@ double whole(const json& v, const std::string& what, detail::bounds b)
 {
     const double n = number(v, what, b);
     if (n != std::floor(n))
-        bad_param(what, fmt::format("{} is no whole number", n));
+        bad_param(what, fmt::format("{} is not a whole number", n));
     return n;
 }
 
@@ -173,7 +172,7 @@ const char* find_one(const json& params, std::initializer_list<const char*> name
         if (!params.contains(name))
             continue;
         if (found != nullptr)
-            bad_param(name, fmt::format("there is also \"{}\"", found), "give one of them");
+            bad_param(name, fmt::format("it cannot be combined with \"{}\"", found), "give one of them");
         found = name;
     }
     return found;
@@ -183,7 +182,7 @@ bool flag(const json& params, const char* name)
 {
     const json* v = member(params, name);
     if (v != nullptr && !v->is_boolean())
-        bad_param(name, "it is neither true nor false", "true or false");
+        bad_param(name, "it is neither true nor false", "give true or false");
     return v != nullptr && v->get<bool>();
 }
 
@@ -196,7 +195,7 @@ std::uint32_t need_stroke(const json& params)
 const std::string& text(const json& v, const std::string& what)
 {
     if (!v.is_string())
-        bad_param(what, "it is no text", "put it in quotes");
+        bad_param(what, "it is not a text", "put it in quotes");
     return v.get_ref<const std::string&>();
 }
 

@@ -34,7 +34,7 @@ private:
 [[noreturn]] void bad_param(std::string what, std::string why, std::string hint = {});
 [[noreturn]] void limit_reached(std::string what, std::string why, std::string hint = "try again later");
 [[noreturn]] void too_many_strokes(std::size_t strokes, std::size_t most);
-[[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "no such stroke of yours goes on");
+[[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "you have no such stroke");
 [[noreturn]] void no_stream(const std::string& why);
 
 /// Writes the marks of a text as the protocol names options: "options.soa".

@@ -66,7 +66,7 @@ std::string content(const std::string& source, const json& v)
         return given;
     std::optional<std::string> bytes = net::read_base64(given);
     if (!bytes)
-        bad_param(source, "it is no base64", "four characters for three bytes, = at the end");
+        bad_param(source, "it is not base64", "give four characters for three bytes, with = at the end");
     return *std::move(bytes);
 }
 
@@ -152,7 +152,7 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
             fmt::format_to(std::back_inserter(out), "{}[{},{},{},{}]", out.back() == '[' ? "" : ",", p.t_s,
                            p.position.x_mm, p.position.y_mm, p.intensity);
             if (out.size() > most_file_bytes)
-                limit_reached("import", "its result is too large to be sent", "make it shorter or simpler");
+                limit_reached("import", "its result is too large to send", "make it shorter or simpler");
         }
         out += ']';
     }
@@ -342,7 +342,7 @@ const file_kind& find_kind(const json& params)
 [[noreturn]] void too_large()
 {
     limit_reached("export", fmt::format("the file is larger than {} MiB", most_file_bytes >> 20U),
-                  "make it shorter, or make it with the tool");
+                  "make it shorter, or use the tool");
 }
 
 std::string choose_name(const json& params, const std::vector<stroke>& strokes)
@@ -352,7 +352,7 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
         return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
     std::string name = text(*said, "name");
     if (make_file_name(name) != name)
-        bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
+        bad_param("name", "it is not a file name", "use 1 to 100 letters, digits, blanks, - and _");
     return name;
 }
 
@@ -381,8 +381,8 @@ std::vector<stroke> read_again(const std::string& toml, const std::string& sourc
 std::string csv_text(const std::vector<stroke>& strokes)
 {
     if (strokes.size() != 1)
-        bad_param("as", fmt::format("a CSV file has one stroke, and there are {}", strokes.size()),
-                  "as toml");
+        bad_param("as", fmt::format("a CSV file has one stroke, but there are {}", strokes.size()),
+                  "use toml");
     std::string out = "t_s,x_mm,y_mm,intensity\n";
     for (const timed_point& p : detail::sample_points(strokes.front().motion))
         fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", p.t_s, p.position.x_mm, p.position.y_mm,
@@ -448,7 +448,7 @@ std::string import_strokes(const planning& with, const layout& faces, const json
     allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
     const char* found = find_one(params, {"stroke", "text", "base64"});
     if (found == nullptr)
-        bad_param("text", "nothing says what to read", "one of text, base64, stroke");
+        bad_param("text", "there is nothing to read", "give one of text, base64, stroke");
     const std::string source = found;
     const std::string named = read_name(params);
     const std::string name = source == "stroke" ? source : named;

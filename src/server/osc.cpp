@@ -48,11 +48,11 @@ public:
         return as_number(all_[next_]) == 0.0 || (other != nullptr && other->tag == 'F');
     }
 
-    double number(const char* what, const char* hint = "a number")
+    double number(const char* what, const char* hint = "send a number")
     {
         const std::optional<double> x = as_number(take(what, hint));
         if (!x)
-            bad_param(what, "it is no number", "i, h, f and d are taken; send a text as a number");
+            bad_param(what, "it is not a number", "send it as i, h, f or d, not as a text");
         if (!std::isfinite(*x))
             bad_param(what, "it is not finite");
         return *x;
@@ -63,21 +63,21 @@ public:
         const double x = number(what);
         constexpr Whole high = std::numeric_limits<Whole>::max();
         if (x != std::floor(x) || x < low || x > high)
-            bad_param(what, fmt::format("{} is no whole number of {} to {}", x, low, high), hint);
+            bad_param(what, fmt::format("{} is not a whole number from {} to {}", x, low, high), hint);
         return static_cast<Whole>(x);
     }
     const std::string& text(const char* what)
     {
-        const auto* s = std::get_if<std::string>(&take(what, "a text"));
+        const auto* s = std::get_if<std::string>(&take(what, "send a text"));
         if (s == nullptr)
-            bad_param(what, "it is no text", "s is taken");
+            bad_param(what, "it is not a text", "send it as s");
         return *s;
     }
     void ignore_rest() { next_ = all_.size(); }
     void end() const
     {
         if (left())
-            bad_param("values", fmt::format("there are {}, of which {} are known", all_.size(), next_));
+            bad_param("values", fmt::format("there are {}, but only {} are allowed", all_.size(), next_));
     }
 
 private:
@@ -107,11 +107,11 @@ void read_option(const std::string& word, json& into)
 {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0)
-        bad_param("options", fmt::format("\"{}\" is no option", word), "such as soa=0.07");
+        bad_param("options", fmt::format("\"{}\" is not an option", word), "such as soa=0.07");
     const std::string name = word.substr(0, equals);
     const std::string value = word.substr(equals + 1);
     if (into.contains(name))
-        bad_param("options." + name, "it is there twice");
+        bad_param("options." + name, "it occurs twice");
     if (const auto x = detail::number_in<double>(value); x && std::isfinite(*x))
         into[name] = *x;
     else if (value == "true" || value == "false")
@@ -135,7 +135,7 @@ std::int32_t stroke_number(value_list& v)
 {
     const auto n = v.whole<std::int32_t>("number", lowest_number, number_first);
     if (n == 0)
-        bad_param("number", "0 stands for none", "choose another, by which the stroke is called later");
+        bad_param("number", "0 means no number", "choose another; later messages name the stroke by it");
     return n;
 }
 
@@ -205,7 +205,7 @@ void read_subscribe(value_list& v, osc_request& r)
         const std::string& name = v.text("events");
         if (name != "levels" && name != "stream")
             bad_param("events", fmt::format("there are no \"{}\"", name),
-                      "any of levels, stream; a sender is told of its own strokes without");
+                      "give levels or stream; a sender always gets the messages of its own strokes");
         events.push_back(name);
     }
     r.params["events"] = std::move(events);
@@ -260,9 +260,9 @@ osc_request read_osc(const osc_message& m)
     });
     if (found == std::end(readers))
         throw fault_error(
-            {net::code_no_method, "bad-input", "address", "it is not known",
+            {net::code_no_method, "bad-input", "address", "it is unknown",
              near_address(address) +
-                 "/tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
+                 "use /tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
     osc_request r{.method = std::string(found->first)};
     value_list v(m);
     found->second(v, r);
@@ -316,7 +316,7 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
         return;
     try {
         if (!m.fault.empty() && m.address != osc_stop) // a stop stops, whatever its values are
-            bad_param("values", m.fault, "OSC 1.0: an address, types, values");
+            bad_param("values", m.fault, "send an address, types and values, as OSC 1.0 requires");
         osc_request r = read_osc(m);
         if (r.method == "stop")
             stop(from);
@@ -349,7 +349,7 @@ std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
     const std::int64_t ahead_ns = *m.unix_ns - unix_ns_;
     if (ahead_ns > std::llround(farthest_s * 1e9))
         bad_param("time tag", fmt::format("it is {:.1f} s ahead", seconds(ahead_ns)),
-                  fmt::format("at most {:.0f}; do the clocks agree?", farthest_s));
+                  fmt::format("send it at most {:.0f} s ahead; check that the clocks agree", farthest_s));
     if (ahead_ns <= 0)
         return {};
     return *m.unix_ns + offset_ns_;
@@ -394,8 +394,8 @@ void osc_clients::move(osc_request r, const endpoint& from)
     sender* s = find(from);
     const auto found = s == nullptr ? decltype(s->drawn_as.begin()){} : s->drawn_as.find(r.number);
     if (s == nullptr || found == s->drawn_as.end())
-        bad_param("number", fmt::format("no stroke {} of this sender goes on", r.number),
-                  "it is the one that play or begin gave, from this address and port");
+        bad_param("number", fmt::format("this sender has no stroke {}", r.number),
+                  "use a number that play or begin had, from the same address and port");
     drawn& d = found->second;
     if (const double asked = r.params.value("intensity", 0.0);
         asked > d.intensity_max && !std::exchange(d.is_loud, true))
@@ -414,10 +414,11 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
 {
     sender& s = admit(from);
     if (r.number != 0 && s.drawn_as.contains(r.number))
-        bad_param("number", fmt::format("stroke {} goes on", r.number), "choose another, or cancel it first");
+        bad_param("number", fmt::format("stroke {} is still playing", r.number),
+                  "choose another, or cancel it first");
     const bool waits = at_ns && r.method == "begin";
     if (waits && s.held >= most_held)
-        limit_reached("strokes", "too many wait for their time", "send them later");
+        limit_reached("strokes", "too many strokes wait for their time", "send them later");
     if (r.number != 0)
         s.drawn_as[r.number] = {.held = waits, .intensity_max = find_intensity_max(r.params)};
     if (waits) {
@@ -495,7 +496,7 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
     if (sender* s = find(from))
         return *s;
     if (!service_.has_place(client_kind::datagram))
-        limit_reached("max_clients", "there is no place for one more");
+        limit_reached("max_clients", "all places are taken");
     const client_number n = service_.connect(std::make_shared<sender_link>(*this, from),
                                              client_kind::datagram, net::plain(from.address()).to_string());
     return senders_[from] = {.client = n};
@@ -519,7 +520,7 @@ void osc_clients::ask_about(sender& s, drawn& d, osc_request r)
         return ask(s, r);
     }
     if (d.waiting.size() >= most_waiting)
-        limit_reached("messages", "too many wait for a stroke that has not begun");
+        limit_reached("messages", "too many points wait for a stroke that has not begun");
     d.waiting.push_back(std::move(r));
 }
 

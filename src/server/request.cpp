@@ -54,10 +54,11 @@ const option& known_option(const std::string& name, options_for which)
         for (const option& x : options::all())
             if ((x.where & options::by_client) != 0)
                 names.push_back(x.name);
-        bad_param("options." + name, "there is no such option", detail::choice_hint(name, names));
+        bad_param("options." + name, "it is not an option", detail::choice_hint(name, names));
     }
     if (which == options_for::live && (o->where & options::live) == 0)
-        bad_param("options." + name, "a live stroke does not know it", "its points say when it is where");
+        bad_param("options." + name, "a live stroke cannot use it",
+                  "the points of a live stroke have their own times");
     return *o;
 }
 
@@ -66,8 +67,8 @@ void refuse_file(const option& o, const options::value& v)
 {
     const auto* text = std::get_if<std::string>(&v);
     if (o.name == "waveform" && text != nullptr && waveform_names_file(*text))
-        bad_param("options.waveform", "a client may name no file",
-                  "one of sine, square, triangle, sawtooth, noise:LO-HI");
+        bad_param("options.waveform", "clients must not open files on the server",
+                  "use sine, square, triangle, sawtooth or noise:LO-HI");
 }
 
 reply_json value_json(const option& o, const options::value& v)
@@ -114,7 +115,7 @@ timed_point read_point(const json& p, std::size_t i, double intensity_max)
         bad_param("points", what() + " is not [t, x, y] or [t, x, y, intensity]");
     for (std::size_t k = 0; k < p.size(); ++k)
         if (!p[k].is_number() && (k == 0 || !p[k].is_null()))
-            bad_param("points", what() + " has something that is no number");
+            bad_param("points", what() + " has a value that is not a number");
     // JSON has null for nan.
     const auto value = [&p](std::size_t k) {
         return p[k].is_null() ? std::numeric_limits<double>::quiet_NaN() : p[k].get<double>();
@@ -127,7 +128,7 @@ std::vector<stroke> read_points(const json& list, double intensity_max)
     if (list.is_binary())
         return read_points(json::from_msgpack(list.get_binary()), intensity_max);
     if (!list.is_array())
-        bad_param("points", "they are no list", "[[t,x,y], ...]");
+        bad_param("points", "they are not a list", "[[t,x,y], ...]");
     detail::recorded_points recorded(intensity_max);
     recorded.reserve(list.size());
     for (std::size_t i = 0; i < list.size(); ++i)
@@ -142,7 +143,7 @@ std::vector<std::uint32_t> read_numbers(const json& v, const std::string& what)
     constexpr std::size_t most = 64;
     const json list = v.is_array() ? v : json::array({v});
     if (list.empty() || list.size() > most)
-        bad_param(what, fmt::format("it has {} numbers", list.size()), fmt::format("1 to {}", most));
+        bad_param(what, fmt::format("it has {} numbers", list.size()), fmt::format("give 1 to {}", most));
     std::vector<std::uint32_t> numbers;
     for (const json& n : list)
         numbers.push_back(static_cast<std::uint32_t>(whole(n, what, {1.0, UINT32_MAX})));
@@ -153,7 +154,7 @@ void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
         limit_reached("max_stroke_s",
-                      fmt::format("it lasts {}, and a stroke at most {}", seconds_text(seconds),
+                      fmt::format("it lasts {}, but a stroke may last at most {}", seconds_text(seconds),
                                   seconds_text(with.max_stroke_s)),
                       "draw less, or faster");
 }
@@ -169,10 +170,11 @@ void check_durations(const planning& with, const std::vector<stroke>& strokes)
         together_s += k.motion.duration_s();
     }
     if (together_s > with.max_stroke_s)
-        limit_reached("max_stroke_s",
-                      fmt::format("its strokes last {} together, and those of one request at most {}",
-                                  seconds_text(together_s), seconds_text(with.max_stroke_s)),
-                      "send them one by one");
+        limit_reached(
+            "max_stroke_s",
+            fmt::format("its strokes last {} together, but those of one request may last at most {}",
+                        seconds_text(together_s), seconds_text(with.max_stroke_s)),
+            "send them one by one");
 }
 
 // Returns the largest intensity, or amplitude, at the times that the plan samples.
@@ -248,7 +250,7 @@ double find_excess_db(const planning& with, planned& p)
 options::wishes with_options(options::wishes w, const json& given, options_for which)
 {
     if (!given.is_object())
-        bad_param("options", "they are no object", R"(such as {"algorithm":"continuous"})");
+        bad_param("options", "they are not an object", R"(such as {"algorithm":"continuous"})");
     // A client starts from the owner's values.
     w.given.reset();
     w.in_file.clear();
@@ -273,9 +275,9 @@ options::wishes settle_options(options::wishes owner, const json& params)
         const std::string name = text(*given, "observer");
         const std::vector<std::string_view> known = o.choices();
         if (!predicts)
-            bad_param("observer", "only the view percept has one", R"(add "view":"percept")");
+            bad_param("observer", "only the view percept uses it", R"(add "view":"percept")");
         if (std::find(known.begin(), known.end(), name) == known.end())
-            bad_param("observer", fmt::format("\"{}\" is not known", name), detail::choice_hint(name, known));
+            bad_param("observer", fmt::format("\"{}\" is unknown", name), detail::choice_hint(name, known));
         o.to.set(owner, name);
     }
     const json* given = member(params, "options");
@@ -292,7 +294,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
     if (*start == "armed")
         return {.armed = true};
     if (!start->is_object() || start->size() != 1)
-        bad_param("start", "it is not known", forms);
+        bad_param("start", "it is unknown", forms);
     const std::string name = start->begin().key();
     const net::json& value = start->begin().value();
     const std::string what = "start." + name;
@@ -302,7 +304,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
     if (name == "after")
         return {.after = read_numbers(value, what)};
     if (name != "monotonic_s" && name != "unix_s")
-        bad_param(what, "it is not known", forms);
+        bad_param(what, "it is unknown", forms);
     std::int64_t at = std::llround(number(value, what, {0.0, most_s}) * 1e9);
     if (name == "unix_s")
         at += now_ns - rt::unix_ns();
@@ -349,7 +351,7 @@ const char* find_source(const json& params)
 {
     const char* found = find_one(params, {"stroke", "path", "points", "toml", "csv", "svg"});
     if (found == nullptr)
-        bad_param("stroke", "nothing says what to draw", "one of stroke, path, points, toml, csv, svg");
+        bad_param("stroke", "there is no stroke", "give one of stroke, path, points, toml, csv, svg");
     return found;
 }
 
@@ -364,18 +366,18 @@ void check_level(const planning& with, const options::wishes& s, double intensit
         return;
     const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
     bad_param(over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
-              fmt::format("{} dBFS{} is more than {} dBFS, which the owner allows", plain_number(level, 4),
+              fmt::format("{} dBFS{} is more than the owner allows, {} dBFS", plain_number(level, 4),
                           over_db == 0.0 ? "" : fmt::format(" and intensity {}", plain_number(intensity, 4)),
                           plain_number(with.max_level_dbfs, 4)),
-              "ask for less");
+              "use a lower level");
 }
 
 void check_bursts(double bursts, const char* hint)
 {
     if (bursts > most_bursts)
         limit_reached("bursts",
-                      fmt::format("its {:.0f} bursts are more than the {:.0f} that are planned at once",
-                                  bursts, most_bursts),
+                      fmt::format("its {:.0f} bursts are more than the server plans at once, {:.0f}", bursts,
+                                  most_bursts),
                       hint);
 }
 
@@ -462,7 +464,7 @@ planned make_drive(const planning& with, const json& params)
     const auto count = static_cast<double>(with.tactors.tactors.size());
     const double tactor = need_number(params, "tactor", {0, count - 1});
     if (tactor != std::floor(tactor))
-        bad_param("tactor", fmt::format("{} is no whole number", tactor), "they count from 0");
+        bad_param("tactor", fmt::format("{} is not a whole number", tactor), "they count from 0");
     const double intensity = number_or(params, "intensity", detail::bounds_of::part, 1.0);
     constexpr double usual_s = 0.5;
     const double seconds = number_or(params, "duration_s", detail::bounds_of::duration_s, usual_s);

@@ -77,16 +77,17 @@ std::string why_given_up(connection_fault f, const service_limits& l, bool admit
 {
     if (f == connection_fault::too_long)
         return refusal("max_message_bytes",
-                       fmt::format("a message of more than {} bytes", l.max_message_bytes),
+                       fmt::format("a message has more than {} bytes", l.max_message_bytes),
                        "send smaller ones");
     if (f == connection_fault::memory)
         return refusal("message", "there is not enough memory for it", "send smaller ones");
     if (f == connection_fault::too_slow && !admitted)
-        return refusal("max_message_s", fmt::format("no hello with the token in {} s", l.max_message_s),
-                       "begin with it");
+        return refusal("max_message_s",
+                       fmt::format("no hello with the token came within {} s", l.max_message_s),
+                       "begin with hello");
     if (f == connection_fault::too_slow)
-        return refusal("max_message_s", fmt::format("no whole message in {} s", l.max_message_s),
-                       "send what is complete");
+        return refusal("max_message_s", fmt::format("no complete message came within {} s", l.max_message_s),
+                       "send complete messages");
     return {};
 }
 
@@ -264,7 +265,7 @@ private:
         if (!service_.has_place(kind)) {
             c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
             c->send(refusal("max_clients", no_place(kind), "try again later"));
-            service_.log_refusal(from, "a connection for which there is no place");
+            service_.log_refusal(from, "a connection: all places are taken");
             return c->finish();
         }
         const client_number n = service_.connect(c, kind, from);
@@ -300,11 +301,11 @@ private:
     std::string no_place(client_kind kind) const
     {
         const std::size_t kept = limits_.max_clients - service_.places(kind);
-        return fmt::format("there is no place: {} clients are the most{}", limits_.max_clients,
-                           kept == 0 ? "" : fmt::format(", {} of them on this machine's socket", kept));
+        return fmt::format("all {} places for clients are taken{}", limits_.max_clients,
+                           kept == 0 ? "" : fmt::format(", {} of them only for this machine's socket", kept));
     }
 
-    void log_full() { service_.log_refusal("somebody", "a connection for which there is no descriptor"); }
+    void log_full() { service_.log_refusal("somebody", "a connection: there is no descriptor"); }
 
     void finish(client_number n)
     {
@@ -317,7 +318,7 @@ private:
     {
         const std::string from = net::peer_address(s.native_handle());
         if (visitors_.size() >= limits_.max_clients + short_visits) {
-            service_.log_refusal(from, "a browser for which there is no place");
+            service_.log_refusal(from, "a browser: all places are taken");
             return net::turn_away(s.native_handle()); // and the socket closes
         }
         const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
@@ -337,7 +338,7 @@ private:
         h.refused = [this, from](const std::string& why) { service_.log_refusal(from, why); };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
             if (!service_.has_place(client_kind::web)) {
-                service_.log_refusal(from, "a browser for which there is no place");
+                service_.log_refusal(from, "a browser: all places are taken");
                 return false;
             }
             const auto link = weak.lock();
@@ -358,7 +359,7 @@ private:
         if (token.empty() && !service_.admits(token))
             service_.log_refusal(from, "no token");
         if (!service_.admits(token))
-            return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n",
+            return {401, "text/plain", "a token is required: Authorization: Bearer TOKEN\n",
                     "",  "",           token.empty() ? 0.0 : service_.count_wrong_token(from)};
         return {200, "application/json", net::json_line(service_.status_now()) + "\n", ""};
     }
@@ -413,10 +414,10 @@ struct inheritable {
 };
 
 constexpr std::array known{
-    inheritable{"socket", &endpoints::socket, net::is_unix_listener, "it is no Unix socket that listens"},
-    inheritable{"tcp", &endpoints::tcp, net::is_tcp_listener, "it is no TCP socket that listens"},
-    inheritable{"http", &endpoints::http, net::is_tcp_listener, "it is no TCP socket that listens"},
-    inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is no UDP socket with a port"},
+    inheritable{"socket", &endpoints::socket, net::is_unix_listener, "it is not a listening Unix socket"},
+    inheritable{"tcp", &endpoints::tcp, net::is_tcp_listener, "it is not a listening TCP socket"},
+    inheritable{"http", &endpoints::http, net::is_tcp_listener, "it is not a listening TCP socket"},
+    inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is not a UDP socket with a port"},
 };
 
 // Refuses a socket that everybody may write to: a user who may write to it may draw.
@@ -427,8 +428,8 @@ void check_private(const std::string& path)
     if (!named || (is.st_mode & S_IWOTH) != 0)
         throw error(error_kind::bad_input, "inherited socket \"socket\"" + (named ? " " + path : ""),
                     named ? "every user of this machine may write to it"
-                          : "it is no file, whose mode would say who may draw",
-                    "SocketMode=0660 and SocketGroup= in the .socket unit");
+                          : "it is not a file, so no mode limits who may draw",
+                    "set SocketMode=0660 and SocketGroup= in the .socket unit");
 }
 
 [[noreturn]] void no_osc(const char* what)
@@ -486,18 +487,18 @@ std::string read_token(const options::serve_settings& s)
     struct stat is {};
     if (!fd || ::fstat(fd.get(), &is) != 0)
         throw error(error_kind::bad_input, "token_file " + file, std::strerror(errno),
-                    "a file with the token on its first line");
+                    "name a file with the token on its first line");
     if (!S_ISREG(is.st_mode) || (is.st_mode & S_IRWXO) != 0)
         throw error(error_kind::bad_input, "token_file " + file,
-                    S_ISREG(is.st_mode) ? "others may read it" : "it is no regular file",
+                    S_ISREG(is.st_mode) ? "other users may read it" : "it is not a regular file",
                     "chmod 600 it, and choose another token");
     char bytes[4097];
     const ssize_t n = ::read(fd.get(), bytes, sizeof bytes);
     const std::string all(bytes, n > 0 ? static_cast<std::size_t>(n) : 0);
     std::string token = all.substr(0, all.find_first_of("\r\n"));
     if (token.empty() || token.size() == sizeof bytes)
-        throw error(error_kind::bad_input, "token_file " + file, "its first line is no token",
-                    "1 to 4096 bytes, e.g. of: openssl rand -hex 32");
+        throw error(error_kind::bad_input, "token_file " + file, "its first line is not a token",
+                    "use 1 to 4096 bytes, for example of: openssl rand -hex 32");
     return token;
 }
 
@@ -511,17 +512,16 @@ endpoints open_endpoints(const endpoint_options& o)
         const auto k =
             std::find_if(known.begin(), known.end(), [&n = name](const auto& x) { return x.name == n; });
         if (k == known.end())
-            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", "it is not known",
-                        "FileDescriptorName=socket, tcp, http or osc");
+            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", "it is unknown",
+                        "set FileDescriptorName=socket, tcp, http or osc");
         if (!k->fits(fd.get()))
             throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", k->otherwise,
                         "see the .socket unit");
         if (name == "osc" && !net::osc_is_built())
             no_osc("inherited socket \"osc\"");
         if (e.*k->place)
-            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"",
-                        "there are two of that name",
-                        "one ListenStream= or ListenDatagram= for each FileDescriptorName=");
+            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", "two have this name",
+                        "use one ListenStream= or ListenDatagram= for each FileDescriptorName=");
         e.*k->place = std::move(fd);
     }
     if (e.socket) {

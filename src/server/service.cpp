@@ -44,7 +44,7 @@ struct message_aside {
 
 net::rpc_fault no_hello()
 {
-    return {net::code_no_token, "token", "token", "hello with the token comes first", ""};
+    return {net::code_no_token, "token", "token", "a hello with the token must come first", ""};
 }
 
 } // namespace

@@ -26,7 +26,7 @@ std::string on_one_line(std::string json_text)
 
 net::rpc_fault too_large_to_send()
 {
-    return {net::code_limit, "limit", "plan", "it is too large to be sent",
+    return {net::code_limit, "limit", "plan", "it is too large to send",
             "draw less, or plan it with the tool"};
 }
 
@@ -52,8 +52,8 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
     if (made.plays() && stream_.is_out())
         no_stream(stream_.reason());
     if (c.bytes + bytes > 2 * options_.limits.max_message_bytes)
-        limit_reached("max_message_bytes", "too much of yours waits to be planned",
-                      "try again when one is answered");
+        limit_reached("max_message_bytes", "too many of your requests wait to be planned",
+                      "try again after an answer");
     c.bytes += bytes;
     ++c.coming;
     ++jobs_;
@@ -151,7 +151,7 @@ void service::job_done(const std::shared_ptr<plan_job>& j)
         j->fault = server_ends();
     if (!j->fault && j->is_file() && c != nullptr && c->link->has_file())
         j->fault = net::rpc_fault{net::code_limit, "limit", "max_unread_bytes",
-                                  "an earlier file waits to be read", "try again when it is"};
+                                  "you have not read an earlier file yet", "try again after reading it"};
     if (j->fault)
         return refuse(*j, *j->fault);
     if (!j->plays()) {
@@ -202,13 +202,13 @@ std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
     if (job.rounds == 0)
         return static_cast<std::uint64_t>(std::ceil(endless_s / round_s));
     check_bursts(static_cast<double>(job.rounds) * p.count_bursts(),
-                 "repeat less, or with true until it is cancelled");
+                 "repeat less often, or use true and cancel it later");
     const double all_s = static_cast<double>(job.rounds) * round_s;
     if (job.rounds > 1 && all_s > options_.plans.max_stroke_s)
         limit_reached("max_stroke_s",
-                      fmt::format("{} times last {}, and at most {} are played", job.rounds,
+                      fmt::format("{} times last {}, but at most {} may play", job.rounds,
                                   seconds_text(all_s), seconds_text(options_.plans.max_stroke_s)),
-                      "repeat less, or with true until it is cancelled");
+                      "repeat less often, or use true and cancel it later");
     return job.rounds;
 }
 

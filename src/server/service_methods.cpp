@@ -90,7 +90,7 @@ void service::hello(client& c, const json& params, const answer& to)
     if (const std::string why = name == nullptr ? "" : label_fault(text(*name, "name")); !why.empty())
         bad_param("name", "it " + why, label_hint);
     if (name != nullptr && is_taken_name(name->get<std::string>()))
-        bad_param("name", "pages call somebody else so, or nobody", "a name that others know you by");
+        bad_param("name", "it is reserved for the pages", "choose another name");
     if (!c.admitted) {
         // Counts what comes before the answer to a wrong token as wrong: nobody tries in a hurry.
         const bool compares = c.refusals_waiting == 0 && c.wrong_tokens < most_wrong_tokens;
@@ -122,8 +122,8 @@ void service::refuse_token(client& c, const answer& to, bool is_missing)
     if (is_missing)
         log_refusal(c.from, "no token");
     const auto refuse = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
-        to.fault({net::code_no_token, "token", "token", is_missing ? "it is owed" : "it is wrong",
-                  "give what the server's token_file holds"});
+        to.fault({net::code_no_token, "token", "token", is_missing ? "a token is required" : "it is wrong",
+                  "give the token in the server's token_file"});
         client* const guest = find(number);
         if (guest == nullptr)
             return;
@@ -206,7 +206,7 @@ void service::make_qr(client& /*c*/, const json& params, const answer& to)
     const std::string of = given == nullptr ? std::string() : text(*given, "text");
     if (of.empty() || of.size() > most_bytes)
         bad_param("text", of.empty() ? "it is missing" : fmt::format("it has {} bytes", of.size()),
-                  fmt::format("1 to {} bytes", most_bytes));
+                  fmt::format("give 1 to {} bytes", most_bytes));
     const std::unique_ptr<QRcode, decltype(&QRcode_free)> symbol(
         QRcode_encodeData(static_cast<int>(of.size()), reinterpret_cast<const unsigned char*>(of.data()), 0,
                           QR_ECLEVEL_L),
@@ -256,10 +256,10 @@ void service::subscribe(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"events", "levels_hz"});
     const json* events = member(params, "events");
-    const std::string known = fmt::format("any of {}", fmt::join(event_names, ", "));
+    const std::string known = fmt::format("give any of {}", fmt::join(event_names, ", "));
     if (events == nullptr || !events->is_array())
-        bad_param("events", events == nullptr ? "they are missing" : "they are no list",
-                  known + "; [] ends it");
+        bad_param("events", events == nullptr ? "they are missing" : "they are not a list",
+                  known + "; [] ends the subscription");
     std::set<std::string> wanted;
     for (const json& e : *events) {
         const std::string name = text(e, "events");

@@ -34,11 +34,11 @@ void service::check_free_place(const client& c) const
 {
     const std::size_t most = options_.limits.max_strokes;
     if (c.strokes.size() + c.coming >= most)
-        limit_reached("max_strokes", fmt::format("{} strokes of yours go on", most),
+        limit_reached("max_strokes", fmt::format("you have {} strokes already", most),
                       "try again when one has ended");
     // Strokes of disconnected clients count here.
     if (strokes_.size() + jobs_ >= most * options_.limits.max_clients)
-        limit_reached("max_strokes", "there are too many strokes of all clients", "try again later");
+        limit_reached("max_strokes", "too many strokes at once, all clients together", "try again later");
 }
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,
@@ -250,7 +250,7 @@ void service::cancel(client& c, const json& params, const answer& to)
     allow_only(params, {"stroke", "all"});
     if (const json* all = member(params, "all")) {
         if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
-            bad_param("all", "it is true, and stands alone", R"({"stroke":N} or {"all":true})");
+            bad_param("all", "it must be true and the only parameter", R"({"stroke":N} or {"all":true})");
         // Requests that are being planned, or wait for the stream, check the count.
         ++*c.cancels;
         for (const std::uint32_t n : std::set(c.strokes))
@@ -616,7 +616,7 @@ void service::begin(client& c, const json& params, const answer& to)
     check_free_place(c);
     if (c.live >= options_.limits.max_live_strokes)
         limit_reached("max_live_strokes",
-                      fmt::format("{} live strokes of yours go on", options_.limits.max_live_strokes),
+                      fmt::format("you have {} live strokes already", options_.limits.max_live_strokes),
                       "end one of them first");
     if (ending_ || stream_.is_out())
         no_stream(stream_.reason());
@@ -666,7 +666,7 @@ service::stroke_record& service::own_live(client& c, std::uint32_t number)
 {
     stroke_record& r = own_stroke(c, number);
     if (!r.live)
-        no_such_stroke(number, "it is no live stroke");
+        no_such_stroke(number, "it is not a live stroke");
     return r;
 }
 
@@ -674,7 +674,7 @@ void service::to(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"stroke", "x_mm", "y_mm", "intensity"});
     if (const double most = options_.limits.max_points_per_s; !c.points.take(1.0, most, options_.now_ns()))
-        limit_reached("max_points_per_s", fmt::format("{} points in a second are the most", most));
+        limit_reached("max_points_per_s", fmt::format("a client may send at most {} points a second", most));
     const std::uint32_t n = need_stroke(params);
     const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
     const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});

@@ -286,13 +286,13 @@ view_choice read_view(const json& params)
             std::vector<std::string_view> known;
             for (const auto& one : views)
                 known.push_back(one.first);
-            bad_param("view", fmt::format("\"{}\" is not known", said), detail::choice_hint(said, known));
+            bad_param("view", fmt::format("\"{}\" is unknown", said), detail::choice_hint(said, known));
         }
         v.kind = found->second;
     }
     if (const json* bins = member(params, "bins")) {
         if (v.kind != view_kind::peaks)
-            bad_param("bins", "only the view peaks has them", R"(add "view":"peaks")");
+            bad_param("bins", "only the view peaks uses them", R"(add "view":"peaks")");
         v.bins = static_cast<std::size_t>(whole(*bins, "bins", {1.0, most_bins}));
     }
     return v;

@@ -32,9 +32,8 @@ std::string pcm_name(const settings& s, const output_settings& out)
             require_device_name(*out.pcm);
         } catch (const error& x) {
             throw error(x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
-                        "an array file can only name a device, such as hw:CARD=Tactor; more is taken from "
-                        "{device=PCM} "
-                        "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+                        "an array file can only name a device, such as hw:CARD=Tactor; use {device=PCM} or "
+                        "your own configuration for more: tactor.toml(5), SECURITY CONSIDERATIONS");
         }
     }
     return *out.pcm;
@@ -61,10 +60,11 @@ void ability_members(Io& io, const pcm_abilities& a)
     };
     io.list("channels", a.channels, {"numbers of channels, as ranges"},
             [](auto& inner, const count_range& r, std::size_t) {
-                range_members(inner, r, {"both ends; 1024 is the most that is looked for"});
+                range_members(inner, r, {"both ends; the search ends at 1024"});
             });
-    range("rate_hz", a.rates_hz, {"sample rates"}, {"both ends; a max of null is no limit, here and below"});
-    io("usual_rates_hz", a.usual_rates_hz, {"those of the usual ones that it takes"});
+    range("rate_hz", a.rates_hz, {"sample rates"},
+          {"both ends; a max of null means no limit, here and below"});
+    io("usual_rates_hz", a.usual_rates_hz, {"the usual rates that it supports"});
     io("formats", a.formats, {"as in tactor-play/1"});
     range("period_frames", a.period_frames, {"frames in a period"}, both_ends);
     range("periods", a.periods, {"periods in the buffer"}, both_ends);
@@ -74,13 +74,13 @@ void ability_members(Io& io, const pcm_abilities& a)
 template <class Io>
 void pcm_members(Io& io, const pcm_info& p, bool is_configured)
 {
-    io("name", p.name, {"for -D"});
+    io("name", p.name, {"name for -D"});
     io.or_null("description", omit_empty(p.description),
                {"what the driver or the ALSA configuration calls it; else null"});
     io("hardware", p.hardware, {"whether it is a card's own"});
     io("configured", p.wanted && is_configured, {"whether -D or the configuration names it"});
-    io("tried", p.tried, {"whether it was opened, or an attempt was made"});
-    io("opened", p.opened, {"whether that succeeded"});
+    io("tried", p.tried, {"whether an attempt was made to open it"});
+    io("opened", p.opened, {"whether the attempt succeeded"});
     io.or_null("error", omit_empty(p.error), {"why not; else null"});
     io.list("holders", p.holders, {"processes that have it open"},
             [](auto& inner, const process_info& h, std::size_t) {
@@ -88,13 +88,13 @@ void pcm_members(Io& io, const pcm_info& p, bool is_configured)
                 inner("pid", h.pid, process);
                 inner.or_null("program", omit_empty(h.program), process);
             });
-    io.object_or_null("can", p.can, {"what it takes, each alone; null where it was not opened"},
+    io.object_or_null("can", p.can, {"what it supports, each value alone; null if it was not opened"},
                       [](auto& inner, const pcm_abilities& a) { ability_members(inner, a); });
     io.or_null("fits", p.can ? std::optional(p.misfit.empty()) : std::nullopt,
-               {"whether it takes what is wanted, and each tactor has a channel of the device to itself; "
-                "null where it was not opened"});
+               {"whether it supports what the array needs, and each tactor has its own channel of the "
+                "device; null if it was not opened"});
     io.or_null("misfit", omit_empty(p.misfit),
-               {"what it does not take, or which tactor would be lost; else null"});
+               {"what it does not support, or which tactor would be lost; else null"});
 }
 
 template <class Io>
@@ -102,7 +102,7 @@ void chip_members(Io& io, const gpio_chip_info& c)
 {
     io("path", c.path, {"device file"});
     io.or_null("label", omit_empty(c.label),
-               {"name of the chip, as lines in tactor.toml(5) have it; null where it could not be opened"});
+               {"name of the chip, as for lines in tactor.toml(5); null if it could not be opened"});
     io.or_null("error", omit_empty(c.error), {"why not; else null"});
     io.list("lines", c.lines, {"its lines"}, [](auto& inner, const gpio_line_info& l, std::size_t) {
         inner("offset", l.offset, {"number of the line"});
@@ -120,7 +120,7 @@ void list_members(Io& io, const device_list& d)
         inner("array", d.array_name, {"its name"});
         inner("channels", d.wanted.channels, {"channels and sample rate"});
         inner("rate_hz", d.wanted.rate, {"channels and sample rate"});
-        inner.or_null("format", d.wanted.format, {"what --sample-format says; null: any"});
+        inner.or_null("format", d.wanted.format, {"value of --sample-format; null means any"});
     });
     io.list(
         "pcms", d.pcms, {"playback devices, cards first"},
@@ -153,8 +153,8 @@ bool names_device(const settings& s, const environment& e)
 void tell_of_no_device(const settings& s, const environment& e)
 {
     if (!names_device(s, e))
-        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                    "on hardware)\n");
+        say(stderr, "tactor: no device is configured: playing to \"null\", not to hardware (-D PCM plays on "
+                    "hardware)\n");
 }
 
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
@@ -207,7 +207,7 @@ std::string latency_warning(std::optional<double> asked_ms, const stream_setup& 
     constexpr double tolerance = 1.05;
     if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
         return {};
-    return fmt::format("a latency of {} ms was asked for, the device makes it {:.1f} ms", *asked_ms,
+    return fmt::format("you requested a latency of {} ms, but the device makes it {:.1f} ms", *asked_ms,
                        latency_ms(made));
 }
 
@@ -224,8 +224,8 @@ std::string find_fit(alsa_options o, const array& a)
     };
     const unsigned needed = o.channels;
     if (a.channels() < needed)
-        return opens(a.channels()) ? fmt::format("the array {} fits, but not channel {}, which a marker or a "
-                                                 "plan asks for: choose a spare channel of the device",
+        return opens(a.channels()) ? fmt::format("the array {} fits, but not channel {} of a marker or a "
+                                                 "plan: choose a spare channel of the device",
                                                  a.name, needed - 1)
                                    : "";
     std::multimap<unsigned, std::string> by_channels;
@@ -270,7 +270,7 @@ bool is_felt(const std::string& pcm)
 
 std::string server_note(const std::string& server)
 {
-    return fmt::format("{} is in between: it may mix, resample and hide xruns", server);
+    return fmt::format("{} is between player and device: it may mix, resample and hide xruns", server);
 }
 
 void warn_of_server(const std::string& server, const char* cure)
@@ -283,14 +283,12 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
 {
     std::vector<device_note> all;
     for (std::string& odd : wiring_warnings(a, s.wiring))
-        all.push_back({std::move(odd),
-                       "set the coefficient to 1 where the PCM is defined (ttable), or play on "
-                       "the card itself, -D hw:CARD=NAME"});
+        all.push_back({std::move(odd), "set the coefficient to 1 in the definition of the PCM (ttable), or "
+                                       "play on the card itself, -D hw:CARD=NAME"});
     const std::string& between = s.wiring.hidden_by;
     if (!between.empty() && read_route(s.name).server.empty())
         all.push_back(
-            {fmt::format("whether each tactor has a channel of the device to itself is not known: {} "
-                         "is between",
+            {fmt::format("it is unknown whether each tactor has its own channel of the device: {} is between",
                          between),
              server_cure});
     return all;

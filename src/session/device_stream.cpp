@@ -104,7 +104,7 @@ stream_policy::act stream_policy::step_open(time now)
     if (proves_ && is_due(now, times_.proof_s))
         run();
     if (!proves_ && !busy_ && times_.idle_stop_s > 0.0 && is_due(now, times_.idle_stop_s)) {
-        set(stream_state::idle, "nothing was drawn for a while; the next stroke starts it");
+        set(stream_state::idle, "no stroke came for a while; the next one starts it");
         return act::close;
     }
     return act::nothing;
@@ -230,7 +230,7 @@ player_lines open_lines(const stream_options& o, const environment& e, bool arm)
         return l;
     if (!config.sync || !config.sync->in)
         throw error(error_kind::bad_input, "{arm}", "there is no line to wait for",
-                    "say it as in = { ... } under [sync], see tactor.toml(5)");
+                    "set in = { ... } under [sync], see tactor.toml(5)");
     l.trigger = open_edges(*config.sync->in, config.sync->edge, config.sync->debounce_s, config.sync->pull);
     return l;
 }

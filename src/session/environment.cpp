@@ -165,7 +165,7 @@ void read_array_file(const std::string& name, environment& e)
     check_readable(name);
     const setup file = load_setup(name);
     if (!file.array)
-        throw error(error_kind::bad_input, name, "says no [array]", "see tactor.toml(5)");
+        throw error(error_kind::bad_input, name, "has no [array]", "see tactor.toml(5)");
     use_array_file(e.config, file);
     e.array_file = name;
 }
@@ -223,10 +223,9 @@ array use_preset(array preset, environment& e)
         return configured;
     }
     if (config.array)
-        e.array_doubt =
-            fmt::format("{}: the array of {} has other places: its limits, gains and channels do not "
-                        "hold here",
-                        preset.name, e.config_name);
+        e.array_doubt = fmt::format(
+            "{}: the array of {} has other places: its limits, gains and channels do not apply here",
+            preset.name, e.config_name);
     e.array_file.clear();
     config.output.channels.reset();
     config.calibration.reset();
@@ -271,7 +270,7 @@ ceiling find_ceiling(const environment& e)
     options::apply_defaults(usual, e.config);
     const auto at = usual.in_file.find(options::index(*options::find("level_dbfs")));
     if (at == usual.in_file.end())
-        return {usual.render.level_dbfs, "no file says max_level_dbfs under [serve]"};
+        return {usual.render.level_dbfs, "no file has max_level_dbfs under [serve]"};
     return {usual.render.level_dbfs, fmt::format("level-dbfs under [defaults], {}", at->second.text())};
 }
 
@@ -314,10 +313,9 @@ std::string other_carrier(const environment& e, std::span<const plan* const> pla
     const double measured_hz = e.config.calibration->carrier_hz;
     for (const plan* p : plans)
         if (const double hz = farthest(*p, measured_hz); hz != measured_hz)
-            return fmt::format(
-                "the thresholds were measured at {} Hz, and a carrier is {} Hz, where they are "
-                "others (tactor calibrate --carrier {} adds to them)",
-                measured_hz, hz, hz);
+            return fmt::format("the thresholds were measured at {} Hz, but a carrier is {} Hz, where "
+                               "thresholds differ (tactor calibrate --carrier {} adds them)",
+                               measured_hz, hz, hz);
     return {};
 }
 

@@ -97,12 +97,12 @@ void session_log::open()
         throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
                     std::strerror(code));
     if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
-        throw error(error_kind::bad_input, file_, "is no regular file",
+        throw error(error_kind::bad_input, file_, "is not a regular file",
                     "name a file; {verbose=true} writes to standard error");
     detail::refuse_input(s, file_);
     if (!may_be_appended_to(fd_.get()))
-        throw error(error_kind::bad_input, file_, "there is such a file already, and it is no log",
-                    "choose another name: lines are appended to logs only");
+        throw error(error_kind::bad_input, file_, "it exists and is not a log",
+                    "choose another name: tactor appends only to logs");
 }
 
 log_function session_log::function()

@@ -37,7 +37,7 @@ void run_facts::check_amplifier() const
     if (stats.left_on)
         throw error(
             error_kind::not_available, "amplifier",
-            fmt::format("its line cannot be switched off, {} failed: it may be on",
+            fmt::format("its line cannot be switched off, {} failed: the amplifier may be on",
                         counted(stats.off_failures, "try", "tries")),
             "cut the amplifier's supply; then see whether \"{command:off}\" works, and what dmesg says");
 }
@@ -222,7 +222,7 @@ run_facts play_session::finish()
     if (r.stats.drives_cut != 0)
         say(stderr,
             "tactor: warning: wait {:.4g} s before the next stroke: {} cut short or silent, because a tactor "
-            "may be driven for {} s in {} s ([limits] max_drive_s in the array file or configuration)\n",
+            "may vibrate for {} s in {} s ([limits] max_drive_s in the array file or configuration)\n",
             l.window_s - l.max_drive_s,
             r.stats.drives_cut == 1 ? "1 drive was" : fmt::format("{} drives were", r.stats.drives_cut),
             l.max_drive_s, l.window_s);

@@ -37,7 +37,7 @@ volatile std::sig_atomic_t ending_signal = 0;
 // Runs in a signal's handler: makes system calls only.
 extern "C" void end_now(int)
 {
-    constexpr char text[] = "tactor: the device does not answer: ended all the same\n";
+    constexpr char text[] = "tactor: the device does not answer: ended anyway\n";
     static_cast<void>(!write(STDERR_FILENO, text, sizeof text - 1));
     _exit(interrupt::status(ending_signal));
 }
@@ -83,7 +83,7 @@ std::string lock_own_memory()
     if (const auto most = probe_realtime_rights().lockable_bytes) {
         const std::uint64_t wanted = memory_to_lock();
         if (wanted > *most)
-            return fmt::format("{} MiB must be allowed, a reserve of {} included, and {} MiB are",
+            return fmt::format("{} MiB are needed, including a reserve of {}, but {} MiB are allowed",
                                (wanted + (1U << 20) - 1) >> 20, reserve_bytes >> 20, *most >> 20);
     }
     // Keeps one heap that never shrinks: locked memory stays, and no arena of 64 MiB counts.
@@ -128,7 +128,7 @@ void refuse_unreadable(const std::string& file)
         throw error(error_kind::bad_input, source_place{file}, "is a folder", "name a file in it")
             .with_os_code(EISDIR);
     if (S_ISFIFO(s.st_mode) && (detail::is_open_to(STDOUT_FILENO, s) || detail::is_open_to(STDERR_FILENO, s)))
-        throw error(error_kind::bad_input, file, "is where this program writes to",
+        throw error(error_kind::bad_input, file, "is the output of this program",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
         return;

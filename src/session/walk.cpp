@@ -56,7 +56,7 @@ walk_verdict judge(const array& a, const walk_answers& felt)
         if (felt[i])
             driven[*felt[i]].push_back(i);
         else
-            v.problems.push_back(fmt::format("{} was felt nowhere", describe_channel(a, i)));
+            v.problems.push_back(fmt::format("{} was not felt", describe_channel(a, i)));
     for (std::size_t place = 0; place < driven.size(); ++place) {
         if (driven[place].size() < 2)
             continue;

@@ -18,14 +18,14 @@ namespace {
 void check_limits(const drive_limits& l)
 {
     if (!detail::bounds_of::power_dbfs.holds(l.power_dbfs))
-        throw detail::bad_field("power_dbfs", fmt::format("{} dBFS is not one", l.power_dbfs),
-                                "give -120 to 60 dB, e.g. 4.77, three channels at full scale");
+        throw detail::bad_field("power_dbfs", fmt::format("{} dBFS is not a power limit", l.power_dbfs),
+                                "give -120 to 60 dB, such as 4.77, three channels at full scale");
     if (!detail::bounds_of::drive_s.holds(l.max_drive_s))
         throw detail::bad_field("max_drive_s", fmt::format("{} s is not a limit", l.max_drive_s),
-                                "give 0.1 to 3600 s, e.g. 5");
+                                "give 0.1 to 3600 s, such as 5");
     if (!detail::bounds_of::drive_s.holds(l.window_s))
-        throw detail::bad_field("window_s", fmt::format("{} s is no window", l.window_s),
-                                "give 0.1 to 3600 s, e.g. 10");
+        throw detail::bad_field("window_s", fmt::format("{} s is not a window", l.window_s),
+                                "give 0.1 to 3600 s, such as 10");
 }
 
 } // namespace

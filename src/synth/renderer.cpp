@@ -121,7 +121,7 @@ void renderer::process(std::span<std::byte> out)
     impl& r = not_moved(impl_);
     if (out.size() % r.frame_bytes != 0)
         throw error(error_kind::bad_input, "renderer",
-                    fmt::format("{} bytes are no whole number of frames of {}", out.size(), r.frame_bytes),
+                    fmt::format("{} bytes are not a whole number of frames of {}", out.size(), r.frame_bytes),
                     "give space for whole frames");
     r.process(out.size() / r.frame_bytes, out.data());
 }

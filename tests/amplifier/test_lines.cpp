@@ -139,9 +139,9 @@ TEST_CASE("a missing line is refused with the existing ones")
           "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
     CHECK(complaint(pi, by_chip("pinctrl-rp1", 5)) ==
           "GPIO line 5 of pinctrl-rp1: chip \"pinctrl-rp1\" at /dev/gpiochip0 has lines 0 to 4, no line 5 "
-          "(an offset counts the chip's own lines from 0)");
+          "(offsets count the lines of the chip from 0)");
     CHECK(complaint(pi, by_chip("empty", 0)) == "GPIO line 0 of empty: chip \"empty\" at /dev/gpiochip11 has "
-                                                "no lines (an offset counts the chip's own lines from 0)");
+                                                "no lines (offsets count the lines of the chip from 0)");
     CHECK(complaint(pi, by_name("GPI017")) ==
           "GPIO line \"GPI017\": no line has this name (did you mean \"GPIO17\"?)");
     CHECK(complaint(pi, by_name("AMPLIFIER")) ==
@@ -149,20 +149,20 @@ TEST_CASE("a missing line is refused with the existing ones")
     CHECK(complaint(pi, by_name("FAN", "pinctrl-rp1")) ==
           "GPIO line \"FAN\": no line of pinctrl-rp1 has this name (there are: ID_SD, GPIO1, GPIO17, LED)");
     CHECK(complaint({make_chip(0, "sim", {"", ""})}, by_name("GPIO17")) ==
-          "GPIO line \"GPIO17\": no line has this name (no line here has a name: give chip and offset)");
-    CHECK(complaint({}, by_name("GPIO17")) ==
-          "GPIO line \"GPIO17\": there is no GPIO chip on this machine (GPIO chips are /dev/gpiochip*; a "
-          "container has to be given them)");
+          "GPIO line \"GPIO17\": no line has this name (no line of this machine has a name: give chip and "
+          "offset)");
+    CHECK(complaint({}, by_name("GPIO17")) == "GPIO line \"GPIO17\": there is no GPIO chip on this machine "
+                                              "(GPIO chips are /dev/gpiochip*; give them to a container)");
 }
 
 TEST_CASE("a chip's number is no name for it, since it changes")
 {
     CHECK(complaint(pi, by_chip("gpiochip0", 17)) ==
-          "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
-          "(use the label, chip = \"pinctrl-rp1\", or the path /dev/gpiochip0)");
+          "GPIO line 17 of gpiochip0: the kernel may change the number \"gpiochip0\" at each start (use the "
+          "label, chip = \"pinctrl-rp1\", or the path /dev/gpiochip0)");
     CHECK(complaint({shut_chip(0, EACCES, "gpio")}, by_chip("gpiochip0", 17)) ==
-          "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
-          "(use the chip's label, or the path /dev/gpiochip0)");
+          "GPIO line 17 of gpiochip0: the kernel may change the number \"gpiochip0\" at each start (use the "
+          "chip's label, or the path /dev/gpiochip0)");
     // Unless it is a label.
     CHECK(find_line(std::vector{make_chip(3, "gpiochip0", {"", ""})}, by_chip("gpiochip0", 1)).offset == 1);
 }
@@ -171,7 +171,7 @@ TEST_CASE("ambiguous names are refused")
 {
     CHECK(complaint(pi, by_name("LED")) ==
           "GPIO line \"LED\": 2 lines have this name: line 4 of /dev/gpiochip0, line 0 of /dev/gpiochip10 "
-          "(say which by chip and offset)");
+          "(select one by chip and offset)");
     const std::vector<chip> twins{make_chip(0, "ftdi", {"a"}), make_chip(1, "ftdi", {"b"})};
     CHECK(complaint(twins, by_chip("ftdi", 0)) ==
           "GPIO line 0 of ftdi: 2 chips are labelled \"ftdi\": /dev/gpiochip0, /dev/gpiochip1 (name the chip "
@@ -190,9 +190,9 @@ TEST_CASE("a chip that may not be opened is named with the group to join")
           "GPIO line 17 of /dev/gpiochip0: no permission to open /dev/gpiochip0 (sudo usermod -aG dialout "
           "$USER, then log in again)");
     CHECK(complaint({shut_chip(0, EACCES, "root")}, by_name("GPIO17")) ==
-          "GPIO line \"GPIO17\": no permission to open /dev/gpiochip0 (the device is root's alone: sudo "
-          "groupadd --system --force gpio, install the udev rules, which give it to that group, then sudo "
-          "usermod -aG gpio $USER, and log in again)");
+          "GPIO line \"GPIO17\": no permission to open /dev/gpiochip0 (only root may open the device: sudo "
+          "groupadd --system --force gpio, install the udev rules, which give the device to that group, then "
+          "sudo usermod -aG gpio $USER, and log in again)");
     CHECK(
         complaint({shut_chip(0, ENOTTY, "")}, by_chip("/dev/gpiochip0", 17)) ==
         "GPIO line 17 of /dev/gpiochip0: /dev/gpiochip0 is not a GPIO chip (tactor devices lists the chips)");
@@ -237,7 +237,7 @@ TEST_CASE("a missing ability of the chip is reported as such")
 {
     has(refusal(ENOTSUP, ""), "the chip cannot do this with the line: ");
     has(refusal(EPERM, ""), "the kernel does not permit this use of the line");
-    has(refusal(EIO, ""), "the line cannot be had: ");
+    has(refusal(EIO, ""), "the line cannot be opened: ");
 }
 
 TEST_CASE("a listed chip that cannot be opened has a hint")

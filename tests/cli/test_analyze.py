@@ -55,7 +55,7 @@ class Figures(AnalyzeTest):
         self.assertEqual([m["participant"] for m in told["runs"]["taste"]["left_out"]], ["C3", "Late"])
         self.assertEqual([m["participant"] for m in told["runs"]["marks"]["left_out"]], ["E5", "Late"])
         said = self.ok("analyze", "missing")
-        self.assertIn("marks: sub-E5 is left out: no trial that counts in some of the cells", said.stderr)
+        self.assertIn("marks: sub-E5 is left out: no trial counts in some of the cells", said.stderr)
         self.assertIn("taste: choose, 6 participants", said.stdout)
         self.assertEqual(sorted(told["warnings"]),
                          sorted(line.removeprefix("tactor: warning: ") for line in said.stderr.splitlines()))
@@ -143,7 +143,7 @@ class Forms(AnalyzeTest):
 
     def test_each_trial_that_counts_has_a_line(self):
         notes, rows = self.trials(self.study("simulated"))
-        self.assertEqual(notes[0], "# simulated: these are no people's answers")
+        self.assertEqual(notes[0], "# simulated: no person gave these answers")
         self.assertEqual(notes[2], '# options(contrasts = c("contr.sum", "contr.poly"))')
         self.assertIn('# glmer(chosen ~ motion + order + (1 + motion | participant), family = binomial, '
                       'data = subset(d, run == "similarity"))', notes)

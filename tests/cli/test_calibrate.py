@@ -195,7 +195,7 @@ class Person(CalibrateTest):
         self.assertEqual([re.findall(r"^(right|wrong)$", result.stdout, re.M), self.responses()],
                          [["right" if r["correct"] == "true" else "wrong" for r in self.rows()], ["1", "2"]])
         result = self.refused(1, *args, "--resume", stdin="2\n")
-        self.assertIn("goes on at trial 3", result.stdout)
+        self.assertIn("continues at trial 3", result.stdout)
         rows = self.rows()
         self.assertEqual([r["trial"] for r in rows], ["1", "2", "3"])
         self.assertEqual(float(rows[0]["level_dbfs"]), -20)  # whatever the array's old thresholds are
@@ -401,7 +401,7 @@ class Refused(CalibrateTest):
         for more, key in (("4 --array palm-2x4", "begun with tactors [0], and [4]"), ("1", "tactors [0], and [1]"),
                           ("0 --carrier 100", "carrier_hz 250.0, and 100.0"), ("0 --seed 1", "seed"), ("0 --array palm-2x4", "array_sha256")):
             self.bad(*SHORT, "--resume", "--tactors", *more.split(), says=["me.json", key])
-        self.bad("--tactors", 0, says=["me.tsv: there is such a file already", "--resume"])
+        self.bad("--tactors", 0, says=["me.tsv: it exists", "--resume"])
         self.write("me.toml", made)
         (self.dir / "me.json").unlink()
         self.bad(*same, says=["me.json: it is missing"])

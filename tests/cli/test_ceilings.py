@@ -75,7 +75,7 @@ class Service(ServeTest):
     def test_the_start_and_check_show_the_ceiling_and_where_it_is_from(self):
         level = '[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\n'
         for text, says in ((QUIET.format(-40), "-40 dBFS (max_level_dbfs, a.toml:4:18)"), (level, "-30 dBFS (level-dbfs under [defaults], a.toml:4:14)"),
-                           ('[array]\npreset = "palm-3x3"\n', "-12 dBFS (no file says max_level_dbfs under [serve])")):
+                           ('[array]\npreset = "palm-3x3"\n', "-12 dBFS (no file has max_level_dbfs under [serve])")):
             self.write("a.toml", text)
             p = self.start_tool("serve", "--socket", "s.sock", "-D", "null", "--array", "a.toml", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
             self.addCleanup(end_process, p)
@@ -112,7 +112,7 @@ class Limits(ToolTest):
         self.write("a.toml", '[array]\npreset = "palm-3x3"\nmax_dbfs = -40\n[[tactor]]\ntactor = 4\nmax_dbfs = -20\n')
         tap = ("--duration", "0.1", "--level-dbfs", "-30", "-o", "x.wav", "--array", "a.toml")
         self.ok("render", "--path", "M 20 20", *tap)
-        self.refused(2, "render", "--path", "M 0 0", *tap, says=["tactor 0 would be driven at -30 dBFS, above its limit of -40 dBFS"])
+        self.refused(2, "render", "--path", "M 0 0", *tap, says=["tactor 0 would play at -30 dBFS, above its limit of -40 dBFS"])
         # A file that names another one never lifts its limits.
         self.write("b.toml", '[array]\nfile = "a.toml"\nmax_dbfs = -25\n')
         self.refused(2, "render", "--path", "M 0 0", *tap[:-1], "b.toml", says=["its limit of -40 dBFS"])
@@ -138,7 +138,7 @@ class Presets(ToolTest):
             channels, says = self.channels("--config", "mine.toml", *more)
             self.assertEqual((channels[0, 20], channels[40, 20], says), (5, 3, ""))
             self.refused(2, "play", "--path", "M 0 20 H 40", "-D", "null", "--level-dbfs", "-18", "--config", "mine.toml", *more,
-                         says=["tactor 3 would be driven at -18 dBFS, above its limit of -30 dBFS"])
+                         says=["tactor 3 would play at -18 dBFS, above its limit of -30 dBFS"])
             self.assertEqual(self.ok("check", "--config", "mine.toml", "--level-dbfs", "-40", *more).stdout.count("9 of 12 channels"), 1)
         # A turned array has the preset's places, with other numbers.
         self.write("turned.toml", '[array]\npreset = "palm-3x3"\nrotate_deg = 180\n')
@@ -148,7 +148,7 @@ class Presets(ToolTest):
         self.write("eight.toml", '[array]\npreset = "palm-2x4"\n[[tactor]]\ntactor = 0\nmax_dbfs = -60\n[output]\nchannels = 16\n')
         channels, says = self.channels("--config", "eight.toml", "--array", "palm-3x3")
         self.assertEqual(list(channels.values()), list(range(9)))
-        self.assertEqual(says, "tactor: warning: palm-3x3: the array of eight.toml has other places: its limits, gains and channels do not hold here\n")
+        self.assertEqual(says, "tactor: warning: palm-3x3: the array of eight.toml has other places: its limits, gains and channels do not apply here\n")
         self.assertIn("9 of 9 channels", self.ok("check", "--config", "eight.toml", "--array", "palm-3x3").stdout)
         # The channels of [output] are the usual array's if no array is configured.
         self.write("output.toml", "[output]\nchannels = 16\n")

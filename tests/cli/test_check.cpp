@@ -191,7 +191,7 @@ TEST_CASE("check lists the limits that hold")
 {
     const finding usual = array_finding(preset_array("palm-3x3"), "limits");
     CHECK(usual.how == level::ok);
-    CHECK(usual.found == "all together at most +4.77 dB of one at full scale; each at most 5 s in 10 s");
+    CHECK(usual.found == "all together at most +4.77 dB above one at full scale; each at most 5 s in 10 s");
     CHECK(limits_finding({.power_dbfs = 0.0, .max_drive_s = 2.0, .window_s = 4.0}).how == level::ok);
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("a limit that is weaker than by default is a warning that gives the de
     const finding untimed = limits_finding({.power_dbfs = 0.0, .max_drive_s = 20.0});
     CHECK(untimed.how == level::warning);
     CHECK(untimed.found ==
-          "all together at most +0 dB of one at full scale; no limit on time: more than by default");
+          "all together at most +0 dB above one at full scale; no limit on time: more than by default");
     CHECK(has(untimed.cure, "max_drive_s = 5, window_s = 10"));
     CHECK(untimed.cure.find("power_dbfs") == std::string::npos);
     for (const limit_settings& l :
@@ -401,10 +401,10 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     CHECK(judged(f, "real time", n).how == level::warning);
     CHECK(has(judged(f, "real time", n).found, "RLIMIT_RTPRIO is 0"));
     CHECK(has(judged(f, "memory", n).found,
-              "8 MiB may be locked (RLIMIT_MEMLOCK), 100 MiB must be, a reserve included"));
+              "8 MiB of locked memory (RLIMIT_MEMLOCK), 100 MiB needed, including a reserve"));
     CHECK_FALSE(judged(f, "memory", n).cure.empty());
     f.rights.priority = 40;
-    CHECK(has(judged(f, "real time", n).found, "SCHED_FIFO up to 40 only, 65 is asked for"));
+    CHECK(has(judged(f, "real time", n).found, "SCHED_FIFO only up to 40, 65 requested"));
     n.require_realtime = true;
     CHECK(judged(f, "real time", n).how == level::error);
     CHECK(judged(f, "memory", n).kind == error_kind::not_available);

@@ -36,7 +36,7 @@ class Check(ToolTest):
     def test_the_stream_is_opened_as_by_play_and_nothing_sounds(self):
         _, found = self.check("-D", "null", "--rate", "96000", "--latency-ms", "3", "--max-drive-s", "2", "--power-dbfs", "0")
         self.assertIn("96000 Hz, s32, period 96 of 288 frames, latency 3.0 ms", found["device"]["found"])
-        self.assertEqual(found["limits"]["found"], "all together at most +0 dB of one at full scale; each at most 2 s in 10 s")
+        self.assertEqual(found["limits"]["found"], "all together at most +0 dB above one at full scale; each at most 2 s in 10 s")
         for args, cure in (((), "tactor devices"), (("-D", f"raw:{self.dir}/out.raw"), "")):
             found = self.check(*args)[1]["device"]
             self.assertTrue(found["level"] == "warning" and cure in found["cure"], found)
@@ -248,7 +248,7 @@ class Walk(ToolTest):
 
     def test_answers_without_a_map_make_no_file(self):
         for answers, says in (([1, 1], ["tactor 0 (channel 0) and tactor 1 (channel 1)", "at one place, 1"]),
-                              ([0, "n"], ["tactor 1 (channel 1) was felt nowhere"]), ([0, "q"], ["left after 1 of 2"]),
+                              ([0, "n"], ["tactor 1 (channel 1) was not felt"]), ([0, "q"], ["left after 1 of 2"]),
                               ([0], ["no answer for tactor 1"]), ([], ["no answer for tactor 0"])):
             r = self.walk(answers, "-o", "felt.toml", status=1)
             self.assertTrue(all(text in r.stderr for text in says), r.stderr)
@@ -263,7 +263,7 @@ class Walk(ToolTest):
         self.assertEqual(self.sounded(), [0, 1])
         r = self.walk(["b", "0", "b", "1", "0"], "-o", "felt.toml")
         self.assertEqual(re.findall(r"tactor (\d) \(channel", r.stdout), ["0", "0", "1", "0", "1"])
-        self.assertIn("This is the first, there is none before it.", r.stdout)
+        self.assertIn("This is the first tactor.", r.stdout)
         self.assertTrue("b back" in r.stdout and "b back" not in r.stdout.split("tactor 1")[0])
         self.assertEqual(self.channels("felt.toml"), [1, 0])
 

@@ -81,7 +81,7 @@ class Devices(DevicesTest):
                 self.assertTrue(pcms[name]["configured"] and not pcms[name]["opened"])
             self.assertFalse(pcms["kept"]["opened"])
         self.assertTrue(self.devices("-D", "mixed")[1]["mixed"]["tried"])
-        self.assertIn("hw:CARD=Nowhere   <- the one that is configured", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
+        self.assertIn("hw:CARD=Nowhere   <- the configured one", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
         self.assertEqual(((self.dir / "kept.raw").read_text(), (self.dir / "out.raw").exists()), ("precious", False))
 
     def test_text_is_plain_fits_80_columns_and_has_a_hint_where_there_is_nothing(self):

@@ -175,7 +175,7 @@ class Files(ErrorsTest):
         r = subprocess.run([TOOL, "plan", "/dev/stdout"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                            env=self.env, timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL)
         self.assertEqual((r.returncode, r.stdout), (2, ""))
-        self.assertIn("/dev/stdout: is where this program writes to (name a file", r.stderr)
+        self.assertIn("/dev/stdout: is the output of this program (name a file", r.stderr)
         os.mkfifo(self.dir / "pipe.toml")
         for name in ("pipe.toml", "/dev/zero"):
             self.write("mine.toml", f'[array]\nfile = "{name}"\n')

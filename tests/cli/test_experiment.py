@@ -113,7 +113,7 @@ class DryRun(ExperimentTest):
         self.assertIn("motion down by method brush: weakened by 3.01 dB", self.ok("experiment", small, "--dry-run").stdout)
         self.simulate(definition=small)
         self.assertEqual({(s["motion"], s["method"]): s["weakened_db"] for s in self.session()["stimuli"]}, weaker)
-        self.assertIn("down by brush: 3.01 dB weaker than the level, so that no tactor exceeds it", self.ok("report", "study").stdout)
+        self.assertIn("down with brush: 3.01 dB weaker than the level, so that no tactor exceeds it", self.ok("report", "study").stdout)
 
     def test_random_rests_are_listed_and_recorded(self):
         told, _ = self.dry(self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nrest_s = [2, 4]")), "--participant", "01")
@@ -487,7 +487,7 @@ class Folder(ExperimentTest):
             with self.subTest(old=old):
                 self.assertEqual(said.count(old), 1)
                 changed = self.small(said.replace(old, new))
-                self.simulate("02", definition=changed, status=2, says=(f"study: sub-01 had another experiment: {says}", "(each experiment needs a folder of its own)"))
+                self.simulate("02", definition=changed, status=2, says=(f"study: sub-01 had another experiment: {says}", "(give each experiment its own folder)"))
                 shutil.rmtree(self.dir / "two", ignore_errors=True)
                 self.simulate("02", definition=changed, folder="two")
                 self.refused(2, "analyze", "study", "two", says=(f"sub-01 and sub-02: their experiments differ: {says}",))
@@ -609,7 +609,7 @@ class Groups(ExperimentTest):
         self.simulate("01", "--resume", "--group", "arm", **more, says=('begun with group "palm", and now it is "arm"',))
         people = self.dir / "study/participants.tsv"
         people.write_text(people.read_text() + "sub-02\t30\tn/a\tn/a\tarm\n")  # a list made before
-        self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is of group "arm", not "palm"',))
+        self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is in group "arm", not "palm"',))
         self.grouped(("02", "arm"))
         self.edit("study/sourcedata/sub-01/session.json", '"group": "palm"', '"group": "leg"')
         self.refused(2, "analyze", "study")
@@ -745,7 +745,7 @@ class Power(ExperimentTest):
         kept = (self.dir / "1.json").read_bytes()
         for more, says in ((("--part", "1/4"), "1.json: it has part 1 of 3 ("), (("--part", "2/3"), "1.json: it has part 1 of 3 ("),
                            (("--part", "1/3", "--seed", "9"), "1.json: it has part 1 of 3 of other studies (seed)")):
-            self.refused(2, *args, *more, "-o", "1.json", says=[says, "another file, or remove it"])
+            self.refused(2, *args, *more, "-o", "1.json", says=[says, "name another file, or remove it"])
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)
         self.ok(*args, "--part", "1/3", "-o", "1.json")
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)

@@ -178,7 +178,7 @@ class Codes(PersonTest):
         self.write("array.toml", ARRAY)
         self.small(text + many)
         self.refused(2, "experiment", definition, "--dry-run", "--array", "array.toml",
-                     says=["array.toml:4:8: code: there are", 'join some under [sync.codes]: stimulus = { by = ["motion", "method"] }'])
+                     says=["array.toml:4:8: code: there are", 'combine some under [sync.codes]: stimulus = { by = ["motion", "method"] }'])
 
     def test_a_library_that_is_none_is_refused(self):
         self.write("desk.toml", DESK + "[sync]\ncode = { lsl = true }\n")

@@ -113,7 +113,7 @@ class Sessions(PageTest):
         p.answer("question", 1)  # practice
         p.until("question")
         s.key("r")
-        s.told("trial 1 is void: the experimenter repeats it")
+        s.told("trial 1 is void: the experimenter repeated it")
         p.until("question")
         s.key("1")  # the participant answers, not the experimenter
         s.key("p")
@@ -123,7 +123,7 @@ class Sessions(PageTest):
         s.key("g")
         p.until("question")
         s.key("v")
-        s.told("trial 2 is void: the experimenter says so")
+        s.told("trial 2 is void: the experimenter made it void")
         p.say(ask=p.seen[-1]["ask"], answer=1)
         p.answer("question", 1)
         p.until("rest", asked=False)
@@ -187,7 +187,7 @@ class OnceAndNoMore(PageTest):
         p.socket.close()
         urllib.request.urlopen(f"http://{s.address}/").read()  # it has been noticed, then
         s.key("g")
-        s.told(r"(?s)(trial 1 is void: the target moved on no page.*){2}")  # the practice's, and the first
+        s.told(r"(?s)(trial 1 is void: no page showed the target.*){2}")  # the practice's, and the first
         p = s.participant()
         while (now := p.next())["screen"] != "over":
             if now["screen"] == "pause":

@@ -97,7 +97,7 @@ class AtTheTerminal(PersonTest):
         t.answer(asked, "0\n")
         t.answer(asked, "57\x7f5\n")
         t.answer(asked, "101\n")
-        t.answer("101\\s+That is no answer: 0 \\(not\\) to 100 \\(all\\): ", "1p1\n")  # a pause comes
+        t.answer("101\\s+That is not an answer: 0 \\(not\\) to 100 \\(all\\): ", "1p1\n")  # a pause comes
         t.answer("A pause", "g")
         t.answer(asked, "100\n")
         t.answer("Any key ends", " ")
@@ -132,8 +132,8 @@ class AtTheTerminal(PersonTest):
                                           ("2", "2", "false", "2"), ("1", "3", "true", "1"), ("1", "4", "false", "2")])
         self.assertEqual(self.rows("01", "pairs")[0]["frame_2"], "n/a")  # its second stimulus never began
         self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "1"), ("2", "1", "true", "2"), ("2", "2", "false", "3")])
-        self.assertEqual(t.said().count("is void: the experimenter repeats it"), 2)
-        self.assertEqual(t.said().count("is void: the experimenter says so"), 3)
+        self.assertEqual(t.said().count("is void: the experimenter repeated it"), 2)
+        self.assertEqual(t.said().count("is void: the experimenter made it void"), 3)
         self.assertEqual(t.said().count("a key is held down"), 1)
         self.ok(*self.args("--resume"))
 
@@ -149,7 +149,7 @@ class AtTheTerminal(PersonTest):
         t.answer("Any key begins", " ")
         t.answer("Which one\\? ", "q")
         self.assertEqual(t.end(), 130)
-        self.assertIn("tactor: ended by the experimenter (q): what was answered is in study, and --resume goes on", t.said())
+        self.assertIn("tactor: ended by the experimenter (q): the answers are in study, and --resume continues", t.said())
         s = self.session("01")
         agreed, asked = (datetime.datetime.fromisoformat(v.replace("Z", "+00:00")) for v in (s["consent"], s["walk"][0]["asked"]))
         self.assertLess(agreed, seen)
@@ -166,7 +166,7 @@ class AtTheTerminal(PersonTest):
             t.answer(place, key)
             self.assertEqual(t.end(), 130)
             self.assertFalse((self.dir / "study/sourcedata").exists())
-        self.assertIn("tactor: ended by the experimenter (q) before the first trial or questionnaire was done: nothing is written", t.said())
+        self.assertIn("tactor: ended by the experimenter (q) before the first trial or questionnaire was complete: nothing was written", t.said())
         for n, answers in enumerate(("", "", "1", "12")):
             t = self.start(*(("--resume",) if n else ()))
             t.begin(agrees=not n, key=" " if n else "\x03")
@@ -259,7 +259,7 @@ class ByLines(PersonTest):
         self.write("what.toml", BARE + IDENTIFY)
         result = self.ok(*self.args(definition="what.toml"), stdin="y\ny\n3\n1\n2\n")
         self.assertIn("Which movement was it? 1 east, 2 west: ", result.stdout)
-        self.assertIn("That is no answer: 1 east, 2 west", result.stdout)
+        self.assertIn("That is not an answer: 1 east, 2 west", result.stdout)
         self.assertNotIn("agree", result.stdout)  # without a consent question
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
         told = self.analysis()["runs"]["what"]
@@ -318,7 +318,7 @@ class ByLines(PersonTest):
     def test_a_session_goes_on_after_a_rating_of_0(self):
         self.write("short.toml", LINE)
         shown = self.refused(1, *self.args(), stdin=AGREED + "0\n57\n101\n").stdout
-        self.assertIn("How even? 0 (not) to 100 (all): That is no answer: 0 (not) to 100 (all): ", shown)
+        self.assertIn("How even? 0 (not) to 100 (all): That is not an answer: 0 (not) to 100 (all): ", shown)
         self.ok(*self.args("--resume"), stdin="y\ny\n100\n9\n")
         rows = self.rows("01", "marks")
         self.assertEqual([r["rating"] for r in rows], ["0", "57", "100", "9"])
@@ -337,7 +337,7 @@ class ByLines(PersonTest):
         text = SHORT.replace('path = "M0 0H20"', 'path = "M0 0H15"\nmirror = true')
         self.write("left.toml", text)
         self.write("right.toml", text.replace("M0 0H15", "M20 0H5"))
-        self.refused(2, *self.args(definition="left.toml"), says=("--hand", "--hand left, or --hand right"))
+        self.refused(2, *self.args(definition="left.toml"), says=("--hand", "add --hand left, or --hand right"))
         plans = [{(s["motion"], s["method"]): s["sha256"] for s in json.loads(self.ok(
             "experiment", name, "--dry-run", "--format", "json", *more).stdout)["stimuli"]}
             for name, more in (("left.toml", ("--hand", "left")), ("right.toml", ()), ("left.toml", ("--hand", "right")))]

@@ -75,10 +75,10 @@ class Held(SessionTest):
         self.forget_last_run("study/sub-01/ses-2/sub-01_ses-2_scans.tsv")
         (self.dir / "study/sourcedata/sub-01/ses-2/practice.tsv").unlink()
         (session / names[1]).write_bytes((session / names[1]).read_bytes()[:-90])
-        self.hold("01", 2, status=2, says=("--participant: there is session 2 of 01 already",))
+        self.hold("01", 2, status=2, says=("--participant: there is already session 2 of 01",))
         self.hold("01", 2, "--resume", spec="seed=2,void=0.3")
         self.assertEqual(self.without_cut(), whole)
-        self.assertIn("sub-01_ses-2: SIMULATED, nobody was asked: the session is finished",
+        self.assertIn("sub-01_ses-2: SIMULATED, no person answered: the session is finished",
                       self.hold("01", 2, "--resume", spec="seed=2,void=0.3").stdout)
         self.assertEqual(self.without_cut(), whole)
 
@@ -98,7 +98,7 @@ class Held(SessionTest):
     def test_a_participant_stays_in_one_group(self):
         self.write("grouped.toml", several(GROUPED))
         self.hold("01", 1, "--group", "palm", definition="grouped.toml")
-        self.hold("01", 2, "--group", "arm", definition="grouped.toml", status=2, says=('sub-01_ses-1 is of group "palm", not "arm"',))
+        self.hold("01", 2, "--group", "arm", definition="grouped.toml", status=2, says=('sub-01_ses-1 is in group "palm", not "arm"',))
         self.hold("01", 2, "--group", "palm", definition="grouped.toml")
         self.edit("study/sourcedata/sub-01/ses-2/session.json", '"group": "palm"', '"group": "arm"')
         self.refused(2, "analyze", "study")

@@ -97,11 +97,11 @@ class Tables(ExperimentTest):
         text = table.read_bytes()
         table.write_bytes(text[:-100])
         cut = text[:-100].rpartition(b"\n")[2]
-        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is cut off (tactor experiment --resume",))
+        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is incomplete (tactor experiment --resume",))
         said = self.simulate("01", "--resume").stderr
         for path, kept in ((table, cut), (practice, lines[-1][:40])):
             name = path.relative_to(self.dir)
-            self.assertIn(f"tactor: warning: {name}: its last line was cut off: what is left of it is in {name}.cut-1\n", said)
+            self.assertIn(f"tactor: warning: {name}: its last line was incomplete and was moved to {name}.cut-1\n", said)
             self.assertEqual(path.with_name(path.name + ".cut-1").read_bytes(), kept)
         whole[str(practice.relative_to(self.dir / "study"))] = b"".join(lines[:-1])  # that run is over: no more practice
         self.assertEqual(self.without_cut(), whole)
@@ -152,7 +152,7 @@ class Tables(ExperimentTest):
         people = self.dir / "study/participants.tsv"
         people.write_text(people.read_text().splitlines(True)[0])
         said = self.simulate("01", "--resume").stderr
-        self.assertIn("study/participants.tsv: sub-01 was missing, and is there again", said)
+        self.assertIn("study/participants.tsv: sub-01 was missing and was added again", said)
         self.assertEqual(contents(self.dir / "study"), whole)
 
     def test_columns_in_another_order_take_a_session_by_their_names(self):

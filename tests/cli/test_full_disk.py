@@ -184,7 +184,7 @@ class FullDisk(ExperimentTest):
             # Before it begins, when a trial is answered, and when all are.
             begun += "me.json: cannot be written" in r.stderr
             if "me.json" not in r.stderr:
-                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(what was answered before is kept; free some space, and --resume goes on\)")
+                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(earlier answers are kept; free some space, and --resume continues\)")
                 kept += len(log.splitlines()) > 2
             resume = ["--resume"] if "me.tsv" in disk.files() else []
             self.refused(1, *args, *resume, says=[NO_SPACE])  # there still is no space
@@ -272,7 +272,7 @@ class FullDisk(ExperimentTest):
         t.answer("Any key begins", " ")
         t.answer("How even\\? ", "3")  # this takes another table
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, and --resume goes on\)")
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, then use --resume\)")
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3"]))
         disk.make_room()
         self.resumed(("Any key begins", " "), ("Trial 2/2: How even\\? ", "1"), ("Any key ends", " "))
@@ -283,7 +283,7 @@ class FullDisk(ExperimentTest):
         disk.fill_names()
         t.key("2")
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, and --resume goes on\)")
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, then use --resume\)")
         self.assertEqual(self.answers("pairs"), ["2"])
 
     def test_a_disk_that_becomes_read_only_while_somebody_answers(self):
@@ -291,7 +291,7 @@ class FullDisk(ExperimentTest):
         disk.read_only()
         t.key("2")
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), r"Read-only file system \(what was answered before is kept; make the disk writable again, and --resume goes on\)")
+        self.assertRegex(t.said(), r"Read-only file system \(earlier answers are kept; make the disk writable again, and --resume continues\)")
         t = self.person("--resume")
         self.assertEqual(t.end(), 1)
         self.assertIn("Read-only file system", t.said())

@@ -149,7 +149,7 @@ class Options(ToolTest):
             self.assertLessEqual(of_stream, self.list_options(command), command)
         self.assertIn("sync-delay-ms", self.list_options("serve"))
         for option in ("--no-gpio", "--require-realtime", "--verbose"):
-            self.refused(2, "calibrate", "--participant", "P1", "-o", "c.toml", "--simulate", "seed=1", option, says=[option, "nothing is played"])
+            self.refused(2, "calibrate", "--participant", "P1", "-o", "c.toml", "--simulate", "seed=1", option, says=[option, "a simulated session plays nothing"])
         self.refused(2, "experiment", "park2016", "--participant", "P1", "-o", "study", "--simulate", "seed=1,sigma=1", "--periods", "4")
 
     def test_help_takes_an_option_in_any_spelling(self):

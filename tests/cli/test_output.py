@@ -222,7 +222,7 @@ class Inputs(ExperimentTest):
             out.seek(0, os.SEEK_END)
             r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdin=f, stdout=out, stderr=subprocess.PIPE, timeout=PATIENCE_S, check=False, text=True)
         self.assertEqual((r.returncode, (self.dir / file).read_bytes()), (2, before), f"{args}: {r.stderr}")
-        self.assertIn("is where this program writes to (write to another file)", r.stderr)
+        self.assertIn("is the output of this program (write to another file)", r.stderr)
 
     def test_standard_output_goes_over_no_input(self):
         for file, args in self.READ:
@@ -277,7 +277,7 @@ class Inputs(ExperimentTest):
                     self.write(name, edited)
                     said = self.kept(name, command, stroke, "-o", name)
                     # An edit may also hide that tactor wrote a PDF.
-                    self.assertRegex(said, rf"{name}.*(it was changed after tactor wrote it|tactor did not write it).*--force")
+                    self.assertRegex(said, rf"{name}.*(somebody changed it after tactor wrote it|tactor did not write it).*--force")
                     self.ok(command, stroke, "-o", name, "--force")
                     self.assertEqual((self.dir / name).read_bytes(), ours)
                 digits = re.search(rb"sha256.([0-9a-f]{64})", ours)
@@ -316,7 +316,7 @@ class Large(ToolTest):
     def test_memory_is_bounded_for_any_input(self):
         with open("/dev/zero", "rb") as endless:
             status, said, mb, _ = self.cost("plan", "-", stdin=endless)
-        self.assertEqual((status, said), (2, "tactor: standard input: longer than 512 MB (is it the right file?)\n"))
+        self.assertEqual((status, said), (2, "tactor: standard input: longer than 512 MB (check that it is the right file)\n"))
         self.assertLess(mb, 600)
         self.write_pieces("values.csv", (b"0," * (MB // 2) for _ in range(64)))
         status, said, mb, _ = self.cost("plan", "values.csv")

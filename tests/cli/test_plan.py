@@ -100,7 +100,7 @@ class Forms(PlanTest):
                               ("--waveform square --am 30", "square of 250 Hz, AM of 30 Hz, level"),
                               ("--am 30:0.5 --level-dbfs -20", "AM of 30 Hz and depth 0.5, level -20 dBFS"),
                               ("--waveform brush.wav", "brush.wav at 250 Hz"),
-                              ("--waveform brush.wav --texture time", "brush.wav in its own time"),
+                              ("--waveform brush.wav --texture time", "brush.wav at its own rate"),
                               ("--waveform brush.wav --texture length", "brush.wav along the path")):
             out = self.ok("plan", "park2016-1", *options.split()).stdout
             self.assertTrue("\nvibration: " in out and says in out, out)
@@ -159,7 +159,7 @@ class Options(PlanTest):
         self.assertEqual(fit["margin_mm"], 5)
         for value, wanted in zip(fit["matrix"], (0.5, 0, 0, 0.5, 5 - 50, 10 - 52.5)):
             self.assertAlmostEqual(value, wanted, 6)
-        self.assertIn("fitted: (150, 105) mm as drawn is (30, 10) mm here, lengths times 0.6\n", self.ok("plan", *corner, *LOW, "--fit").stdout)
+        self.assertIn("fitted: (150, 105) mm as drawn becomes (30, 10) mm, lengths times 0.6\n", self.ok("plan", *corner, *LOW, "--fit").stdout)
         self.assertIn("onto the line of the array", self.ok("plan", "park2016-1", "--array", ARM, "--fit").stdout)
 
     def test_compensation_is_told_by_every_command(self):
@@ -178,7 +178,7 @@ class Options(PlanTest):
         self.assertIn(f"{c['residual_rms_mm']:.3f} mm RMS", said)
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
         self.assertIsNone(self.plan("s.toml", *MOVE)["compensation"]["predicted_rms_mm"])
-        self.assertIn("no burst sounds that could be moved for the low-speed observer", self.both("plan", "s.toml", *MOVE))
+        self.assertIn("there is no audible burst to move for the low-speed observer", self.both("plan", "s.toml", *MOVE))
 
     def test_impossible_options_are_refused(self):
         for options in ("--soa 0.0473", "--soa 0.0701", "--soa -1", "--burst 0", "--burst 11", "--burst x", "--burst 0.08", "--compensate more",

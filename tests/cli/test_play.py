@@ -363,7 +363,7 @@ class KeptDrive(ToolTest):
         check = self.ok("check", "-D", "felt").stdout
         self.assertRegex(check, r"(?m)^warning +drive time ")
         r = self.play(seconds=0.05)
-        warning = f"tactor: warning: {file} cannot be read as a whole: each tactor counts as driven for as long as it may be\n"
+        warning = f"tactor: warning: {file} cannot be read completely: each tactor counts as driven for as long as allowed\n"
         self.assertEqual(r.stderr.count(warning), 1)
         self.assertGreater(json.loads(r.stdout)["counters"]["drives_cut"], 0)
         self.assertNotIn(str(file), self.play(seconds=0.05).stderr)

@@ -264,7 +264,7 @@ class Crowded(PlotTest):
             self.assertIn(f"one row in {shown[1]} has its number", self.notes(svg))
         self.assertTrue("no space for the peaks of rows" in self.notes(svg) and svg.all("peak") == [])
         self.write("a.toml", grid(3, 3, 20))
-        for count, notes in ((30, ()), (61, ("starts of more than 60 strokes are not marked", "strokes on one tactor lie on each other"))):
+        for count, notes in ((30, ()), (61, ("starts of more than 60 strokes are not marked", "strokes on one tactor overlap"))):
             self.write("s.toml", "".join(f'[[stroke]]\npath = "M {i / 2} 0 L 40 40"\nstart_s = 0\n' for i in range(count)))
             svg = self.drawn(view="timing", width="60")
             for note in notes:

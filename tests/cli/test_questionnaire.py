@@ -63,7 +63,7 @@ class AtTheTerminal(Forms):
     def test_lines_are_whole_texts(self):
         lines = AGREED + "33\n1\n q  \"x\"\n0\n" + "1\n1\n" + "3\n" + "1\n1\n" + '"quoted" n/a\n9\n1\n'
         said = self.ok(*self.args(), stdin=lines).stdout
-        self.assertIn("That is no answer: 1 (never) to 5 (always)", said)
+        self.assertIn("That is not an answer: 1 (never) to 5 (always)", said)
         self.assertEqual(self.told("about"), [["sub-01", "33", "1", '" q  ""x"""', "0"]])
         self.assertEqual(self.told("end")[0][1], '"""quoted"" n/a"')  # or it would be read without its quotes
         self.assertIn("finished", self.ok(*self.args("--resume"), stdin="").stdout)
@@ -137,7 +137,7 @@ class AtTheTerminal(Forms):
     def test_v_within_a_questionnaire_makes_no_trial_void(self):
         lines = AGREED + "33\n1\nx\n0\n" + "1\n1\n" + "v\n3\n" + "1\n1\n" + "y\nv\n1\n"
         said = self.ok(*self.args(), stdin=lines).stderr
-        self.assertEqual(said.count("within a questionnaire v makes no trial void; b goes one item back"), 2)
+        self.assertEqual(said.count("v does not work within a questionnaire; b goes one item back"), 2)
         self.assertEqual([r["void"] for r in self.rows("01", "pairs")], ["false"] * 2)
         self.assertEqual([r["void"] for r in self.rows("01", "marks")], ["false"] * 2)
 

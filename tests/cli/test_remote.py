@@ -203,7 +203,7 @@ class Remote(ServeTest):
         # The server's interruption is a failure.
         p = self.fed(self.serve("--socket", self.dir / "b.sock", config="[serve]\nmax_stroke_s = 0.1\n").where["socket"], "10 10\n")
         self.assertEqual(p.wait(PATIENCE_S), 1)
-        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: limit: it has lasted as long as it may\n")
+        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: limit: it reached the longest allowed duration\n")
 
     def played_at_a_door(self, points, answer):
         """Plays live points to a server in this test; `answer(params)` gives its reply to each of them, None: accepted."""
@@ -260,7 +260,7 @@ class Remote(ServeTest):
         self.refused(2, "play", "--live", "-", "-D", "null", "--smooth", "2")
         self.refused(2, "play", "park2016-1", "-D", "null", "--smooth", "0.1")
         for option in (("--duration", "1"), ("--compensate", "low-speed"), ("--sigma-mm", "3")):
-            self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke does not know it"))
+            self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke cannot use it"))
         self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml")
 
     def test_points_outside_the_array_are_counted_and_reported(self):
@@ -271,7 +271,7 @@ class Remote(ServeTest):
             r = self.ok("play", "--live", "-", *where, stdin=lines)
             self.assertIn("; 2 points outside the array moved to its edge\n", r.stdout)
         r = self.ok("play", "--live", "-", "-D", "null", "--verbose", stdin=lines)
-        self.assertEqual(r.stderr.count("warning: standard input:1: the place (640, 480) mm is outside the array: moved to its edge"), 1)
+        self.assertEqual(r.stderr.count("warning: standard input:1: the place (640, 480) mm is outside the array and moves to its edge"), 1)
         self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points outside the array moved to its edge\n")
 
     def test_points_in_metres_are_reported(self):
@@ -290,7 +290,7 @@ class Remote(ServeTest):
 
     def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"
-        warning = "tactor: warning: standard input:1: an intensity of 80 sounds as 1: the level asked for is the ceiling "
+        warning = "tactor: warning: standard input:1: an intensity of 80 plays as 1: the requested level is the ceiling "
         for where in (("-D", "null"), ("--socket", self.serve().where["socket"])):
             r = self.ok("play", "--live", "-", *where, "--format", "json", stdin=lines)
             self.assertEqual(r.stderr.count("sounds as 1"), 1, r.stderr)
@@ -298,8 +298,8 @@ class Remote(ServeTest):
             self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 2)
         r = self.ok("play", "--live", "-", "-D", "null", "--verbose", stdin=lines)
         self.assertIn("live: played", r.stdout)
-        self.assertIn("; 2 points above intensity 1 sounded as 1\n", r.stdout)
-        self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points above intensity 1 sounded as 1: the level asked for is the ceiling\n")
+        self.assertIn("; 2 points above intensity 1 played as 1\n", r.stdout)
+        self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points above intensity 1 played as 1: the requested level is the ceiling\n")
 
     def test_nan_lifts_the_touch_until_the_next_point(self):
         taken = []

@@ -158,7 +158,7 @@ class Together(RenderTest):
     def test_a_sum_is_held_to_the_limits(self):
         self.write("limited.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -31\n')
         self.refused(2, "render", "cross.toml", "--array", "limited.toml", "--level-dbfs", "-40", "--together", "sum", "-o", "o.wav",
-                     says=["limited.toml:3:1: tactor 4 would be driven at -30.46 dBFS"])
+                     says=["limited.toml:3:1: tactor 4 would play at -30.46 dBFS"])
         self.ok("render", "cross.toml", "--array", "limited.toml", "--level-dbfs", "-40", "-o", "o.wav")
 
     def test_a_stroke_s_own_level_is_at_most_that_asked_for(self):
@@ -203,7 +203,7 @@ class Sound(RenderTest):
         self.write("r.wav", wav_bytes([math.sin(i / 6) for i in range(400)])[:44 + 2 * 100])
         for command in (("plan",), ("render", "-o", "x.wav"), ("plot", "-o", "x.svg")):
             said = self.ok(command[0], *LINE[:2], "--waveform", "r.wav", "--carrier", "20", *command[1:])
-            self.assertIn("r.wav: the recording is cut short: it has 100 of 400 samples", said.stdout + said.stderr)
+            self.assertIn("r.wav: the recording is incomplete: it has 100 of 400 samples", said.stdout + said.stderr)
 
     def test_impossible_sounds_are_refused(self):
         self.write("stereo.wav", wav_bytes([0.5, -0.5] * 40, channels=2))

@@ -219,7 +219,7 @@ class Differences(ReportTest):
         text = self.report("study")
         self.assertEqual(len(tables(section(text, "### Array and sound"))), 2)
         self.assertIn("Tactors of sub-02:", text)
-        self.assertIn("-18.5 dBFS, the same for all tactors but for their gains (sub-02)", text)
+        self.assertIn("-18.5 dBFS, the same for all tactors except for their gains (sub-02)", text)
 
     def test_definitions_with_different_questions_are_reported(self):
         def other(told):
@@ -238,7 +238,7 @@ class Differences(ReportTest):
         text = section(self.report("study", "--exclude", "04"), "## Participants")
         self.assertIn("3 participants: sub-01, sub-02, sub-03. Age: 26 to 36 years, mean 31.0, sd 7.1, of 2 participants; 1 not "
                       "recorded. Sex: 2 F, 1 M. Handedness: 1 L, 2 R.", text)
-        self.assertIn("Left out: sub-04 (no trial that counts", self.report("study"))
+        self.assertIn("Left out: sub-04 (no trial counts", self.report("study"))
         text = self.report("study", "--participants", "02")
         self.assertIn("1 participant: sub-02. Age: 36 years, mean 36.0. ", text)
         self.assertNotIn("sub-01", text.replace("Excluded: sub-01 (not among those selected).", ""))
@@ -320,7 +320,7 @@ class Differences(ReportTest):
         row, = tables(section(self.report("own"), "### Levels and thresholds"))[1]
         self.assertEqual(row, {"thresholds of": "sub-P1", "measured with": "P1", "method": "staircase", "rule": "1up3down",
                                "carrier (Hz)": "250", "interval (s)": "0.5", "feedback": "true", "masker": "none", "date": date,
-                               "simulated": "true", "warnings": "the thresholds were simulated: nobody was asked"})
+                               "simulated": "true", "warnings": "the thresholds are simulated, not measured"})
 
     def test_thresholds_of_another_participant_or_carrier_are_reported(self):
         self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--carrier", 100, "--simulate", "threshold=-45,spread=2")
@@ -390,7 +390,7 @@ class OtherStudies(ReportTest):
             self.assertNotIn("nan", re.findall(r"\w+", text.lower()), name)
             self.assertEqual("SIMULATED" in text, name == "simulated")
         self.assertIn("/ not recorded |", section(self.report("simulated"), "## Data"))
-        self.assertIn("Left out: sub-E5 (no trial that counts in some of the cells).", self.report("missing"))
+        self.assertIn("Left out: sub-E5 (no trial counts in some of the cells).", self.report("missing"))
         answers = tables(section(self.report("three-by-three"), "### which"))
         which = json.loads(self.ok("analyze", "three-by-three", "--format", "json").stdout)["runs"]["which"]
         counted = next(t for t in answers if "motion-1" in t[0])

@@ -97,7 +97,7 @@ class Sockets(ServeTest):
             for s in (given, nameless):
                 s.listen()
             for mode, sockets, why in ((0o666, [given], "every user of this machine may write to it"),
-                                       (0o660, [given, given], "there are two of that name"),
+                                       (0o660, [given, given], "two have this name"),
                                        (0o660, [nameless], "it is no file")):
                 os.chmod(path, mode)
                 self.refuses_to_start(2, inherits=[("socket", s) for s in sockets], says=why)
@@ -156,7 +156,7 @@ class Sockets(ServeTest):
     def test_a_token_is_required(self):
         config = self.token() + "tcp = 0\nmax_message_s = 600\n"
         (self.dir / "token").chmod(0o604)
-        self.refuses_to_start(2, config=config, says="others may read it")
+        self.refuses_to_start(2, config=config, says="other users may read it")
         (self.dir / "token").chmod(0o600)
         s = self.serve(config=config)
         c = s.client(tcp=True)
@@ -381,7 +381,7 @@ class Limits(ServeTest):
             third = s.client(tcp=True)
             refused = third.next()["error"]
             self.check_error(refused, -32001, "max_clients")
-            self.assertIn("4 clients are the most, 2 of them on this machine's socket", refused["message"])
+            self.assertIn("all 4 places for clients are taken, 2 of them only for this machine's socket", refused["message"])
             self.assertIsNone(third.next())
             local = [s.client() for _ in range(2)]
             for c in local:

@@ -167,15 +167,15 @@ class Web(ServeTest):
         c = s.client()
         c.ok("hello")
         self.assertEqual(s.peer().upgrade(), 503)
-        self.assertIn("there is no place", s.client(tcp=True).next()["error"]["message"])
+        self.assertIn("all places are taken", s.client(tcp=True).next()["error"]["message"])
         c.raw(b"x" * 2000 + b"\n")
         while c.next() is not None:
             pass
         self.assertEqual(s.terminate()[0], 0)
         lines = [line.partition(" warning ")[2] for line in log.read_text().splitlines() if "refused: " in line]
         self.assertEqual(lines, [f'refused: a browser\'s request for the host "{s.address}" by a page of "http://evil.example" from 127.0.0.1',
-                                 "refused: a browser for which there is no place from 127.0.0.1",
-                                 "refused: a connection for which there is no place from 127.0.0.1",
+                                 "refused: a browser: all places are taken from 127.0.0.1",
+                                 "refused: a connection: all places are taken from 127.0.0.1",
                                  "refused: a message that is too large from this computer"])
 
     def test_the_token_is_required(self):

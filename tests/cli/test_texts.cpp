@@ -69,7 +69,7 @@ TEST_CASE("fields and marks of the library become options and commands of the to
     CHECK(spell("{command:plan} makes one") == "--soa: no (tactor plan STROKE --format json makes one)");
     CHECK(spell("{force=true}; {wider=true} leaves the others silent") ==
           "--soa: no (--force; without a number of channels it leaves the others silent)");
-    CHECK(spell("{array=none}: it has its own") == "--soa: no (say no --array: it has its own)");
+    CHECK(spell("{array=none}: it has its own") == "--soa: no (leave out --array: it has its own)");
 }
 
 TEST_CASE("keys of a stroke file stay as they are there")

@@ -162,19 +162,18 @@ TEST_CASE("validate takes the presets and grids of the greatest size")
 TEST_CASE("validate names both tactors, with their lines where known")
 {
     array a = at_places({{0, 0}, {20, 0}, {20 + 0.9e-6, 0}});
-    CHECK(caught_message([&] { validate(a); }) ==
-          "array 'test': tactor 2 is at (20.0000009, 0) mm, the place of "
-          "tactor 1 (give each tactor a place of its own)");
+    CHECK(caught_message([&] { validate(a); }) == "array 'test': tactor 2 is at (20.0000009, 0) mm, the "
+                                                  "place of tactor 1 (give each tactor its own place)");
     a.tactors[1].where = {"palm.toml", 5, 1};
     a.tactors[2].where = {"palm.toml", 9, 1};
     CHECK(caught_message([&] { validate(a); }) ==
           "palm.toml:9:1: tactor 2 is at (20.0000009, 0) mm, the place of tactor 1 (palm.toml:5:1) (give "
-          "each tactor a place of its own)");
+          "each tactor its own place)");
     a.tactors[2].position.x_mm = 20 + 1.1e-6;
     CHECK_NOTHROW(validate(a));
     a.tactors[2].channel = 1;
     CHECK(caught_message([&] { validate(a); }) == "palm.toml:9:1: tactor 2 is on channel 1, that of tactor 1 "
-                                                  "(palm.toml:5:1) (give each tactor a channel of its own)");
+                                                  "(palm.toml:5:1) (give each tactor its own channel)");
 }
 
 TEST_CASE("validate refuses impossible tactors, and names the field")

@@ -240,7 +240,7 @@ TEST_CASE("senseless timed points are refused by their number")
 {
     CHECK(timed_refusal({}).find("0 of at least 2") != std::string::npos);
     CHECK(timed_refusal({{0.0, {}}}).find("1 of at least 2") != std::string::npos);
-    CHECK(timed_refusal({{0.5, {}}, {1.0, {}}}) == "point 1: time 0.5 s (the first time is 0)");
+    CHECK(timed_refusal({{0.5, {}}, {1.0, {}}}) == "point 1: time 0.5 s (make the first time 0)");
     CHECK(timed_refusal({{0.0, {}}, {1.0, {}}, {1.0, {}}}) ==
           "point 3: time 1 s is not after 1 s (times ascend)");
     CHECK(timed_refusal({{0.0, {}}, {-1.0, {}}}).find("point 2: ") == 0);

@@ -416,11 +416,11 @@ TEST_CASE("a file that is cut or foreign counts as the limit once, with a reason
         const runtime r(here.path());
         const auto file = here.write("tactor/drive-time-x", text);
         std::filesystem::permissions(here / "tactor", std::filesystem::perms::owner_all);
-        CHECK(drive_time_fault("x") == file.string() + " cannot be read as a whole");
+        CHECK(drive_time_fault("x") == file.string() + " cannot be read completely");
         process one("x");
         CHECK(one.book.doubt() ==
               file.string() +
-                  " cannot be read as a whole: each tactor counts as driven for as long as it may be");
+                  " cannot be read completely: each tactor counts as driven for as long as allowed");
         CHECK(one.book.levels() == std::vector<double>(9, 5.0));
         CHECK(drive_time_fault("x") == "");
         const process next("x");
@@ -457,8 +457,8 @@ TEST_CASE("a file that becomes foreign, or is kept locked, closes all channels w
         const std::vector<std::vector<double>> own{one.channel(0)};
         CHECK(driven_s(own) <= 1.0 + 0.2 + 0.15 + 0.05);
         CHECK(one.book.doubt() ==
-              path + (locked ? " is locked by another program" : " cannot be read as a whole") +
-                  ": each tactor counts as driven for as long as it may be");
+              path + (locked ? " is locked by another program" : " cannot be read completely") +
+                  ": each tactor counts as driven for as long as allowed");
     }
 }
 
@@ -492,7 +492,7 @@ TEST_CASE("no link is followed, and no folder of another user is used")
             const process one("to-" + target);
             CHECK(one.book.doubt() ==
                   link.string() +
-                      " cannot be read as a whole: each tactor counts as driven for as long as it may be");
+                      " cannot be read completely: each tactor counts as driven for as long as allowed");
             CHECK(here.names() == std::vector<std::string>{"precious", "tactor"});
             CHECK(here.bytes("precious") == "text");
         }
@@ -574,10 +574,12 @@ TEST_CASE("without a folder of one's own players of a process count together, an
           (here / "tactor/drive-time-d").string() + " cannot be opened: Is a directory");
     CHECK(count_cuts("d", 0.01) == 1); // it counts as the limit
     std::filesystem::permissions(here / "tactor", std::filesystem::perms::all);
-    CHECK(drive_time_fault("d") == (here / "tactor").string() + " is not a folder of this user alone");
+    CHECK(drive_time_fault("d") ==
+          (here / "tactor").string() + " must be a folder that only this user can write to");
     std::filesystem::remove_all(here / "tactor");
     std::filesystem::create_directory_symlink("/tmp", here / "tactor");
-    CHECK(drive_time_fault("d") == (here / "tactor").string() + " is not a folder of this user alone");
+    CHECK(drive_time_fault("d") ==
+          (here / "tactor").string() + " must be a folder that only this user can write to");
     const runtime gone((here / "nowhere").string());
     CHECK(drive_time_fault("d") == (here / "nowhere").string() + " is not a folder of this user");
 }

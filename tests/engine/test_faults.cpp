@@ -136,7 +136,7 @@ TEST_CASE("three xruns a second are survived, the fourth ends the stream")
     CHECK(r.loop.over());
     CHECK(r.link.count.xruns == 4);
     CHECK(r.feed.stream_over());
-    CHECK(ending(r.end(far)) == "interrupted, lost: the device was given up: one xrun after the other");
+    CHECK(ending(r.end(far)) == "interrupted, lost: the device was closed after too many xruns in a row");
 }
 
 TEST_CASE("an unplugged device ends the stream and every stroke")
@@ -171,7 +171,7 @@ TEST_CASE("a device that stands still is lost after its time, ready or not")
         CHECK(took >= 500'000'000);
         CHECK(took <= 520'000'000);
         r.control();
-        CHECK(ending(r.end(id)) == "interrupted, lost: the device does not move any more");
+        CHECK(ending(r.end(id)) == "interrupted, lost: the device stopped");
         CHECK(r.link.count.xruns == 0);
     }
 }
@@ -191,7 +191,7 @@ TEST_CASE("a device that takes frames but gives no position is lost after its ti
         CHECK(r.loop.over());
         CHECK(took >= 500'000'000);
         CHECK(took <= 510'000'000);
-        CHECK(ending(r.end(id)) == "interrupted, lost: the device does not move any more");
+        CHECK(ending(r.end(id)) == "interrupted, lost: the device stopped");
         CHECK(r.link.count.xruns == 0);
     }
 }

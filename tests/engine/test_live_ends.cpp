@@ -134,7 +134,7 @@ TEST_CASE("a live stroke is interrupted after its longest time, to a period, wit
             r.live->to({0.0, 0.0}, 1.0);
             r.play(96);
         }
-        CHECK(ending(r.end({1})) == "interrupted, too-long: it has lasted as long as it may");
+        CHECK(ending(r.end({1})) == "interrupted, too-long: it reached the longest allowed duration");
         CHECK(r.end({1}).frames >= 9600);
         CHECK(r.end({1}).frames <= 9600 + 96 + 480);
         CHECK_FALSE(r.first_sound(base + 9600 + 96 + 480));
@@ -213,7 +213,7 @@ TEST_CASE("a model that exceeds the amplitude it was given interrupts the stroke
             const std::uint64_t from = r.status().written;
             r.play(9600);
             CHECK(ending(r.end({1})) == "interrupted, plan: phantom model \"overdone\" gave tactor 4 "
-                                        "amplitude 5e+08, above the 0.5 asked for");
+                                        "amplitude 5e+08, above the requested 0.5");
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(peak(r.channel(4)) <= 0.5 * live_level * (1.0 + 1e-8));
             CHECK(largest_step(r.channel(4)) < live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48));
@@ -239,8 +239,8 @@ TEST_CASE("a model that exceeds its amplitude ends a stroke before it sounds or 
     for (const stroke_id id : {all[1]->id, all.back()->id}) {
         CHECK(r.end(id).frames == 0);
         // The scale maps 0.1 to 0.01.
-        CHECK(ending(r.end(id)) == "interrupted, plan: phantom model \"overdone\" gave tactor 4 "
-                                   "amplitude 0.01001, above the 0.01 asked for");
+        CHECK(ending(r.end(id)) == "interrupted, plan: phantom model \"overdone\" gave tactor 4 amplitude "
+                                   "0.01001, above the requested 0.01");
     }
     CHECK_FALSE(r.first_sound());
 }

@@ -292,11 +292,11 @@ TEST_CASE("a tactor that arrives louder is refused, other changes are warned of"
           "reversed: louder than its limit allows");
     CHECK(wiring_warnings(line_of_three(), {}).empty());
     CHECK(wiring_warnings(line_of_three(), {.most_gain = 2.0}) ==
-          std::vector<std::string>{
-              "ALSA's configuration raises samples by up to 6.02 dB on the way to the device, "
-              "and clips them there at full scale"});
+          std::vector<std::string>{"ALSA's configuration amplifies samples by up to 6.02 dB on the way to "
+                                   "the device, and clips them there at full scale"});
     CHECK(wiring_warnings(line_of_three(), {.level_by = "type softvol"}) ==
-          std::vector<std::string>{"a mixer control sets the level of all tactors: type softvol is between"});
+          std::vector<std::string>{
+              "a mixer control sets the level of all tactors: type softvol is between player and device"});
 }
 
 TEST_CASE("a player refuses an array of which a tactor is lost")
@@ -305,12 +305,11 @@ TEST_CASE("a player refuses an array of which a tactor is lost")
                    .channels = 3,
                    .config_text = "pcm.n { type null }\n"
                                   "pcm.t { type route slave.pcm n ttable { 0.0 1 2.1 1 } }"};
-    CHECK_THROWS_WITH_AS(
-        player(open_alsa(o), line_of_three()),
-        "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the device "
-        "(give each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), or "
-        "play on the card itself, hw:CARD=NAME)",
-        error);
+    CHECK_THROWS_WITH_AS(player(open_alsa(o), line_of_three()),
+                         "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the "
+                         "device (in the definition of the PCM (ttable, bindings) lead each channel to its "
+                         "own channel of the device, at 1, or play on the card itself, hw:CARD=NAME)",
+                         error);
     array two = line_of_three();
     two.tactors.erase(two.tactors.begin() + 1);
     CHECK_NOTHROW(player(open_alsa(o), two));
@@ -328,7 +327,7 @@ TEST_CASE("wiring that hides the channels' routes is logged, and plays")
             said += text;
     };
     CHECK_NOTHROW(player(open_alsa(o), line_of_three()));
-    CHECK(said == "PCM \"t\": which of the device's channels its own reach is not known: type route to a "
+    CHECK(said == "PCM \"t\": it is unknown which channels of the device its own reach: type route to a "
                   "channel FL is between");
 }
 
@@ -440,8 +439,8 @@ TEST_CASE("a score that drives a channel without a tactor is refused, others pla
     const array few = first_of_palm(4);
     CHECK(complaint(few, tone(0.01, 3, on_nine_channels())).empty());
     CHECK(complaint(few, tone(0.01, 4, on_nine_channels())) ==
-          "stroke: it drives tactor 4 on channel 4, where the player's array has none (plan it for the array "
-          "that the player was opened with)");
+          "stroke: it drives tactor 4 on channel 4, but the player's array has no tactor there (plan it for "
+          "the array that the player was opened with)");
     CHECK(complaint(few, tone(0.01, 4, on_nine_channels(), 0.0)).empty());
     has(complaint(few, random_score(1, 20, 9)), "where the player's array has none");
 }
@@ -485,8 +484,8 @@ TEST_CASE("a marker on a tactor's channel is refused, on a spare channel it play
     const array eight = first_of_palm(8);
     const score s(eight, make_plan(eight, preset_stroke("park2016-1")), o);
     CHECK(complaint(eight, s).empty());
-    CHECK(complaint(palm(), s) == "stroke: its marker is on channel 8, where the player's array has a tactor "
-                                  "(choose a spare channel for it)");
+    CHECK(complaint(palm(), s) == "stroke: its marker is on channel 8, but the player's array has a tactor "
+                                  "there (choose a spare channel for it)");
     CHECK(refused_field(s) == "marker_channel");
 }
 

@@ -193,21 +193,21 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
 
     const auto code = [](const std::string& in) { return complaint("[sync]\ncode = " + in + "\n"); };
     CHECK(code("{ bit_ms = 2 }") ==
-          "t.toml:2:8: code says neither channel nor chip (code = { channel = 15 }, or { chip, offsets })");
-    CHECK(
-        code("{ chip = \"a\" }") ==
-        "t.toml:2:8: there are 0 offsets (give one to eight lines, that of the least significant bit first)");
+          "t.toml:2:8: code has neither channel nor chip (code = { channel = 15 }, or { chip, offsets })");
+    CHECK(code("{ chip = \"a\" }") ==
+          "t.toml:2:8: there are 0 offsets (give one to eight lines, the least significant bit first)");
     CHECK(code("{ offsets = [1] }") == "t.toml:2:8: code has no chip (add chip = ...)");
     CHECK(code("{ chip = \"a\", offsets = [1, 1] }") ==
-          "t.toml:2:8: the line is in use at t.toml:2:8 (give each purpose a GPIO line of its own)");
+          "t.toml:2:8: the line is in use at t.toml:2:8 (give each purpose its own GPIO line)");
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = 256") ==
           "t.toml:4:12: stimulus is 256 (allowed: 1 to 255)");
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = { by = [\"motions\"] }") ==
           "t.toml:4:19: by has 'motions' (some of run, motion, method, value, interval, answer)");
     CHECK(complaint("[sync.codes]\nstimulus = 1\n") ==
           "t.toml:1:1: nothing sends these numbers (code = { channel }, or { chip, offsets })");
-    CHECK(complaint("[sync]\nchannel = 4\ncode = { channel = 4 }\n") ==
-          "t.toml:2:11: channel 4 is that of the code, too (give the marker and the code a channel each)");
+    CHECK(
+        complaint("[sync]\nchannel = 4\ncode = { channel = 4 }\n") ==
+        "t.toml:2:11: channel 4 is also that of the code (give the marker and the code different channels)");
 }
 
 TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
@@ -217,15 +217,15 @@ TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
     CHECK(line("{ chip = \"a\", name = \"b\" }") ==
           "t.toml:2:29: line has both chip and name (keep one of them)");
     CHECK(line("{ name = \"a\", offset = 2 }") ==
-          "t.toml:2:31: line has both name and offset (a name is enough)");
-    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line says nothing of what it is (add one of: chip, name)");
+          "t.toml:2:31: line has both name and offset (keep the name)");
+    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line does not say what it is (add one of: chip, name)");
     CHECK(line("{ chip = \"a\", offset = -2 }") == "t.toml:2:31: offset is -2 (allowed: 0 to 65535)");
     CHECK(line("\"GPIO17\"") ==
           "t.toml:2:8: line is 'GPIO17' (give a table, line = { chip, offset } or { name })");
     CHECK(complaint("[amplifier]\nactive_low = true\n") ==
           "t.toml:1:1: [amplifier] has no line (add line = ...)");
     CHECK(complaint(with("offset = 27", "offset = 17")) ==
-          "t.toml:18:7: the line is in use at t.toml:13:8 (give each purpose a GPIO line of its own)");
+          "t.toml:18:7: the line is in use at t.toml:13:8 (give each purpose its own GPIO line)");
     CHECK(complaint(with("falling", "fall")) == "t.toml:20:33: edge is 'fall' (did you mean 'falling'?)");
     for (const pull_kind k : all_values<pull_kind>())
         CHECK(read(with("pull = \"up\"", fmt::format("pull = \"{}\"", to_string(k)))).sync->pull == k);
@@ -281,11 +281,11 @@ TEST_CASE("keys and values nested without end are refused, not followed")
     std::string dotted = "a";
     for (int i = 0; i < 300000; ++i)
         dotted += ".a";
-    CHECK(complaint(dotted + " = 1\n") ==
-          "t.toml:1:34: a key of too many parts (no key has more than three)");
-    CHECK(complaint("[" + dotted + "]\n").starts_with("t.toml:1:35: a key of too many parts"));
+    CHECK(complaint(dotted + " = 1\n") == "t.toml:1:34: a key has too many parts (use at most three parts)");
+    CHECK(complaint("[" + dotted + "]\n").starts_with("t.toml:1:35: a key has too many parts"));
     has(complaint("x = [\"\"\"\"a\"\"\"\"\", {" + dotted + " = 1}]\n"), "too many parts");
-    CHECK(complaint("x = '#' # '\n" + dotted + " = 1\n").starts_with("t.toml:2:34: a key of too many parts"));
+    CHECK(
+        complaint("x = '#' # '\n" + dotted + " = 1\n").starts_with("t.toml:2:34: a key has too many parts"));
     CHECK_FALSE(complaint("a = " + std::string(300000, '[')).empty());
     // Dots outside keys.
     CHECK(

@@ -120,7 +120,7 @@ TEST_CASE("a list needs no [array], and may number its tactors")
     const array a = parse_array("[[tactor]]\ntactor = 0\nx_mm = 0\ny_mm = 0\n");
     CHECK(a.tactors.size() == 1);
     CHECK(complaint("[[tactor]]\ntactor = 1\nx_mm = 0\ny_mm = 0\n") ==
-          "palm.toml:2:10: tactor is 1, but this is entry 0 (without a grid, tactors are numbered from 0 in "
+          "palm.toml:2:10: tactor is 1, but this is entry 0 (without a grid, number the tactors from 0 in "
           "the order of the file)");
 }
 
@@ -135,12 +135,12 @@ TEST_CASE("with a grid, entries adjust the tactors that they name")
     CHECK(a.tactors[0].polarity == -1);
     CHECK(a.tactors[8].where.line == 2);
     CHECK(complaint(grid + "[[tactor]]\nthreshold_dbfs = -40\n") ==
-          "palm.toml:3:1: [[tactor]] does not say which tactor it is (add tactor = INDEX, 0 to 8)");
+          "palm.toml:3:1: [[tactor]] has no tactor number (add tactor = INDEX, 0 to 8)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 9\n") == "palm.toml:4:10: tactor is 9 (allowed: 0 to 8)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 1\n[[tactor]]\ntactor = 1\n") ==
-          "palm.toml:6:10: tactor 1 has an entry already (palm.toml:3:1) (join the two)");
+          "palm.toml:6:10: tactor 1 has another entry (palm.toml:3:1) (join the two entries)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 1\nx_mm = 3\n") ==
-          "palm.toml:5:8: [[tactor]] says x_mm, but its place comes from the grid (leave x_mm out, or the "
+          "palm.toml:5:8: [[tactor]] has x_mm, but its place comes from the grid (leave out x_mm, or the "
           "grid)");
 }
 
@@ -191,15 +191,15 @@ TEST_CASE("wrong types and ranges are reported at the value")
     CHECK(complaint(one + "threshold_dbfs = -inf\n") ==
           "palm.toml:4:18: threshold_dbfs is -inf (allowed: -200 to 0)");
     CHECK(complaint(one + "polarity = 0\n") ==
-          "palm.toml:4:12: polarity is 0 (1, or -1 where it is wired the other way round)");
+          "palm.toml:4:12: polarity is 0 (1, or -1 if its wires are swapped)");
     CHECK(complaint(one + "threshold_dbfs = [[1, -200], [384000, 0]]\n").empty());
     CHECK(complaint(one + "threshold_dbfs = [[0.9, -20]]\n") ==
           "palm.toml:4:20: the frequency is 0.9 (allowed: 1 to 384000)");
     CHECK(complaint(one + "threshold_dbfs = [[384001, -20]]\n") ==
           "palm.toml:4:20: the frequency is 384001 (allowed: 1 to 384000)");
     CHECK(complaint(one + "threshold_dbfs = [[100, -20], [100, -41]]\n") ==
-          "palm.toml:4:31: the frequency 100 does not come after 100 (put thresholds in order of frequency, "
-          "each once)");
+          "palm.toml:4:31: the frequency 100 is not after 100 (put thresholds in order of frequency, each "
+          "once)");
     CHECK(parse_array(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
     CHECK(complaint(one + "rise_ms = 1001\n").starts_with("palm.toml:4:11: rise_ms is 1001 (allowed: "));
     CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (allowed: -1 to 1)");
@@ -303,7 +303,7 @@ TEST_CASE("an array comes from one source")
     CHECK(complaint("[array]\npreset = \"palm-3x3\"\nfile = \"a.toml\"\n") ==
           "palm.toml:3:8: [array] has both preset and file (keep one of them)");
     CHECK(complaint("[array]\nname = \"x\"\n[[array.tactor]]\nx_mm = 0\n") ==
-          "palm.toml:3:1: tactors inside [array] (write [[tactor]], which stands beside [array])");
+          "palm.toml:3:1: tactors inside [array] (write [[tactor]], at the top level of the file)");
     CHECK(complaint("[array]\nname = \"\"\n").starts_with("palm.toml:1:1"));
     CHECK(complaint("[stroke]\nduration_s = 1\n") ==
           "palm.toml:1:1: this is a stroke file, not an array or configuration (name it as the STROKE)");
@@ -316,14 +316,14 @@ TEST_CASE("an array comes from one source")
 TEST_CASE("two tactors on one place or channel are refused with both lines")
 {
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 1\ny_mm = 0\nchannel = 0\n") ==
-          "palm.toml:4:1: tactor 1 is on channel 0, that of tactor 0 (palm.toml:1:1) (give each tactor a "
-          "channel of its own)");
+          "palm.toml:4:1: tactor 1 is on channel 0, that of tactor 0 (palm.toml:1:1) (give each tactor its "
+          "own channel)");
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 5e-7\ny_mm = 0\n") ==
           "palm.toml:4:1: tactor 1 is at (5e-07, 0) mm, the place of tactor 0 (palm.toml:1:1) (give each "
-          "tactor a place of its own)");
+          "tactor its own place)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 4\nchannel = 0\n") ==
-          "palm.toml:3:1: tactor 4 is on channel 0, that of tactor 0 (palm.toml:2:8) (give each tactor a "
-          "channel of its own)");
+          "palm.toml:3:1: tactor 4 is on channel 0, that of tactor 0 (palm.toml:2:8) (give each tactor its "
+          "own channel)");
 }
 
 TEST_CASE("1024 tactors in a list are read, one more is refused")
@@ -370,8 +370,8 @@ TEST_CASE("a file of more than 16 MB is refused, an endless one too")
     const fs::path full = f.write("full.toml", "#" + std::string((std::size_t{16} << 20) - 1, ' '));
     CHECK(file_complaint(full).empty());
     const fs::path more = f.write("more.toml", "#" + std::string(std::size_t{16} << 20, ' '));
-    CHECK(file_complaint(more) == more.string() + ": longer than 16 MB (is it the right file?)");
-    CHECK(file_complaint("/dev/zero") == "/dev/zero: longer than 16 MB (is it the right file?)");
+    CHECK(file_complaint(more) == more.string() + ": longer than 16 MB (check that it is the right file)");
+    CHECK(file_complaint("/dev/zero") == "/dev/zero: longer than 16 MB (check that it is the right file)");
 }
 
 TEST_CASE("an array from another file, relative to the file that names it")
@@ -447,7 +447,7 @@ TEST_CASE("a chain of files has a limit")
     f.write("100.toml", arm);
     CHECK(file_complaint(f / "0.toml") ==
           (f / "15.toml").string() +
-              ":2:8: a chain of too many files (at most 16, and none that names itself)");
+              ":2:8: a chain of too many files (use at most 16, and no file that names itself)");
     CHECK(file_complaint(f / "85.toml").empty());
     has(file_complaint(f.write("own.toml", "[array]\nfile = \"own.toml\"\n")), "none that names itself");
 }

@@ -109,13 +109,14 @@ TEST_CASE("the last of lines with equal times counts, and the stroke has a note"
     CHECK(s.motion.position(0.5) == point{2.0, 1.0});
     CHECK(s.motion.intensity(1.0) == 0.0);
     REQUIRE(s.warnings.size() == 1);
-    CHECK(s.warnings[0] == "dir/finger.csv:3: repeats the time of the line before, as 3 lines do in all; the "
-                           "last of equal times counts");
+    CHECK(s.warnings[0] == "dir/finger.csv:3: has the same time as the previous line, and so do 3 lines in "
+                           "all; the last of equal times counts");
 
     const stroke last = recorded(head + "0,0,0,1\n1,4,4,1\n1,8,0,1\n");
     CHECK(last.motion.position(1.0) == point{8.0, 0.0});
     REQUIRE(last.warnings.size() == 1);
-    CHECK(last.warnings[0] == "dir/finger.csv:4: repeats the time of the line before, which does not count");
+    CHECK(last.warnings[0] ==
+          "dir/finger.csv:4: has the same time as the previous line, which does not count");
 
     CHECK(recorded(head + "0,0,0,1\n1,1,1,1\n").warnings.empty());
 }
@@ -129,52 +130,51 @@ TEST_CASE("faults of a CSV file are named by line and column")
         {"t_s,x_mm,y_mm\n0,0,0\n", "f.csv:2: 1 of at least 2 points"},
         {"t_s,x_mm,z_mm\n", "f.csv:1:10: unknown column 'z_mm' (did you mean '"},
         {"t_s,x_mm,y_mm,intensty\n", "f.csv:1:15: unknown column 'intensty' (did you mean 'intensity'?)"},
-        {"t_s,x_mm,y_mm,pupil\n0,0,0\n", "f.csv:2:5: 3 values where the header names 4 columns"},
+        {"t_s,x_mm,y_mm,pupil\n0,0,0\n", "f.csv:2:5: 3 values, but the header names 4 columns"},
         {"time,x,y\n0,0,0\n", "f.csv:1:6: unknown column 'x' (did you mean 'x_mm'?)"},
-        {"0,0,0\n1,1,1\n", "f.csv:1:1: there is no line that names the columns (begin with: t_s,x_mm,y_mm)"},
-        {"# finger\n0,0,0\n1,1,1\n", "f.csv:2:1: there is no line that names the columns"},
+        {"0,0,0\n1,1,1\n", "f.csv:1:1: no line names the columns (begin with: t_s,x_mm,y_mm)"},
+        {"# finger\n0,0,0\n1,1,1\n", "f.csv:2:1: no line names the columns"},
         {"\n# t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n",
          "f.csv:2:1: the line that names the columns is a comment (take its # away; numpy.savetxt()"},
-        {"t_s,x_mm,y_mm\r0,0,0\r1,1,1\r", "f.csv:1:14: its lines end in CR alone (save it"},
-        {"# a\rt_s,x_mm,y_mm\r0,0,0\r", "f.csv:1:4: its lines end in CR alone"},
+        {"t_s,x_mm,y_mm\r0,0,0\r1,1,1\r", "f.csv:1:14: its lines end in CR only (save it"},
+        {"# a\rt_s,x_mm,y_mm\r0,0,0\r", "f.csv:1:4: its lines end in CR only"},
         {"t_s;x_mm;y_mm\n", "f.csv:1:1: semicolons separate its columns (separate them by commas"},
         {"0,5;1,0;2,0\n", "f.csv:1:1: semicolons separate its columns"},
         {"t_s\tx_mm\ty_mm\n", "f.csv:1:1: tabs separate its columns (separate them by commas: tr"},
         {"t_s x_mm y_mm\n0 1 2\n", "f.csv:1:1: blanks separate its columns (separate them by commas: tr -s"},
         {"  0.0  1.0  2.0\n", "f.csv:1:1: blanks separate its columns"},
         {"# t_s x_mm y_mm\n0 1 2\n", "f.csv:2:1: blanks separate its columns"},
-        {"t_s,x_mm,t_s\n", "f.csv:1:10: column t_s twice"},
+        {"t_s,x_mm,t_s\n", "f.csv:1:10: the column t_s occurs twice"},
         {"\nt_s,x_mm\n", "f.csv:2: no column y_mm"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,1\n", "f.csv:3:3: 2 values where the header names 3 columns"},
-        {"t_s,x_mm,y_mm\n0,0,0\n0,5,1,1\n", "f.csv:3:5: 4 values where the header names 3 columns"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,,1\n",
-         "f.csv:3:3: x_mm is missing (give a number, or nan where there is none)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1\n", "f.csv:3:3: 2 values, but the header names 3 columns"},
+        {"t_s,x_mm,y_mm\n0,0,0\n0,5,1,1\n", "f.csv:3:5: 4 values, but the header names 3 columns"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,,1\n", "f.csv:3:3: x_mm is missing (give a number, or nan for none)"},
         {"t_s,x_mm,y_mm\n0,0,0\n1, 1a,1\n", "f.csv:3:4: x_mm is not a number: '1a'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3: 1 of at least 2 points"},
         {"t_s,x_mm,y_mm\n0,0,0\nnan,1,1\n", "f.csv:3:1: t_s is not a number: 'nan'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,inf\n", "f.csv:3:5: y_mm is not a number: 'inf'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -inf"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (it is between -1e+06 and 1e+06)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (give -1e+06 to 1e+06)"},
         {"t_s,x_mm,y_mm\n0,0,0\n86401,1,0\n",
          "f.csv:3:1: time 86401 s is 86401 s after the first line (a stroke lasts at most 86400 s)"},
         {"t_s,x_mm,y_mm\n1000000,0,0\n1086400.5,1,0\n",
          "f.csv:3:1: time 1086400.5 s is 86400.5 s after the first line"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 100000000000 (it is between -1e+10 and 1e+10)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 100000000000 (give -1e+10 to 1e+10)"},
         {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is before -1 s"},
         {"t_s,x_mm,y_mm\n1e10,0,0\n10000000000.0000001,1,0\n",
-         "f.csv:3: 1 of at least 2 points with times of their own"},
+         "f.csv:3: 1 of at least 2 points with different times"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,0\n# x\n0.5,2,0\n",
-         "f.csv:5:1: time 0.5 s is before 1 s of the line before (times ascend)"},
+         "f.csv:5:1: time 0.5 s is before 1 s of the previous line (times ascend)"},
         {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,2,0\n2,1.5,0\n", "f.csv:5:3: time 1.5 s is before 2 s"},
-        {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n", "f.csv:4: 1 of at least 2 points with times of their own"},
-        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n", "f.csv:3:7: intensity -0.5 (it is 0 or more)"},
+        {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n", "f.csv:4: 1 of at least 2 points with different times"},
+        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n", "f.csv:3:7: intensity -0.5 (give 0 or more)"},
         {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,255\n",
-         "f.csv:3:7: intensity 255 is above 1, which means the level asked for (say which value means 1: "
+         "f.csv:3:7: intensity 255 is above 1, which means the requested level (set the value that means 1: "
          "intensity_max = 100 for per cent, intensity_max = 127 for MIDI, intensity_max = 255 for 8 bits)"},
         {"t_ms,x_mm,y_mm\n", "f.csv:1:1: unknown column 't_ms' ('t_s' is in s, not ms: divide by 1000)"},
         {"t_s,x_cm,y_mm\n", "f.csv:1:5: unknown column 'x_cm' ('x_mm' is in mm, not cm: multiply by 10)"},
-        {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote that does not end"},
-        {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: text behind a quote"},
+        {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote does not end"},
+        {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: there is text after a quote"},
     };
     check_messages(samples, refusal);
 }
@@ -207,7 +207,7 @@ TEST_CASE("lines without a place are gaps, in which the touch is lifted")
             CHECK(s.motion.intensity(t) == 0.0);
         REQUIRE(s.warnings.size() == 1);
         CHECK(s.warnings[0] ==
-              "dir/finger.csv:2: no place (nan) in 4 lines from here on: the touch is lifted there");
+              "dir/finger.csv:2: no place (nan) in 4 lines from here on: the finger is lifted there");
     }
     const stroke half =
         recorded("t_s,x_mm,y_mm,intensity\n0,0,0,0.5\n1,1,nan,1\n2,4,0,0.5\n3,5,0,nan\n4,8,0,0.5\n");
@@ -336,7 +336,7 @@ intensity = 0.5
 TEST_CASE("a stroke has one geometry and one time")
 {
     CHECK(complaint("duration_s = 1") ==
-          "w.toml:1:1: [stroke] says nothing of what it is (add one of: path, points, timed, arc, preset)");
+          "w.toml:1:1: [stroke] does not say what it is (add one of: path, points, timed, arc, preset)");
     CHECK(complaint("path = \"M 0 0 H 1\"\npreset = \"park2016-1\"") ==
           "w.toml:3:10: [stroke] has both path and preset (keep one of them)");
     CHECK(complaint("path = \"M 0 0 H 1\"\nduration_s = 1\nspeed_mm_s = 1") ==
@@ -401,15 +401,16 @@ TEST_CASE("timed points are a recording, as lines of a CSV file are")
     CHECK(s.motion.intensity(0.0) == 1.0);
     CHECK(s.motion.intensity(1.0) == 0.0);
     REQUIRE(s.warnings.size() == 2);
-    CHECK(s.warnings[0] == "dir/wave.toml:4:1: no place (nan) in this point: the touch is lifted there");
-    CHECK(s.warnings[1] == "dir/wave.toml:3:16: repeats the time of the point before, which does not count");
+    CHECK(s.warnings[0] == "dir/wave.toml:4:1: no place (nan) in this point: the finger is lifted there");
+    CHECK(s.warnings[1] ==
+          "dir/wave.toml:3:16: has the same time as the previous point, which does not count");
     CHECK(one("timed = [[0, 0, 0], [1, 1, 1]]\nintensity = 0.5", 255.0).motion.intensity(0.5) == 0.5);
 }
 
 TEST_CASE("timed points out of order are refused with the line of the point")
 {
     CHECK(complaint("timed = [\n[0, 0, 0],\n[1, 1, 1],\n[0.5, 2, 2]]") ==
-          "w.toml:5:2: time 0.5 s is before 1 s of the point before (times ascend)");
+          "w.toml:5:2: time 0.5 s is before 1 s of the previous point (times ascend)");
     CHECK(complaint("timed = [\n[0, 0]]") ==
           "w.toml:3:1: a timed point is a list (give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity])");
     CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]").starts_with("w.toml:2:20: intensity -1 ("));
@@ -428,8 +429,8 @@ TEST_CASE("files without a stroke are refused")
     const auto whole = [](const std::string& text) {
         return caught_message([&] { return parse_strokes_toml(text, "w.toml"); });
     };
-    CHECK(whole("") == "w.toml: there is no stroke in it (add [stroke] or [[stroke]])");
-    CHECK(whole("stroke = []\n").starts_with("w.toml:1:10: there is no stroke in it"));
+    CHECK(whole("") == "w.toml: it has no stroke (add [stroke] or [[stroke]])");
+    CHECK(whole("stroke = []\n").starts_with("w.toml:1:10: it has no stroke"));
     CHECK(whole("[strokes]\n") ==
           "w.toml:1:2: unknown key 'strokes' in a stroke file (did you mean 'stroke'?)");
     CHECK(whole("[array]\n") == "w.toml:1:1: this is an array or configuration file, not a stroke (give it "

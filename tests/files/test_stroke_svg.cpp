@@ -173,9 +173,9 @@ TEST_CASE("a view box of another shape is in the middle; other alignments are wa
     }
     const stroke other = drawn("preserveAspectRatio='xMinYMin'");
     check_near(at(other, 1.0), {75.0, 50.0});
-    CHECK(other.warnings == std::vector<std::string>{
-                                "a.svg:1:2: preserveAspectRatio of <svg> is not followed: what it hides or "
-                                "moves plays as if it were not there"});
+    CHECK(other.warnings ==
+          std::vector<std::string>{"a.svg:1:2: preserveAspectRatio of <svg> is not supported: a shape that "
+                                   "it hides or moves plays as if it were not there"});
     CHECK(drawn("preserveAspectRatio='none'", "0 0 200 100").warnings.empty());
     const std::string flat = "width='80' height='40' preserveAspectRatio='none' viewBox=";
     CHECK(one("<circle r='3'/>", flat + "'0 0 40 40'").warnings.size() == 1);
@@ -186,10 +186,10 @@ TEST_CASE("a size that cannot be read and a transform of the outermost svg are w
 {
     CHECK(one("<circle r='3'/>", "width='calc(2em)' height='9'")
               .warnings.at(0)
-              .find("width of <svg> is not followed") != std::string::npos);
+              .find("width of <svg> is not supported") != std::string::npos);
     const stroke s = one("<line x1='1' x2='10'/>", "transform='scale(3)'");
     check_near(at(s, 1.0), {10.0, 0.0});
-    CHECK(s.warnings.at(0).find("transform of <svg> is not followed") != std::string::npos);
+    CHECK(s.warnings.at(0).find("transform of <svg> is not supported") != std::string::npos);
 }
 
 TEST_CASE("transforms, in lists and nested")
@@ -233,7 +233,7 @@ TEST_CASE("nested svg elements, symbols and lengths in per cent are warned of")
           std::pair{
               "<symbol id='s'><line x2='3'/></symbol><use href='#s'/>",
               "<use> refers to <symbol> 's', which does not play (refer to a shape or a group): left out"},
-          std::pair{"<rect width='100%' height='100%'/>", "unit '%' is not known"}}) {
+          std::pair{"<rect width='100%' height='100%'/>", "unit '%' is unknown"}}) {
         const stroke s = one(other + line);
         CHECK(s.motion.length_mm() == 7.0);
         REQUIRE(s.warnings.size() == 1);
@@ -318,10 +318,10 @@ TEST_CASE("shapes that nobody sees are said")
 {
     for (const char* unseen :
          {"fill='none'", "style='fill:None'", "opacity='0'", "style='fill:none;stroke:none'"})
-        CHECK(one("<g " + std::string(unseen) + "><line x2='7'/></g>").warnings ==
-              std::vector<std::string>{
-                  "a.svg:1:" + std::to_string(12 + std::string(unseen).size()) +
-                  ": <line> has neither fill nor stroke, or no opacity: it plays all the same"});
+        CHECK(
+            one("<g " + std::string(unseen) + "><line x2='7'/></g>").warnings ==
+            std::vector<std::string>{"a.svg:1:" + std::to_string(12 + std::string(unseen).size()) +
+                                     ": <line> has neither fill nor stroke, or no opacity: it still plays"});
     CHECK(one("<g fill='none'><line x2='7' stroke='red'/></g>").warnings.empty());
 }
 
@@ -329,9 +329,8 @@ TEST_CASE("equal shapes in one place are said")
 {
     const std::string d = "<path d='M 0 0 C 1 2 3 4 5 6'/>";
     CHECK(parse("<svg>" + d + d + d + "</svg>").front().warnings ==
-          std::vector<std::string>{
-              "a.svg:1:38: <path> has the shape of one before it, as does 1 element more: it "
-              "plays again"});
+          std::vector<std::string>{"a.svg:1:38: <path> has the same shape as an earlier element, as does 1 "
+                                   "element more: it plays again"});
     CHECK(parse("<svg>" + d + "<g transform='translate(1)'>" + d + "</g></svg>").front().warnings.empty());
     CHECK(parse("<svg>" + d + "<path data-start-s='3' d='M 0 0 C 1 2 3 4 5 6'/></svg>")
               .front()

@@ -92,18 +92,17 @@ TEST_CASE("a drawing as Illustrator exports it plays without a warning")
         CHECK(names(parse_strokes_svg(before + ".cls-2{" + hides + "}" + behind, "d.svg")) == list{"a"});
     // Other rules that hide are refused, and those that move are warned of.
     CHECK(refusal(before + "g .cls-2, .cls-1{display:none}" + behind) ==
-          "a.svg:3:8: a rule hides what 'g .cls-2, .cls-1' selects, which is not understood (delete what is "
-          "hidden, or export presentation attributes)");
+          "a.svg:3:8: a rule hides the elements of 'g .cls-2, .cls-1', a selector that is not supported "
+          "(delete the hidden elements, or export presentation attributes)");
     for (const auto& [name, value] :
          {std::pair<std::string, std::string>{"display", "inline"}, {"transform", "scale(2)"}}) {
         const auto ruled =
             parse_strokes_svg(before + "g .cls-2{" + name + ":" + value + "}" + behind, "d.svg");
         CHECK(names(ruled) == list{"a", "b"});
-        CHECK(
-            ruled.front().warnings ==
-            list{"d.svg:3:8: " + name +
-                 " in <style> is not followed: what it hides or moves plays as if it were not there (export "
-                 "presentation attributes)"});
+        CHECK(ruled.front().warnings ==
+              list{"d.svg:3:8: " + name +
+                   " in <style> is not supported: a shape that it hides or moves plays as if it were not "
+                   "there (export presentation attributes)"});
     }
 }
 
@@ -150,7 +149,7 @@ TEST_CASE("an element that may be hidden does not play")
         const auto all = left("style='" + std::string(unknown) + "'");
         CHECK(all.size() == 1);
         CHECK(has(all.front().warnings.at(0), "of <line> 'a' is not understood ("));
-        CHECK(has(all.front().warnings.at(0), "): that is taken as hidden"));
+        CHECK(has(all.front().warnings.at(0), "): the element counts as hidden"));
     }
     for (const char* shown : {"style='display:Inline-Block'", "display='inherit'", "visibility='Visible'"}) {
         CAPTURE(shown);
@@ -167,18 +166,18 @@ TEST_CASE("a transform that cannot be read is warned of, and does not move its s
         return s.warnings.empty() ? "" : s.warnings.front();
     };
     CHECK(unmoved("style='transform:rotate(3em)'") ==
-          "d.svg:1:7: transform of <line> is not followed ('em' is not a number): what it hides or moves "
-          "plays as if it were not there");
+          "d.svg:1:7: transform of <line> is not supported ('em' is not a number): a shape that it hides or "
+          "moves plays as if it were not there");
     for (const char* other : {"rotate(9turn)", "rotateZ(9deg)", "translate(2mm)", "scale(1,2,3)",
                               "matrix(1px)", "var(--t)", "rotate", "inherit", "translate(calc(1px + 2px))"})
         CHECK(has(unmoved("style='transform:" + std::string(other) + "'"),
-                  "transform of <line> is not followed ("));
+                  "transform of <line> is not supported ("));
     CHECK(has(unmoved("style='-webkit-transform:rotate(9deg)'"),
-              "-webkit-transform of <line> is not followed"));
+              "-webkit-transform of <line> is not supported"));
     CHECK(unmoved("transform-origin='10 5'").empty());
     for (const char* about : {"transform-origin", "transform-box"})
         CHECK(has(warned("<line x2='9' style='transform:rotate(9deg);" + std::string(about) + ":center'/>"),
-                  std::string(about) + " of <line> is not followed"));
+                  std::string(about) + " of <line> is not supported"));
 }
 
 TEST_CASE("other properties that hide or move are warned of, once for each")
@@ -187,18 +186,18 @@ TEST_CASE("other properties that hide or move are warned of, once for each")
     CHECK(
         warned(
             "<g clip-path='url(#c)'><line x2='9'/></g><line id='x' x2='8' style='clip-path:circle(3px)'/>") ==
-        "d.svg:1:7: clip-path of <g> is not followed, nor of 1 element more: what it hides or moves plays as "
-        "if it were not there\n");
+        "d.svg:1:7: clip-path of <g> is not supported, nor of 1 element more: a shape that it hides or moves "
+        "plays as if it were not there\n");
     for (const char* property : {"translate", "rotate", "scale", "r", "cx", "d", "filter", "animation"}) {
         CAPTURE(property);
         CHECK(has(warned("<line x2='9' style='" + std::string(property) + ":1px'/>"),
-                  std::string(property) + " of <line> is not followed"));
+                  std::string(property) + " of <line> is not supported"));
         CHECK(has(warned("<style>svg line{" + std::string(property) + ":1px}</style><line x2='9'/>"),
-                  std::string(property) + " in <style> is not followed"));
+                  std::string(property) + " in <style> is not supported"));
     }
-    CHECK(has(
-        warned("<text>a</text><line x2='9'><animate/></line><text>b</text><image/>"),
-        "d.svg:1:7: <text> does not play, nor 1 element more: only shapes do, and text made into paths\n"));
+    CHECK(has(warned("<text>a</text><line x2='9'><animate/></line><text>b</text><image/>"),
+              "d.svg:1:7: <text> does not play, nor 1 element more: only shapes do, and text converted to "
+              "paths\n"));
     CHECK(warned("<title>a</title><defs/><x:y/><text display='none'>a</text><line x2='9'/>").empty());
 }
 
@@ -220,7 +219,7 @@ TEST_CASE("a switch follows the conditions of its children")
     CHECK(names(strokes("<switch><line id='a' x2='1' systemLanguage='de'/>"
                         "<line id='b' x2='2' systemLanguage='en'/></switch>")) == list{"a"});
     CHECK(warned("<switch><line x2='1' systemLanguage='de'/>" + other + "</switch>") ==
-          "d.svg:1:15: systemLanguage of <line> is not followed: a <switch> plays its first shape without "
+          "d.svg:1:15: systemLanguage of <line> is not supported: a <switch> plays its first shape without "
           "one\n");
     // Outside a switch as well, what needs an extension is not drawn.
     CHECK(names(strokes("<line x2='1' requiredExtensions='x'/>" + other)) == list{"b"});
@@ -234,7 +233,7 @@ TEST_CASE("a shape that a browser shows nothing of plays, and is warned of")
           "style='stroke:#000;stroke-width:0px'", "stroke='#000' opacity='0'"}) {
         CAPTURE(clear);
         CHECK(warned(std::string("<line x2='1' fill='none' ") + clear + "/>") ==
-              "d.svg:1:7: <line> has neither fill nor stroke, or no opacity: it plays all the same\n");
+              "d.svg:1:7: <line> has neither fill nor stroke, or no opacity: it still plays\n");
     }
     for (const char* shown :
          {"stroke='#000'", "stroke='#00000080'", "stroke='#0008'", "stroke='rgba(0, 0, 0, 0.5)'",
@@ -251,8 +250,8 @@ TEST_CASE("a shape that a browser shows nothing of plays, and is warned of")
 
 TEST_CASE("rules of another file are not read, which is warned of")
 {
-    const std::string end = " names another file, which is not read: what its rules hide or move plays as if "
-                            "they were not there (put the rules into the drawing)\n";
+    const std::string end = " names another file, which is not read: a shape that its rules hide or move "
+                            "plays as if they were not there (put the rules into the drawing)\n";
     const std::string line = "<line class='guide' x2='1' stroke='#000'/>";
     CHECK(warned("<style>@import \"hide.css\";</style>" + line) == "d.svg:1:7: @import" + end);
     CHECK(warned("<style>@IMPORT url(hide.css); .x { stroke: red }</style>" + line) ==
@@ -287,20 +286,20 @@ TEST_CASE("faults of an SVG file are named by line and column")
         {"<svg>", "a.svg:1:5: Start-end tags mismatch"},
         {"<svg>\n <g></svg>", "a.svg:2:"},
         {"<html/>", "a.svg:1:2: <html> is not <svg>"},
-        {"<svg/>", "a.svg: no shape in it"},
-        {"<svg><text>a</text></svg>", "a.svg: no shape in it"},
+        {"<svg/>", "a.svg: it has no shape"},
+        {"<svg><text>a</text></svg>", "a.svg: it has no shape"},
         {"<svg>\n<line id='l' x2='3' visibility='hidden'/></svg>",
-         "a.svg:2:2: <line> 'l' is hidden, and nothing else draws (take out display, visibility and styles "
+         "a.svg:2:2: <line> 'l' is hidden, and nothing else draws (remove display, visibility and styles "
          "such as &st0;)"},
         {"<svg><g id='layer' display='none'><line x2='3'/></g></svg>",
          "a.svg:1:7: <g> 'layer' is hidden, and "},
         {"<svg style='display:none'><line x2='3'/></svg>", "a.svg:1:2: <svg> is hidden, and "},
         {"<svg>\n<path id='p' d='M 0 0\n L 1 x'/></svg>",
-         "a.svg:3:6: d of <path> 'p': 'x' where L wants a number"},
-        {"<svg>\n<path d='L 1 1'/></svg>", "a.svg:2:10: d of <path>: 'L' where a path starts"},
+         "a.svg:3:6: d of <path> 'p': 'x' instead of a number for L"},
+        {"<svg>\n<path d='L 1 1'/></svg>", "a.svg:2:10: d of <path>: 'L' at the start of a path"},
         {"<svg>\n<path id='dot' d='M 1 1 L 1 1'/></svg>",
          "a.svg:2:2: <path> 'dot': has no length (data-duration-s makes it a tap)"},
-        {"<svg>\n<line x2='3zz'/></svg>", "a.svg:2:12: x2 of <line>: unit 'zz' is not known"},
+        {"<svg>\n<line x2='3zz'/></svg>", "a.svg:2:12: x2 of <line>: unit 'zz' is unknown"},
         {"<svg><line x2='nan'/></svg>", "a.svg:1:16: x2 of <line>: 'nan' is not a number"},
         {"<svg><line x2=''/></svg>", "a.svg:1:"},
         {"<svg><line x2='1e300'/></svg>", "a.svg:1:16: x2 of <line>: 1e+300 is beyond 1e+09"},
@@ -322,12 +321,12 @@ TEST_CASE("faults of an SVG file are named by line and column")
         {"<svg><line x2='1000' data-speed-mm-s='0.001'/></svg>", "a.svg:1:7: <line> takes 1e+06 s"},
         {"<svg><line x2='1' data-start-s='-1'/></svg>", "a.svg:1:33: data-start-s of <line>: -1 ("},
         {"<svg><line x2='1' data-intensity='1 2'/></svg>",
-         "a.svg:1:36: data-intensity of <line>: '2' behind the number"},
+         "a.svg:1:36: data-intensity of <line>: '2' follows the number"},
         {"<svg><use/></svg>", "a.svg:1:7: <use> refers to nothing in this file"},
         {"<svg><use href='other.svg#a'/></svg>", "a.svg:1:7: <use> refers to nothing in this file"},
         {"<svg><use href='#a'/></svg>", "a.svg:1:7: <use> refers to #a, which is not in this file"},
         {"<svg><use id='a' href='#a'/></svg>",
-         "a.svg:1:7: nested too deep (simplify the drawing, and take out loops of <use>)"},
+         "a.svg:1:7: nested too deep (simplify the drawing, and remove loops of <use>)"},
         {"<svg><g id='a'><use href='#a'/></g></svg>", "a.svg:1:7: nested too deep"},
     };
     check_messages(samples, refusal);
@@ -349,7 +348,7 @@ TEST_CASE("entities are not expanded, and nothing outside is read")
 {
     const std::string doctype =
         "<!DOCTYPE svg [<!ENTITY d 'M 0 0 H 5'><!ENTITY f SYSTEM 'file:///etc/hostname'>]>";
-    CHECK(refusal(doctype + "<svg><path d='&d;'/></svg>").find("'&' where a path starts") !=
+    CHECK(refusal(doctype + "<svg><path d='&d;'/></svg>").find("'&' at the start of a path") !=
           std::string::npos);
     CHECK(refusal(doctype + "<svg><text>&f;</text></svg>").find("no shape") != std::string::npos);
 }

@@ -92,7 +92,7 @@ class Install(FolderTest):
         finally:
             away.rename(painter)
         self.assertEqual(r.returncode, 1)
-        self.assertRegex(r.stderr, r"^tactor: picture: what paints PNG and PDF cannot be loaded: .*painter-.*\(write SVG, or install tactor anew\)\n$")
+        self.assertRegex(r.stderr, r"^tactor: picture: the module for PNG and PDF cannot be loaded: .*painter-.*\(write SVG, or install tactor again\)\n$")
         self.assertFalse((self.dir / "b.png").exists())
 
     def test_nothing_remembers_where_it_was_built_or_installed(self):

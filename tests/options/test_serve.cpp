@@ -75,9 +75,9 @@ TEST_CASE("[serve]: impossible values are refused with their place")
                             "pi.lan:", "pi.lan:0", "pi.lan:080", "pi.lan:65536", "pi.lan:http", ":80", "::1",
                             "user@pi.lan", "[]", "[pi.lan]", "pi.lan?x"})
         CHECK(says(fmt::format("allow_hosts = ['pi.lan', '{}']", bad))
-                  .find(fmt::format("t:2:26: \"{}\" is no host (HOST[:PORT] without a scheme", bad)) == 0);
-    CHECK(says("http = 'http://pi.lan:80'").find("t:2:8: \"http://pi.lan:80\" is no address") == 0);
-    CHECK(says("tcp = 'pi.lan/x:80'").find("t:2:7: \"pi.lan/x:80\" is no address") == 0);
+                  .find(fmt::format("t:2:26: \"{}\" is not a host (HOST[:PORT] without a scheme", bad)) == 0);
+    CHECK(says("http = 'http://pi.lan:80'").find("t:2:8: \"http://pi.lan:80\" is not an address") == 0);
+    CHECK(says("tcp = 'pi.lan/x:80'").find("t:2:7: \"pi.lan/x:80\" is not an address") == 0);
     const auto hosts = parse_setup(
         "[serve]\nallow_hosts = ['pi.lan', 'pi.lan:8080', '10.0.0.7:80', '[fd00::7]', '[::1]:80']\n", "t");
     CHECK(options::read_serve(hosts.serve).allow_hosts.size() == 5);

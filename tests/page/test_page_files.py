@@ -124,7 +124,7 @@ class FromDrawingToFile(StudioTest):
         self.assertEqual(self.take(p)["strokes"][0]["timed"], drawn["timed"])
         # A figure of the tool itself, and one of pixels.
         p.value(DROP % (quoted(figure.split("<!-- stroke of")[0]), quoted("plot.svg")))
-        self.banner(p, "“plot.svg” was not opened: it is a figure; open the stroke from which it was drawn (.toml).")
+        self.banner(p, "“plot.svg” was not opened: it is a figure; open the stroke that it shows (.toml).")
         for kind in ("png", "pdf"):
             data = base64.b64encode(self.saved(p, kind).read_bytes()).decode()
             p.value(DROP % (f"Uint8Array.from(atob({quoted(data)}), c => c.charCodeAt(0))", quoted(f"plot.{kind}")))

@@ -8,13 +8,13 @@ const fault = (what, why, hint = "", more = {}) => ({message: `${what}: ${why}`,
 
 test("a fault names options as the page does, and no parameter of the protocol", () => {
   for (const [e, text] of [
-    [fault("options.level_dbfs", "-12 dBFS are more than -20 dBFS, which the owner allows", "ask for less"),
-      "Level: -12 dBFS are more than -20 dBFS, which the owner allows (ask for less)."],
+    [fault("options.level_dbfs", "-12 dBFS are more than the owner allows, -20 dBFS", "use a lower level"),
+      "Level: -12 dBFS are more than the owner allows, -20 dBFS (use a lower level)."],
     [fault("options.soa", "it is too short", "options.burst 0.05, or options.timing fit"), "Interval, onset to onset (SOA): it is too short (“Burst” 0.05, or “Interval” fit)."],
     [fault("toml", "the strokes are too strong together"), "The strokes are too strong together."],
-    [fault("max_stroke_s", "it lasts 700 s, and a stroke at most 600 s", "draw less, or faster"), "It lasts 700 s, and a stroke at most 600 s (draw less, or faster)."],
+    [fault("max_stroke_s", "it lasts 700 s, but a stroke may last at most 600 s", "draw less, or faster"), "It lasts 700 s, but a stroke may last at most 600 s (draw less, or faster)."],
     [fault("name", "it is blank"), "Name: it is blank."],
-    [fault("toml", "there is no line of the grid at its start", "options.snap"), "The Tactile Brush begins and ends on lines of the grid, and this stroke does not."],
+    [fault("toml", "its start is off the lines of the grid", "options.snap"), "The Tactile Brush begins and ends on lines of the grid, and this stroke does not."],
     [{message: "there is no connection to tactor", data: {}}, "There is no connection to tactor."], [new Error("it is a figure"), "It is a figure."]])
     assert.equal(fault_sentence(e), text);
   assert.equal(fault_text(fault("text", "unknown key 'x'", "one of ".padEnd(90, "x"), {line: 3})), "line 3: unknown key 'x'");

@@ -94,7 +94,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
             CHECK((10.0 - std::abs(p.x_mm) - std::abs(p.y_mm)) / std::numbers::sqrt2 > 2.0 - 1e-9);
         }
     CHECK(complaint({square}, low, 10.0) ==
-          "margin_mm: 10 mm on each side leave no space in the array (less than 10 mm)");
+          "margin_mm: 10 mm on each side leave no space in the array (use less than 10 mm)");
     CHECK(complaint({square}, low, -1.0) == "margin_mm: -1 mm (0 mm or more)");
     CHECK(complaint({square}, low, not_a_number).starts_with("margin_mm: nan mm"));
     CHECK(complaint({square}, low, infinite).starts_with("margin_mm: inf mm"));
@@ -187,7 +187,7 @@ TEST_CASE("an array in one row takes strokes along it")
     across.name = "left";
     CHECK(complaint({circle, across}, l).starts_with("stroke \"left\": goes across the line in which all"));
     CHECK(complaint({circle, along("M 3 0 L 3.1 9", 1.0)}, l).empty());
-    CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(less than 60 mm)") != std::string::npos);
+    CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(use less than 60 mm)") != std::string::npos);
 
     // Measured places are never in line: a wave must not become as thin as their errors.
     const layout measured(make_array({{0, 0.2}, {40, -0.3}, {80, 0.1}, {120, 0.0}}));

@@ -238,7 +238,7 @@ TEST_CASE("only inverse-distance takes faces")
         for (const algorithm_kind by : all_values<algorithm_kind>()) {
             const plan_options o{.algorithm = by, .phantom = k, .faces = faces_kind::nearest};
             const std::string said = caught_message([&] { return make_plan(a, s, o); });
-            has(said, "faces: nearest goes with inverse-distance only, not with ");
+            has(said, "faces: nearest works only with inverse-distance, not with ");
             has(said, std::string(to_string(k)));
             CHECK_THROWS_AS(make_phantom(k, layout(a), faces_kind::nearest), const error&);
         }

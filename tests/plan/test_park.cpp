@@ -78,8 +78,8 @@ TEST_CASE("a plan that leaves the timing law, or its fitted range, says so in fi
     plan_options o{.burst_s = 0.05};
     CHECK(make_plan(palm, across(1.0), o).warnings ==
           std::vector<std::string>{
-              "bursts of 0.05 s each 0.07 s leave the timing law, SOA = 0.32 duration + 0.0473 s, by which "
-              "their SOA is 0.0633 s: they may not be felt as one motion"});
+              "bursts of 0.05 s every 0.07 s break the timing law, SOA = 0.32 duration + 0.0473 s, which "
+              "gives them an SOA of 0.0633 s: people may not feel one motion"});
     o.soa_s = 2.0;
     o.burst_s = 0.161;
     const auto warnings = make_plan(palm, across(1.0), o).warnings;

@@ -111,9 +111,9 @@ def test_a_live_stroke_follows_its_points(player):
 
 
 @pytest.mark.parametrize("options,points,messages,held,outside", [
-    ({}, [(20, 20, 80), (20, 20), (20, 20, 2)], ["an intensity of 80 sounds as 1: the level asked for is the ceiling"], 2, 0),
+    ({}, [(20, 20, 80), (20, 20), (20, 20, 2)], ["an intensity of 80 plays as 1: the requested level is the ceiling"], 2, 0),
     (dict(intensity_max=255), [(640, 480, 255), (20, 20), (640, 480, 300)],
-     ["the place (640, 480) mm is outside the array: moved to its edge", "an intensity of 300 sounds as 255: the level asked for is the ceiling"], 1, 2),
+     ["the place (640, 480) mm is outside the array and moves to its edge", "an intensity of 300 plays as 255: the requested level is the ceiling"], 1, 2),
 ])
 def test_points_too_strong_and_outside_are_counted_and_said_once(player, short, options, points, messages, held, outside):
     with warnings.catch_warnings(record=True) as said:
@@ -335,7 +335,7 @@ def test_drive_time_counts_on_from_player_to_player(palm, felt_pcm, tmp_path, mo
     # A file that is cut counts as the limit, once.
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     (tmp_path / "tactor/drive-time-felt").write_text("")
-    with pytest.warns(UserWarning, match="cannot be read as a whole: each tactor counts as driven for as long as it may be"), player() as p:
+    with pytest.warns(UserWarning, match="cannot be read completely: each tactor counts as driven for as long as allowed"), player() as p:
         p.play(still)
         assert p.stats()["drives_cut"] == 2  # also of the tactor that gets next to nothing
 

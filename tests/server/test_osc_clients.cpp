@@ -183,7 +183,7 @@ TEST_CASE("numbers belong to an address with its port")
     rig.say(me, "/tactor/play", {1_i, drawing});
     CHECK(has(rig.next(me), "/tactor/error /tactor/play number: stroke 1 goes on"));
     rig.say(osc_rig::at(9000, "127.0.0.2"), "/tactor/cancel", {1_i});
-    CHECK(has(rig.next(osc_rig::at(9000, "127.0.0.2")), "no stroke 1 of this sender goes on"));
+    CHECK(has(rig.next(osc_rig::at(9000, "127.0.0.2")), "this sender has no stroke 1"));
     rig.say(you, "/tactor/cancel", {1_i});
     CHECK(rig.next(you) == "/tactor/stroke 1 cancelled");
     CHECK(rig.silent(me));
@@ -261,7 +261,7 @@ TEST_CASE("faults are reported with the address and the number")
     rig.say(me, "/tactor/drive", {9_i, 1.0});
     CHECK(has(rig.next(me), "/tactor/error /tactor/drive tactor: "));
     rig.say(me, "/tactor/nonsense");
-    CHECK(has(rig.next(me), "/tactor/error /tactor/nonsense address: it is not known"));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/nonsense address: it is unknown"));
     rig.osc.receive("rubbish!", me);
     CHECK(has(rig.next(me), "/tactor/error  message: its address does not begin with /"));
     rig.io.poll();
@@ -419,7 +419,7 @@ TEST_CASE("what a server sends is never answered")
     CHECK(rig.silent(me));
     CHECK(rig.osc.count() == 0);
     rig.say(me, "/tactor/stroke/"); // another address
-    CHECK(has(rig.next(me), "address: it is not known"));
+    CHECK(has(rig.next(me), "address: it is unknown"));
 }
 
 TEST_CASE("what one sender may keep waiting has an end")
@@ -432,7 +432,7 @@ TEST_CASE("what one sender may keep waiting has an end")
         begin(i);
     CHECK(rig.silent(me));
     begin(server::osc_clients::most_held + 1);
-    CHECK(has(rig.next(me), "/tactor/error /tactor/begin strokes: too many wait for their time"));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin strokes: too many strokes wait for their time"));
     rig.say(me, "/tactor/stop");
     CHECK_FALSE(rig.osc.next_ns().has_value());
 }

@@ -587,7 +587,7 @@ TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
     rig.send(c, point);
     const json end = rig.find_end(c, n);
     CHECK(end["state"] == "interrupted");
-    CHECK(end["reason"] == "limit: it has lasted as long as it may");
+    CHECK(end["reason"] == "limit: it reached the longest allowed duration");
     CHECK(end["frames"] >= 9600);
     CHECK(end["frames"] <= 9600 + 2 * 480);
     CHECK(rig.ok(c, "status")["strokes"].empty());
@@ -690,7 +690,7 @@ TEST_CASE("what is nearly right is suggested, as by the tool")
     CHECK(meant("export", {{"stroke", "park2016-1"}, {"as", "jsn"}}) == "json");
     CHECK(hint("plan", with(stroke, "options", {{"algorithm", "continous"}}))
               .starts_with("did you mean continuous?"));
-    CHECK(hint("status", {{"x", 1}}) == "it takes none");
+    CHECK(hint("status", {{"x", 1}}) == "the method has no parameters");
 }
 
 } // namespace service_test

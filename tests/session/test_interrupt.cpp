@@ -52,7 +52,7 @@ TEST_CASE("a program held up by a device is ended after its time, with the statu
     });
     REQUIRE(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 128 + SIGTERM);
-    CHECK(printed == "tactor: the device does not answer: ended all the same\n");
+    CHECK(printed == "tactor: the device does not answer: ended anyway\n");
 }
 
 TEST_CASE("a program that ends by itself has no time limit any more")

@@ -43,7 +43,7 @@ TEST_CASE("two felt at one place, and one felt nowhere, make no map")
     const walk_verdict v = judge(three(), {2, std::nullopt, 2});
     CHECK(v.channels.empty());
     CHECK(v.problems == std::vector<std::string>{
-                            "tactor 1 (channel 6) was felt nowhere",
+                            "tactor 1 (channel 6) was not felt",
                             "tactor 0 (channel 5) and tactor 2 (channel 7) were felt at one place, 2"});
     // The remaining place is a guess, not a finding.
     CHECK(judge(three(), {0, 1, std::nullopt}).channels.empty());

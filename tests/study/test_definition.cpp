@@ -241,12 +241,12 @@ TEST_CASE("faults have their line")
     form_says("trials = 3\n" + item + choice, 20, "unknown key 'trials'");
     form_says("when = \"later\"\n" + item + choice, 20, "later");
     form_says("", 17, "has no question");
-    form_says(item + choice + form + item + choice, 26, "\"f\" is there twice");
-    form_says(item + choice + item + choice, 26, "\"i\" is there twice");
+    form_says(item + choice + form + item + choice, 26, "\"f\" occurs twice");
+    form_says(item + choice + item + choice, 26, "\"i\" occurs twice");
     form_says("[[run.item]]\nname = \"a b\"\n", 21, "name is 'a b'");
     form_says("[[run.item]]\nname = \"after\"\nquestion = \"?\"\nkind = " + choice, 21, "there twice");
     form_says(item + "\"choice\"\nchoices = [\"a\"]\n", 24, "a choice has 1 text");
-    form_says(item + "\"text\"\nrange = [1, 2]\n", 24, "range is not of a text");
+    form_says(item + "\"text\"\nrange = [1, 2]\n", 24, "range does not apply to a text");
     form_says(item + "\"number\"\n", 20, "no range");
     form_says(item + "\"number\"\nrange = [2, 1]\n", 24, "least and the greatest");
     form_says(item + "\"number\"\nrange = [0, 10000]\n", 24, "least and the greatest");
@@ -306,7 +306,7 @@ TEST_CASE("faults have their line")
          "e.toml:14:", "guess");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
          "e.toml:12:", "no attribute");
-    says(head + motion + methods + run + "scale = 7\n", "e.toml:17:", "scale is of runs that rate");
+    says(head + motion + methods + run + "scale = 7\n", "e.toml:17:", "scale only applies to runs that rate");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n",
          "e.toml:12:", "no trials");
     const std::string rate =
@@ -315,17 +315,17 @@ TEST_CASE("faults have their line")
          "e.toml:16:", "trials is 0");
     for (const char* none : {"[\"a\"]", "[\"a\", \"b\", \"c\"]"})
         says(head + motion + methods + rate + "labels = " + none + "\n",
-             "e.toml:17:", "for a scale of 5 (one for each end, or one for each step)");
+             "e.toml:17:", "for a scale of 5 (give one for each end, or one for each step)");
     const std::string line = rate + "scale = \"vas\"\n";
     says(head + motion + methods + line,
-         "e.toml:17:", "labels has 0 texts for a visual analogue scale (one for each end)");
+         "e.toml:17:", "labels has 0 texts for a visual analogue scale (give one for each end)");
     says(head + motion + methods + line + "labels = [\"a\"]\n", "e.toml:18:", "labels has 1 text for");
     says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n",
          "e.toml:18:", "labels has 3 texts for a visual analogue scale");
     says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n",
-         "e.toml:17:", "choices is not of runs that rate (leave it out)");
+         "e.toml:17:", "choices does not apply to runs that rate (leave it out)");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
-         "e.toml:17:", "choices has 1 text (one for each of the two answers)");
+         "e.toml:17:", "choices has 1 text (give one for each of the two answers)");
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n",
          "e.toml:17:", "choices has 3 texts");
     says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
@@ -335,14 +335,14 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + run + "blocks = \"methods\"\n",
          "e.toml:17:", "r has two methods in each trial");
     const std::string with_group = head + motion + methods + run + group;
-    says(with_group + "runs = [\"s\"]\n", "e.toml:19:", "runs has what is not defined (one of r)");
+    says(with_group + "runs = [\"s\"]\n", "e.toml:19:", "runs has an undefined name (one of r)");
     says(with_group + "method = [\"a\"]\n", "e.toml:19:", "did you mean 'methods'");
     says(with_group + "methods = [\"a\"]\n",
          "e.toml:17:", "r has one method to choose from (name two or more in methods)");
     says(head + motion + "[[motion]]\nname = \"n\"\npreset = \"park2016-2\"\n" + methods + run +
              "motions = [\"m\"]\n" + group + "motions = [\"n\"]\n",
          "e.toml:21:", "r has no motion or no method (leave it out of runs, or name more)");
-    says(with_group + group, "e.toml:20:", "the group \"g\" is there twice");
+    says(with_group + group, "e.toml:20:", "the group \"g\" occurs twice");
 }
 
 TEST_CASE("a missing experiment lists the existing ones")
@@ -400,14 +400,14 @@ TEST_CASE("faults have their line")
     has(with("name = \"r\"\ntask = \"choose\"\nmethods = [\"new\"]\n"), "r has one method to choose from");
     CHECK(with("name = \"r\"\ntask = \"choose\"\n").empty()); // of three
     has(with("name = \"r\"\ntask = \"rate\"\nmotions = [\"c\"]\n"),
-        "motions has what is not defined (one of a, b)");
+        "motions has an undefined name (one of a, b)");
     for (const char* beyond :
          {"scale = 1", "scale = 102", "scale = 7.5", "scale = \"line\"", "trials = 0", "trials = 10001"})
         CHECK(with(std::string("name = \"r\"\ntask = \"rate\"\n") + beyond + "\n").find("e.toml:16:") == 0);
     has(with("name = \"r\"\ntask = \"identify\"\nmotions = [\"a\"]\n"), "one motion to identify");
     has(with("name = \"r 1\"\ntask = \"rate\"\n[[run]]\nname = \"r-1\"\ntask = \"rate\"\n"),
         "\"r 1\" and \"r-1\" would have one name");
-    has(outline_refusal(outline_head + "[[method]]\nname = \"old\"\n"), "the method \"old\" is there twice");
+    has(outline_refusal(outline_head + "[[method]]\nname = \"old\"\n"), "the method \"old\" occurs twice");
 }
 
 TEST_CASE("keys that the analysis does not need are skipped")

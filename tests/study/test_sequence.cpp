@@ -557,9 +557,9 @@ TEST_CASE("impossible simulations are refused")
     const auto refusal = [](const char* text) { return caught_message([&] { parse_simulation(text); }); };
     has(refusal("sigma=-1"), "sigma is \"-1\"");
     has(refusal("sigma=nan"), "sigma is \"nan\"");
-    has(refusal("noise=1"), "\"noise\" is not known");
+    has(refusal("noise=1"), "\"noise\" is unknown");
     has(refusal("seed=1,seed=2"), "said twice");
-    has(refusal("seed=1,"), "\"\" is not known");
+    has(refusal("seed=1,"), "\"\" is unknown");
     CHECK(parse_simulation("sigma=2") == simulation{1, 2.0, 0.0});
     CHECK(to_text(parse_simulation("void=0.1,sigma=0.5,seed=9")) == "seed=9,sigma=0.5,void=0.1");
 }
@@ -581,12 +581,12 @@ TEST_CASE("a stimulus that cannot be planned or played is refused with its motio
     CHECK(refusal("path = \"M0 0H40\"", "{ dbfs = -12 }").empty());
     const std::string off = refusal("path = \"M0 0H90\"", "{ dbfs = -12 }");
     CHECK_MESSAGE(has(off, "x.toml:4:"), off);
-    CHECK_MESSAGE(has(off, "motion \"m\" by method \"brush\" (line 7)"), off);
+    CHECK_MESSAGE(has(off, "motion \"m\" with method \"brush\" (line 7)"), off);
     has(refusal("path = \"M0 0H40\"\nduration = 0.01", "{ dbfs = -12 }"), "method \"brush\"");
     const std::string loud = refusal("path = \"M0 0H40\"", "{ sl_db = 60 }");
     CHECK_MESSAGE(has(loud, "lower level.sl_db by"), loud);
     const std::string own = refusal("path = \"M0 0H40\"", "{ dbfs = -12 }", "sl_db = 60\n");
-    CHECK_MESSAGE(has(own, "x.toml:10:9: motion \"m\" by method \"brush\": tactor "), own);
+    CHECK_MESSAGE(has(own, "x.toml:10:9: motion \"m\" with method \"brush\": tactor "), own);
     CHECK_MESSAGE(has(own, "lower sl_db by"), own);
 }
 

@@ -325,7 +325,7 @@ TEST_CASE("noise that stands still makes it void; noise whose device is gone is 
             const std::size_t again = d.captured_frames();
             d.await([&] { return d.captured_frames() > again + 4800; });
         });
-        CHECK(give().flaw == "the masking noise stood still");
+        CHECK(give().flaw == "the masking noise stopped");
     }
     {
         const meanwhile x(s, [&] {
@@ -527,21 +527,18 @@ TEST_CASE("lines show the number of each pulse, another line along with it")
 TEST_CASE("codes that cannot be sent are refused by name before the session")
 {
     CHECK(refusal("stimulus = 41", "stimulus = 255") ==
-          "array.toml:6:8: code: there are 7 events, up to number 261 (void), and 255 is the greatest (join "
-          "some "
-          "under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
+          "array.toml:6:8: code: there are 7 events, up to number 261 (void), but 255 is the largest "
+          "(combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5]") ==
-          "array.toml:6:8: code: there are 7 events, up to number 47 (void), and 31 is the greatest (more "
-          "lines, "
-          "or join some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
+          "array.toml:6:8: code: there are 7 events, up to number 47 (void), but 31 is the largest (use more "
+          "lines, or combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(
         refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5, 6], pulse_ms = 250") ==
-        "array.toml:6:8: code: pulse_ms is 250, and the answer's number may come 200 ms after the stimulus "
-        "of "
-        "motion \"east\" by method \"a\" begins (a shorter pulse_ms, or longer stimuli)");
-    CHECK(refusal("bit_ms = 1.5", "bit_ms = 4") == "array.toml:6:8: code: it takes 0.036 s, and the gap "
-                                                   "between two stimuli is 0.0321 s (a longer gap_s in "
-                                                   "the definition, or a shorter bit_ms)");
+        "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after the stimulus "
+        "of motion \"east\" with method \"a\" begins (use a shorter pulse_ms, or longer stimuli)");
+    CHECK(refusal("bit_ms = 1.5", "bit_ms = 4") ==
+          "array.toml:6:8: code: it takes 0.036 s, but the gap between two stimuli is 0.0321 s (use a longer "
+          "gap_s in the definition, or a shorter bit_ms)");
     const auto warnings = coded_session(std::string(coded_array) + "answer = 44\n").p.warnings;
     REQUIRE(!warnings.empty());
     CHECK(

@@ -338,7 +338,7 @@ TEST_CASE("answers below the threshold that stay right after the second staircas
     const auto found = find_doubtful(row({-45, -44, -46}), {}, measured);
     REQUIRE(found.size() == 1);
     CHECK(found[0].tactor == 1);
-    CHECK(found[0].why == "9 of 10 answers 6 dB below it were right, after a second staircase too");
+    CHECK(found[0].why == "9 of 10 answers 6 dB below it were right, even after a second staircase");
 }
 
 constexpr double threshold_dbfs = -45.0;

@@ -409,7 +409,7 @@ TEST_CASE("missing trials are reported with their participants")
     const analysis a = analyse(d);
     CHECK(warns(a, "pairs: sub-2 has 3 trials that count, of 4"));
     CHECK(warns(a, "pairs: sub-3 has 5 trials that count, of 4"));
-    CHECK(warns(a, "pairs: sub-4 is left out: no trial that counts"));
+    CHECK(warns(a, "pairs: sub-4 is left out: no trial counts"));
     const auto named = std::count_if(a.warnings.begin(), a.warnings.end(), [](const std::string& w) {
         return w.find("that count, of") != std::string::npos;
     });
@@ -451,8 +451,8 @@ TEST_CASE("each of three methods has the per cent of its trials, and a worth or 
         CHECK(*found.worths[m].log_worth == *worths[m].log_worth);
     CHECK(found.pairs.empty());
     CHECK(!found.effects.second.f);
-    const std::string text = "pairs: worth of c: the choices between it and a, also by way of others, go one "
-                             "way or are missing, so it is not finite";
+    const std::string text = "pairs: worth of c: the choices between it and a, directly and through other "
+                             "methods, all go one way or are missing, so it is not finite";
     CHECK_FALSE(warns(a, text));
     d.data[1][0].trials.clear();
     run_data& always = d.data[0][0] = {};

@@ -132,7 +132,7 @@ TEST_CASE("cells by name, n/a as missing, lines of any system")
     CHECK(*t.number(0, "x") == 0.5);
     CHECK(!t.number(1, "x"));
     has(caught_message([&] { t.need(1, "motion"); }), "t.tsv:3: motion is missing");
-    has(caught_message([&] { t.cell(0, "y"); }), "t.tsv:1: there is no column y");
+    has(caught_message([&] { t.cell(0, "y"); }), "t.tsv:1: the column  is missingy");
     has(caught_message([&] { t.whole(1, "trial", 3, 9); }),
         "t.tsv:3: trial is \"2\" (a whole number from 3 to 9)");
     has(caught_message([&] { t.whole(0, "x", 0, 9); }), "x is \"0.5\"");
@@ -155,7 +155,7 @@ TEST_CASE("an incomplete table is refused with the place")
     CHECK(refusal("").find("t.tsv: it is empty") == 0);
     CHECK(refusal("a\tb\n1\t2\n3\n").find("t.tsv:3: it has 1 column, not 2") == 0);
     CHECK(refusal("a\tb\n0\t2\t3\n").find("t.tsv:2: it has 3 columns, not 2") == 0);
-    CHECK(refusal("a\ta\n1\t2\n").find("t.tsv:1: the column a is there twice") == 0);
+    CHECK(refusal("a\ta\n1\t2\n").find("t.tsv:1: the column a occurs twice") == 0);
     CHECK(refusal("a\tb\n1").find("t.tsv:2: it has 1 column, not 2") == 0);
     CHECK(refusal(std::string("a\n\0\n", 4)).find("t.tsv:2: it is not UTF-8") == 0);
     CHECK(refusal("a\n\xe4\n").find("t.tsv:2: it is not UTF-8") == 0);
@@ -168,9 +168,8 @@ TEST_CASE("an incomplete table is refused with the place")
 
 TEST_CASE("unreadable tables of other programs are named")
 {
-    CHECK(
-        refusal("a,b\n1,2\n").find("t.tsv:1: commas are between the columns, not tabs (save it with tabs") ==
-        0);
+    CHECK(refusal("a,b\n1,2\n").find("t.tsv:1: commas separate the columns, not tabs (save it with tabs") ==
+          0);
     CHECK(refusal("\"a\";\"b\"\n1;2\n").find("t.tsv:1: semicolons are between the columns") == 0);
     CHECK(refusal("\"a\" \"b\"\n1 2\n").find("t.tsv:1: spaces are between the columns") == 0);
     CHECK(refusal(std::string("\xff\xfe"
@@ -294,7 +293,8 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
     t.leave_out_last();
     CHECK_FALSE(t.is_open());
     CHECK(t.rows() == 1);
-    CHECK(caught_message([&] { t.refuse_cut("mend it"); }) == "t.tsv:3: the last line is cut off (mend it)");
+    CHECK(caught_message([&] { t.refuse_cut("mend it"); }) ==
+          "t.tsv:3: the last line is incomplete (mend it)");
 }
 
 TEST_CASE("a study's lines are read with the types of their columns, void ones too")

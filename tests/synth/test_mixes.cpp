@@ -403,7 +403,7 @@ TEST_CASE("a spike of 8 ms is found in strokes of ten seconds to an hour, and ac
     }
     // On a tactor that one gets the whole amplitude, and the message has the value.
     const plan p = continuous(with_spike(3600.0, 1800.0, 1.0), 60.0);
-    has(refusal({{p, {}}}, -40.0), "tactor 4: would be driven at 20 dBFS, above full scale");
+    has(refusal({{p, {}}}, -40.0), "tactor 4: would play at 20 dBFS, above full scale");
 }
 
 TEST_CASE("a plan is left unseen only where its intensity is above no limit: as if every point was looked at")

@@ -89,7 +89,7 @@ TEST_CASE("a burst that cannot be placed is refused with a hint")
           "burst 1 of the plan: tactor 7 is not in the array, which has 2 (plan the stroke for this array)");
     CHECK(refusal(make_burst(0.0, 0.05, {{1, HUGE_VAL}})) ==
           "burst 1 of the plan: the amplitude of tactor 1 is inf (give a finite number)");
-    CHECK(refusal(make_burst(-1.0, 0.05, {{1, 0.5}})).ends_with("(between 0 and 1000000 s can be rendered)"));
+    CHECK(refusal(make_burst(-1.0, 0.05, {{1, 0.5}})).ends_with("(use 0 to 1000000 s)"));
 }
 
 TEST_CASE("starts count from the start or the end of plans before")
@@ -373,7 +373,7 @@ TEST_CASE("a marker needs a spare channel that exists")
     CHECK_THROWS_WITH_AS(two_strokes(marked(1, 6)),
                          "marker channel 1: it drives tactor 1 (choose a spare channel)", error);
     CHECK_THROWS_WITH_AS(two_strokes(marked(6, 6)),
-                         "marker channel 6: there are 6 channels (ask for 7 channels or more)", error);
+                         "marker channel 6: there are 6 channels (use 7 channels or more)", error);
     for (const double length : {0.0, -1.0, 20.0, std::numeric_limits<double>::quiet_NaN()}) {
         render_options o = marked(4, 6);
         o.marker_s = length;

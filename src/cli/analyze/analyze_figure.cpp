@@ -292,12 +292,11 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
     if (std::ranges::any_of(f.curves, [](const plot::curve_panel& p) { return p.curves.back().thick; }))
         notes.emplace_back("Thick: functions of the means of the participants' figures.");
     if (has([](const study::person_measures& m) { return !m.blocks.empty() && !m.fit; }))
-        notes.emplace_back("Points without a line: the answers determine no function.");
+        notes.emplace_back("Points without a line: answers that determine no function.");
     if (has([](const study::person_measures& m) { return !m.estimates.empty(); }))
         notes.emplace_back("Estimates: geometric means, divided by that of the participant.");
     if (!f.matrices.empty())
-        notes.emplace_back(
-            "Answers: their number, the darker the larger the share of the motion that was played.");
+        notes.emplace_back("Answers: their number; darker cells are larger shares of the played motion.");
     return plot::join(notes, " ");
 }
 

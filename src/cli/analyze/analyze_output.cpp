@@ -123,7 +123,7 @@ void print_pairs(const std::vector<study::comparison>& pairs, const std::vector<
 void print_worths(const study::run_analysis& r)
 {
     for (std::size_t m = 0; m < r.cells.size(); ++m) {
-        say(stdout, "  per cent of the trials with {} in which it was chosen, against 50\n",
+        say(stdout, "  per cent of the trials with {} in which people chose it, against 50\n",
             r.run.methods[m]);
         print_tests(r.cells[m], r.run.motions);
     }
@@ -150,7 +150,7 @@ void print_choose(const study::run_analysis& r)
     if (has_worths(r.run))
         print_worths(r);
     else {
-        say(stdout, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
+        say(stdout, "  per cent of trials in which people chose {}, against 50\n", r.run.methods.back());
         print_tests(r.cells[0], r.run.motions);
     }
     const study::t_test& first = r.first_interval;
@@ -543,7 +543,7 @@ study::trial move_to(study::trial t, const study::run_outline& own, const study:
 void print_analysis_text(const study::analysis& a)
 {
     say(stdout, "{}: {}{}\n", a.experiment, counted(a.participants, "participant"),
-        a.simulated ? ", SIMULATED: these are no people's answers" : "");
+        a.simulated ? ", SIMULATED: no person gave these answers" : "");
     std::size_t voids = 0;
     for (const study::run_analysis& r : a.runs)
         voids += r.group.empty() ? r.voids : 0;
@@ -574,7 +574,7 @@ void print_trials(const study::dataset& d)
 {
     std::string text;
     if (d.simulated)
-        text += "# simulated: these are no people's answers\n";
+        text += "# simulated: no person gave these answers\n";
     // Names may have "#" in them: the notes are counted, not told by their first letter.
     const std::size_t notes = 3 + (d.simulated ? 1 : 0) + d.experiment.runs.size();
     // With sum contrasts an effect is over all motions, not that at the first one.

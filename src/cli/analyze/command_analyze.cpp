@@ -32,7 +32,7 @@ std::vector<std::string> parse_codes(const char* option, std::string_view text)
     for (const std::string_view code : detail::split(text, ',')) {
         if (code.empty())
             throw error(error_kind::bad_input, option, "a code is empty",
-                        "codes with commas between, as 01,02");
+                        "separate codes by commas, as 01,02");
         codes.emplace_back(code);
     }
     return codes;
@@ -138,7 +138,7 @@ int run_analyze(command_line& line)
     analyze_options o;
     CLI::App& c = line.app;
     c.add_option("DIR", o.folders,
-                 "folder of the study, as tactor experiment wrote it; several are analysed as one")
+                 "folder of the study, as tactor experiment wrote it; several count as one study")
         ->required();
     add_selection(c, o.who);
     add_format_option(c, o.format, {"text", "json", "tsv", "wide"},

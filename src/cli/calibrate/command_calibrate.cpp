@@ -92,26 +92,29 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
     study::staircase_options& s = o.settings.staircase;
     begin_group(c, "Staircase");
     add_text(c, "--rule", "1up3down|1up2down",
-             "find the level felt in 79.4 % of trials (default), or in 70.7 %", [&s](const std::string& t) {
+             "find the level at which 79.4 % of the answers are right (default), or 70.7 %",
+             [&s](const std::string& t) {
                  s.right_for_down = choose("--rule", t, {"1up3down", "1up2down"}) == 0 ? 3 : 2;
              });
-    add_text(c, "--steps", "DB,DB,...", "steps; the next begins after every second reversal (default 4,2,1)",
+    add_text(c, "--steps", "DB,DB,...",
+             "step sizes; the next one applies after every second reversal (default 4,2,1)",
              [&s](const std::string& t) { s.steps_db = steps(t); });
     add_text(c, "--reversals", "N", "number of reversals of a staircase (default 12)",
              [&s](const std::string& t) { s.reversals = whole("--reversals", t, 2, study::most_reversals); });
-    add_text(c, "--discard", "N", "number of first reversals that do not count (default 4)",
+    add_text(c, "--discard", "N", "number of reversals at the start that do not count (default 4)",
              [&s](const std::string& t) { s.discard = whole("--discard", t, 0, study::most_reversals); });
-    add_text(c, "--feedback", "on|off", "show the participant what was right (default on)",
+    add_text(c, "--feedback", "on|off", "tell the participant which answer was right (default on)",
              [&o](const std::string& t) {
                  o.settings.feedback = choose("--feedback", t, {"on", "off"}) == 0;
              });
-    add_text(c, "--practice", "N", "first trials that do not count (default 0)",
+    add_text(c, "--practice", "N", "number of practice trials, which do not count (default 0)",
              [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
     begin_group(c, "QUEST+");
     add_text(c, "--trials", "N", "number of trials of a tactor (default 30)", [&o](const std::string& t) {
         o.settings.trials = whole("--trials", t, least_quest_trials, most_quest_trials);
     });
-    add_text(c, "--stop-sd", "DB", "end a tactor once the posterior deviation of its threshold is smaller",
+    add_text(c, "--stop-sd", "DB",
+             "stop a tactor when the standard deviation of its threshold falls below this",
              [&o](const std::string& t) {
                  o.settings.stop_sd_db = options::parse_number("--stop-sd", t, {0.1, 20.0}, "dB");
              });
@@ -146,10 +149,10 @@ unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
 {
     const auto i = detail::number_in<std::uint64_t>(text);
     if (!i)
-        refuse_option("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
+        refuse_option("--tactors", fmt::format("\"{}\" is not a list of tactors", all), "as 0,3-5");
     if (*i >= n)
         refuse_option("--tactors", fmt::format("there is no tactor {}", text),
-                      n == 1 ? std::string("the array has tactor 0 only")
+                      n == 1 ? std::string("the array has only tactor 0")
                              : fmt::format("the array has 0 to {}", n - 1));
     return static_cast<unsigned>(*i);
 }
@@ -167,7 +170,7 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
         for (unsigned i = first; i <= last; ++i) {
             if (std::find(all.begin(), all.end(), i) != all.end())
                 refuse_option("--tactors", fmt::format("tactor {} is named twice", i),
-                              "each is measured once");
+                              "name each tactor once");
             all.push_back(i);
         }
     }
@@ -190,7 +193,7 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
                                   "[limits] allow (max_drive_s, {:.4g} s in {:.4g} s)",
                                   steady ? "steady pulses" : "intervals", c.interval_s, study::interval_gap_s,
                                   l.max_drive_s, l.window_s),
-                      "shorter ones, or another max_drive_s");
+                      "use a shorter interval, or another max_drive_s");
 }
 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
@@ -245,11 +248,11 @@ void settle_names(calibrate_options& o)
     namespace fs = std::filesystem;
     if (fs::path(o.output).extension() != ".toml")
         refuse_option("-o", fmt::format("\"{}\" does not end in .toml", o.output),
-                      "it will be an array file, as me.toml");
+                      "it is an array file: name it like me.toml");
     if (o.log.empty())
         o.log = fs::path(o.output).replace_extension(".tsv").string();
     else if (fs::path(o.log).extension() != ".tsv")
-        refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "as me.tsv");
+        refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "name it like me.tsv");
 }
 
 // Refuses an option of other methods.
@@ -260,7 +263,7 @@ void check_method(const calibrate_options& o)
     const study::calibration_method m = o.settings.method;
     for (const method_option& one : o.method_options)
         if (!(m == staircase ? one.of_staircase : m == quest && one.of_quest))
-            refuse_option(one.name, fmt::format("{} does not have that", names[static_cast<std::size_t>(m)]),
+            refuse_option(one.name, fmt::format("{} does not use it", names[static_cast<std::size_t>(m)]),
                           fmt::format("leave it out, or use --method {}",
                                       to_string(one.of_staircase ? staircase : quest)));
 }
@@ -272,20 +275,22 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
     if (c.staircase.reversals < c.staircase.discard + 2)
         refuse_option(
             "--discard",
-            fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
-            "two at least must be left");
+            fmt::format("of {} reversals, {} are discarded", c.staircase.reversals, c.staircase.discard),
+            "at least two must remain");
     if (const double most = study::greatest_noise_dbfs(o.masking.color); o.masking.level_dbfs > most)
         refuse_option("--masker-dbfs",
-                      fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
+                      fmt::format("{} dBFS is too high: the peaks of this noise reach full scale at {} dBFS",
                                   o.masking.level_dbfs, most),
-                      "less here, and more at the amplifier of the headphones");
+                      "lower it here, and turn up the amplifier of the headphones");
     check_page_options(o.page, o.simulate.has_value());
     if (o.words && !o.page.shown())
-        refuse_option("--page-words", "there is no page", "--display page, or leave it out");
+        refuse_option("--page-words", "without a page there are no page words",
+                      "add --display page, or leave it out");
     if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
-        refuse_option(asked, "nothing is played", "leave it out, or --simulate");
+        refuse_option(asked, "a simulated session plays nothing", "leave it out, or leave out --simulate");
     if (o.simulate && !o.keypads.empty())
-        refuse_option("--keypad", "nobody is asked", "leave it out, or --simulate");
+        refuse_option("--keypad", "a simulated session has no participant at a display",
+                      "leave it out, or leave out --simulate");
 }
 
 // Returns the settings for this array, within its limits.
@@ -305,7 +310,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     if (c.carrier_hz >= 0.5 * rate)
         refuse_option("--carrier",
                       fmt::format("{} Hz cannot be played at a rate of {} Hz", c.carrier_hz, rate),
-                      fmt::format("below {} Hz, half the rate", 0.5 * rate));
+                      fmt::format("use a carrier below {} Hz, half the rate", 0.5 * rate));
     check_drive_time(c, limits);
     if (o.tactors) {
         c.tactors = tactors_in(*o.tactors, a.tactors.size());
@@ -318,8 +323,9 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
         if (o.has_start && c.start_dbfs() > ceiling)
             refuse_option(
                 "--start-dbfs",
-                fmt::format("tactor {} may have {:.4g} dBFS at most ({}), and {:.4g} dBFS is the start", t,
-                            ceiling, ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
+                fmt::format("tactor {} may have at most {:.4g} dBFS ({}), and the start level is {:.4g} dBFS",
+                            t, ceiling,
+                            ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
                             c.start_dbfs()),
                 "start lower");
         c.ceilings_dbfs.push_back(ceiling);
@@ -369,7 +375,8 @@ setup read_other_tables(const environment& e)
 
 const char* why_none(study::staircase_end end)
 {
-    return end == study::staircase_end::below_range ? "right where nothing is left to feel" : "not felt";
+    return end == study::staircase_end::below_range ? "right answers at a level that nobody can feel"
+                                                    : "not felt";
 }
 
 void print(const study::tactor_threshold& t, double ceiling_dbfs)
@@ -383,12 +390,12 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
     say(stdout, "tactor {:>3}  {:>7.2f} dBFS, {}sd {:.2f} dB, {}{}\n", t.tactor, *t.threshold_dbfs,
         t.posterior_sd_db ? "posterior " : "", t.posterior_sd_db.value_or(t.sd_db.value_or(0.0)),
         counted(t.trials, "trial"),
-        t.staircases == 1 ? "" : ", a second staircase: the first ended too high");
+        t.staircases == 1 ? "" : ", with a second staircase: the first ended too high");
     const double missing = *t.threshold_dbfs + paper_sl_db - ceiling_dbfs;
     if (missing > 0.0)
         say(stderr,
-            "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS are {:.2f} dB more than it "
-            "may have\n",
+            "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS exceed its limit by {:.2f} "
+            "dB\n",
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 
@@ -467,9 +474,9 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
     study::write_new_output(
         o.output, fmt::format("# Thresholds of {} at {} Hz in intervals of {} s (tactor calibrate).\n{}{}{}",
                               s.participant, s.carrier_hz, s.interval_s,
-                              simulated ? "# SIMULATED: nobody was asked.\n" : "",
+                              simulated ? "# SIMULATED: no person answered.\n" : "",
                               detail::array_text(a, besides), study::calibration_text(s, c.thresholds())));
-    say(stdout, "{}{}\n", s.participant, simulated ? ": SIMULATED, nobody was asked" : "");
+    say(stdout, "{}{}\n", s.participant, simulated ? ": SIMULATED, no person answered" : "");
     for (std::size_t i = 0; i < c.thresholds().size(); ++i)
         print(c.thresholds()[i], s.ceilings_dbfs[i]);
     for (const study::doubtful_threshold& d : study::find_doubtful(a, s, c.thresholds()))
@@ -494,13 +501,14 @@ int calibrate(settings& s, calibrate_options& o)
     if (o.simulate)
         simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
     else if (!there && !session::names_device(s, e))
-        throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
+        throw error(error_kind::bad_input, "-D", "no device is configured",
+                    "give -D PCM, or --simulate SPEC");
     const setup besides = read_other_tables(e);
     begun.array = detail::sha256_text(detail::array_text(e.tactors, besides));
     if (there) {
         study::check_beginning(o.log, begun);
         study::check_finished(o.output, begun);
-        say(stdout, "{} is there: the session is finished\n", o.output);
+        say(stdout, "{} exists: the session is finished\n", o.output);
         return status_ok;
     }
     print_ceilings(begun);
@@ -513,11 +521,11 @@ int calibrate(settings& s, calibrate_options& o)
         observer.emplace(*simulated, begun);
     replay(c, log, observer ? &*observer : nullptr);
     if (const auto kept = log.begin())
-        say(stderr, "tactor: warning: {}: its last line was cut off: what is left of it is in {}\n", o.log,
+        say(stderr, "tactor: warning: {}: its last line was incomplete and was moved to {}\n", o.log,
             kept->string());
     if (log.lines().rows() > 0)
         say(stdout, "{}\n",
-            c.done() ? "all trials are answered" : fmt::format("goes on at trial {}", c.next().number));
+            c.done() ? "all trials are answered" : fmt::format("continues at trial {}", c.next().number));
     int signal = 0;
     if (observer)
         ask(c, log, *observer, [](const study::calibration_record&) {});
@@ -525,9 +533,9 @@ int calibrate(settings& s, calibrate_options& o)
         signal = ask_person(c, log, s, e, o);
     if (signal != 0) {
         if (c.next().number == 1)
-            say(stderr, "tactor: ended before trial 1: nothing was answered\n");
+            say(stderr, "tactor: ended before trial 1, without an answer\n");
         else
-            say(stderr, "tactor: ended before trial {}: what was answered is in {}, and --resume goes on\n",
+            say(stderr, "tactor: ended before trial {}: the answers are in {}, and --resume continues\n",
                 c.next().number, o.log);
         return session::interrupt::status(signal);
     }

@@ -69,7 +69,7 @@ finding check_places(const array& a)
     const std::size_t n = a.tactors.size();
     if (n == 1)
         return warning("array", fmt::format("{}: 1 tactor, so nothing moves", a.name),
-                       "two or more make a stroke");
+                       "a stroke needs two or more");
     const spread d = neighbours(a);
     const double width = high.x_mm - low.x_mm;
     const double height = high.y_mm - low.y_mm;
@@ -80,9 +80,9 @@ finding check_places(const array& a)
     // Plaisier et al., Perception 2024; Lee, Scientific Reports 2025.
     if (std::min(width, height) >= trunk_mm)
         return fine("array", found,
-                    "on a back, places are told apart about twice as well across as along the body, so that "
-                    "rows may be further apart than columns; on trunk and shank a circle was followed best "
-                    "with --phantom linear");
+                    "people distinguish places on the back about twice as well across the body as along it, "
+                    "so rows may be further apart than columns; on trunk and shank people followed a circle "
+                    "best with --phantom linear");
     return fine("array", found);
 }
 
@@ -139,8 +139,8 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     const auto unmeasured = tactors_where(a, [](const tactor_spec& t) { return !threshold_at(t, usual_hz); });
     if (unmeasured.size() != a.tactors.size() && !unmeasured.empty())
         return warning("levels",
-                       fmt::format("{}; no threshold of tactors {}", found, fmt::join(unmeasured, ", ")),
-                       "measure threshold_dbfs of all, or --sl refuses strokes that drive these");
+                       fmt::format("{}; tactors {} have no threshold", found, fmt::join(unmeasured, ", ")),
+                       "measure threshold_dbfs of all tactors: --sl refuses strokes that drive these");
     const auto unfelt = tactors_where(a, [&](const tactor_spec& t) {
         return !r.sl_db && r.level_dbfs + t.gain_db <= threshold_at(t, usual_hz).value_or(-HUGE_VAL);
     });
@@ -169,7 +169,7 @@ std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
 std::string limit_text(const drive_limits& l)
 {
     const std::string power =
-        fmt::format("all together at most {:+.3g} dB of one at full scale", l.power_dbfs);
+        fmt::format("all together at most {:+.3g} dB above one at full scale", l.power_dbfs);
     return l.max_drive_s < l.window_s
                ? fmt::format("{}; each at most {:.4g} s in {:.4g} s", power, l.max_drive_s, l.window_s)
                : fmt::format("{}; no limit on time", power);
@@ -180,9 +180,10 @@ finding check_limits(const drive_limits& l, std::size_t tactors)
     const std::vector<std::string> usual = lifted(l, tactors);
     if (usual.empty())
         return fine("limits", limit_text(l));
-    return warning("limits", limit_text(l) + ": more than by default",
-                   fmt::format("[limits] {}, unless actuators, amplifier and skin are known to bear more",
-                               fmt::join(usual, ", ")));
+    return warning(
+        "limits", limit_text(l) + ": more than by default",
+        fmt::format("set [limits] {}, unless you know that actuators, amplifier and skin bear more",
+                    fmt::join(usual, ", ")));
 }
 
 // Actuators that need too long for bursts; a piezo starts within 4 ms.
@@ -244,15 +245,15 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
         return t.rise_s.value_or(0.0) > 0.5 * burst_s;
     });
     if (has_bursts && !slow.empty())
-        into.push_back(warning(
-            "actuators",
-            fmt::format("{}: rise_ms is up to {:.3g}, much of {}", who(a, slow), slowest_s * 1e3, burst),
-            "make bursts longer with --burst, or use faster actuators"));
+        into.push_back(warning("actuators",
+                               fmt::format("{}: rise_ms is up to {:.3g}, a large part of {}", who(a, slow),
+                                           slowest_s * 1e3, burst),
+                               "make bursts longer with --burst, or use faster actuators"));
     if (into.size() != before)
         return;
     const bool unknown = !select_kind(a, actuator_kind::unknown).empty();
     into.push_back(fine("actuators", kinds(a),
-                        unknown ? fmt::format("say actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
+                        unknown ? fmt::format("set actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
                                               "under [array]: {} need one that starts within a few ms",
                                               burst)
                                 : ""));
@@ -274,7 +275,7 @@ finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsign
                        fmt::format("skin feels {:.0f} to {:.0f} Hz, about 250 Hz best: set --carrier",
                                    lowest_hz, highest_hz));
     if (has_bursts && cycles < fewest_cycles)
-        return warning("bursts", fmt::format("{}: too few to be felt as vibration", found),
+        return warning("bursts", fmt::format("{}: too few cycles to feel as vibration", found),
                        "raise --carrier, --burst or --soa");
     return fine("bursts", found);
 }

@@ -131,12 +131,11 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
 std::string how_to_join(const system_facts& f, const std::string& group)
 {
     if (f.root || contains(f.groups, group))
-        return "the group may open it, so a container or a unit keeps it away: name it in docker run "
-               "--device, "
-               "or in DeviceAllow=";
+        return "the group may open it, so a container or a unit hides it: name it in docker run --device, or "
+               "in DeviceAllow=";
     if (group == "root")
-        return "the device is root's alone: install the udev rules (tactor-raspberry-pi(7) says how), or run "
-               "as root";
+        return "only root may open the device: install the udev rules (tactor-raspberry-pi(7) says how), or "
+               "run as root";
     if (contains(f.joined, group) && !contains(f.groups, group))
         return fmt::format("{} is in the group {} already: log out and in again", f.user, group);
     return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);
@@ -164,7 +163,7 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
             warning(check, fmt::format("no permission to open {}", n.path), how_to_join(f, n.group)), needed);
     }
     return fine(check,
-                fmt::format("{} may be opened{}",
+                fmt::format("you may open {}{}",
                             nodes.size() == 1 ? nodes.front().path : fmt::format("{} devices", nodes.size()),
                             f.root ? "; you are root" : ", group " + nodes.front().group));
 }
@@ -178,15 +177,15 @@ finding check_priority(const system_facts& f, const system_needs& n)
             warning("real time",
                     fmt::format("no real-time priority, though the limits allow it: {}",
                                 std::error_code(f.priority_error, std::generic_category()).message()),
-                    "let the container or the service use SCHED_FIFO"),
+                    "allow SCHED_FIFO in the container or the service"),
             n.require_realtime);
     if (f.rights.priority >= asked_priority)
         return fine("real time",
-                    fmt::format("SCHED_FIFO up to {}, {} is asked for", f.rights.priority, asked_priority));
+                    fmt::format("SCHED_FIFO up to {}, {} requested", f.rights.priority, asked_priority));
     const std::string found =
         f.rights.priority == 0
             ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
-            : fmt::format("SCHED_FIFO up to {} only, {} is asked for", f.rights.priority, asked_priority);
+            : fmt::format("SCHED_FIFO only up to {}, {} requested", f.rights.priority, asked_priority);
     return insist(warning("real time", found, rt::realtime_advice(f.rights, asked_priority)),
                   n.require_realtime);
 }
@@ -196,14 +195,14 @@ finding check_memory(const system_facts& f, const system_needs& n)
     constexpr std::uint64_t mib = 1U << 20;
     const std::uint64_t wanted = (f.memory_bytes + mib - 1) / mib;
     if (!f.rights.lockable_bytes)
-        return fine("memory", "may be locked without limit");
+        return fine("memory", "locked memory without limit");
     const std::uint64_t most = *f.rights.lockable_bytes / mib;
     if (*f.rights.lockable_bytes >= f.memory_bytes)
-        return fine("memory", fmt::format("{} MiB may be locked, {} MiB must be", most, wanted));
+        return fine("memory", fmt::format("{} MiB of locked memory, {} MiB needed", most, wanted));
     return insist(
         warning("memory",
-                fmt::format("{} MiB may be locked (RLIMIT_MEMLOCK), {} MiB must be, a reserve included", most,
-                            wanted),
+                fmt::format("{} MiB of locked memory (RLIMIT_MEMLOCK), {} MiB needed, including a reserve",
+                            most, wanted),
                 rt::realtime_advice(f.rights, asked_priority)),
         n.require_realtime);
 }
@@ -211,11 +210,11 @@ finding check_memory(const system_facts& f, const system_needs& n)
 finding check_servers(const system_facts& f, const system_needs& n)
 {
     constexpr const char* rules =
-        "call the card Tactor in the udev rules (70-tactor.rules), which keep them off it; for now: "
+        "name the card Tactor in the udev rules (70-tactor.rules), which keep sound servers off it; for now: "
         "systemctl --user stop pipewire.socket pipewire wireplumber pulseaudio.socket pulseaudio";
     if (!n.card)
         return fine("sound servers",
-                    fmt::format("{}; \"{}\" is on no card of this machine",
+                    fmt::format("{}; no card of this machine has \"{}\"",
                                 f.servers.empty() ? "none" : process_names(f.servers), n.pcm));
     const auto is_server = [&](const process_info& p) {
         return std::any_of(f.servers.begin(), f.servers.end(), [&](const auto& s) { return s.pid == p.pid; });
@@ -231,13 +230,13 @@ finding check_servers(const system_facts& f, const system_needs& n)
     std::copy_if(f.servers.begin(), f.servers.end(), std::back_inserter(desktop),
                  [](const process_info& p) { return p.program.rfind("jack", 0) != 0; });
     if (desktop.empty())
-        return fine("sound servers", "none that would take the card");
+        return fine("sound servers", "none that would use the card");
     if (n.ignored)
         return fine("sound servers",
                     fmt::format("{}; udev keeps them off card {}", process_names(desktop), n.card->id));
     return warning(
         "sound servers",
-        fmt::format("{}: may take card {} at any time, and beep on it", process_names(desktop), n.card->id),
+        fmt::format("{}: may use card {} at any time, and beep on it", process_names(desktop), n.card->id),
         rules);
 }
 
@@ -248,25 +247,25 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
     if (!n.amplifier)
         return {};
     constexpr const char* cure =
-        "dtparam=strict_gpiod in /boot/firmware/config.txt, then reboot, and a pull-down resistor at the "
-        "amplifier's enable input; where tactor is a service, ExecStopPost=tactor off";
+        "put dtparam=strict_gpiod into /boot/firmware/config.txt, then reboot, and wire a pull-down resistor "
+        "to the amplifier's enable input; in a service, add ExecStopPost=tactor off";
     if (!f.keeps_outputs.empty())
-        return {warning(
-            "GPIO release",
-            fmt::format("{} is Y: a line keeps its level when its program ends, so that nothing switches "
-                        "the amplifier off when player and holder are killed together",
-                        f.keeps_outputs),
-            cure)};
+        return {warning("GPIO release",
+                        fmt::format("GPIO lines keep their level after a program ends ({} = Y): if player "
+                                    "and holder are both killed, the amplifier stays on",
+                                    f.keeps_outputs),
+                        cure)};
     if (f.releases_outputs)
-        return {fine("GPIO release", "lines become inputs when their program ends")};
+        return {fine("GPIO release", "GPIO lines become inputs when their program ends")};
     if (f.raspberry_pi)
         return {warning("GPIO release",
-                        "this kernel does not say whether lines keep their level when their program ends",
+                        "this kernel does not say whether GPIO lines keep their level after a program ends",
                         cure)};
-    return {fine("GPIO release",
-                 "what becomes of a line whose program was killed is up to its chip: it may stay on when "
-                 "player and holder are killed together",
-                 "a pull-down resistor at the amplifier's enable input; after such an end: tactor off")};
+    return {
+        fine("GPIO release",
+             "the chip decides what a GPIO line does after a program ends: if player and holder are both "
+             "killed, the amplifier may stay on",
+             "wire a pull-down resistor to the amplifier's enable input; after such an end run tactor off")};
 }
 
 } // namespace

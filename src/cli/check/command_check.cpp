@@ -45,31 +45,31 @@ template <class Io>
 void walk_members(Io& io, const walk_outcome& w)
 {
     const session::walk_verdict& v = w.verdict;
-    io.list("answers", w.felt, {"of each tactor, in order"},
+    io.list("answers", w.felt, {"for each tactor, in order"},
             [&w](auto& inner, const std::optional<unsigned>& felt, std::size_t number) {
-                constexpr about driven{"its number, and the channel that was driven"};
+                constexpr about driven{"its number, and the channel that played"};
                 inner("tactor", number, driven);
                 inner.fact(
                     "channel", [&] { return w.tactors.tactors[number].channel; }, driven);
-                inner.or_null("felt", felt, {"the tactor that was felt; null: none"});
+                inner.or_null("felt", felt, {"the tactor that was felt; null for none"});
             });
-    io("problems", v.problems, {"why there is no map; none where there is"});
+    io("problems", v.problems, {"why there is no map; empty if there is one"});
     io.or_null("channels", v.channels.empty() ? std::nullopt : std::optional(v.channels),
-               {"of each tactor, as it should be; null where there is no map"});
-    io("changed", v.changed, {"whether that differs from the array's"});
+               {"the right channel of each tactor; null without a map"});
+    io("changed", v.changed, {"whether these differ from those of the array"});
 }
 
 template <class Io>
 void check_members(Io& io, const std::vector<finding>& all, const std::optional<walk_outcome>& walk)
 {
-    constexpr about many{"how many"};
+    constexpr about many{"number of them"};
     io.constant("schema", "tactor-check/1");
     io("errors", count(all, level::error), many);
     io("warnings", count(all, level::warning), many);
-    io.list("findings", all, {"what was looked at"}, [](auto& inner, const finding& f, std::size_t) {
-        inner("check", f.check, {"what, as in tactor-check(1)"});
+    io.list("findings", all, {"the checks"}, [](auto& inner, const finding& f, std::size_t) {
+        inner("check", f.check, {"name of the check, as in tactor-check(1)"});
         inner.one_of("level", to_string(f.how), {"ok", "warning", "error"}, {"ok, warning or error"});
-        inner("found", f.found, {"what was found"});
+        inner("found", f.found, {"the finding"});
         inner.or_null("cure", detail::omit_empty(f.cure), {"what to do about it; else null"});
     });
     io.part("walk", walk.has_value(), {"only after --walk with answers"},
@@ -93,8 +93,8 @@ std::string findings_text(const std::vector<finding>& all)
 finding refuse_lost_tactor(const alsa_options& device, const std::string& lost)
 {
     return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
-                              "give each channel one of the device's, at 1, where the PCM is defined "
-                              "(ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
+                              "in the definition of the PCM (ttable, bindings) lead each channel to its own "
+                              "channel of the device, at 1, or play on the card itself: -D hw:CARD=NAME"});
 }
 
 std::string note_text(const std::vector<session::device_note>& notes)
@@ -115,11 +115,11 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
         return refuse_lost_tactor(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
     if (!named)
-        return warning("device", "none is named, so play goes to " + found,
-                       "-D PCM, or pcm under [output]; tactor devices lists them");
+        return warning("device", "none is configured, so play uses " + found,
+                       "give -D PCM, or pcm under [output]; tactor devices lists them");
     const std::string late = session::latency_warning(o.latency_ms, made);
     if (!late.empty())
-        return warning("device", found + "; " + late, "a device with shorter periods, or more latency");
+        return warning("device", found + "; " + late, "use a device with shorter periods, or more latency");
     if (!server.empty())
         return warning("device", found, session::server_cure);
     const std::vector<session::device_note> notes = session::wiring_notes(e.tactors, made);
@@ -158,11 +158,11 @@ finding check_device(const alsa_options& device, const session::stream_options& 
         const stream_setup there{.name = device.pcm, .wiring = read_wiring(device.pcm, device.channels)};
         if (const std::string lost = lost_tactor(e.tactors, there.wiring); !lost.empty())
             return refuse_lost_tactor(device, lost);
-        return warning(
-            "device",
-            fmt::format("{}: not opened, for that would empty its file or start its command", device.pcm) +
-                note_text(session::wiring_notes(e.tactors, there)),
-            "play opens it: is it meant?");
+        return warning("device",
+                       fmt::format("{}: not opened, because that would empty its file or start its command",
+                                   device.pcm) +
+                           note_text(session::wiring_notes(e.tactors, there)),
+                       "play would open it: check that you want this");
     }
     try {
         return check_open(device, o, e, named, kept_as);
@@ -198,10 +198,10 @@ alsa_options device_for(const settings& s, const environment& e)
 finding check_drive_time(const std::string& device)
 {
     const std::string why = drive_time_fault(device);
-    return why.empty() ? fine("drive time", "counts on from run to run")
-                       : warning("drive time", why + ": no run knows what others drive",
-                                 "let XDG_RUNTIME_DIR name a folder of your own in which there is space, as "
-                                 "a login sets it, and remove a file there that cannot be read");
+    return why.empty() ? fine("drive time", "continues from run to run")
+                       : warning("drive time", why + ": a run does not know the drive time of others",
+                                 "set XDG_RUNTIME_DIR to a folder that belongs to you and has space, as a "
+                                 "login does, and remove an unreadable file from it");
 }
 
 std::vector<finding> check_all(const settings& s, const environment& e)
@@ -250,7 +250,7 @@ void conclude(const settings& s, const check_options& o, const environment& e, c
 {
     if (!v.problems.empty())
         throw error(error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
-                    "look after wires and amplifier channels, then walk again; no map is written");
+                    "check wires and amplifier channels, then walk again; no map was written");
     if (!o.output.empty())
         write_channels(o.output, s, e, v.channels);
     if (o.json())
@@ -288,10 +288,9 @@ void check_usage(const settings& s, const check_options& o)
         refuse_option(o.no_questions      ? "--auto"
                       : !o.output.empty() ? "--output"
                                           : "--max-dbfs",
-                      "only a walk has it", "add --walk");
+                      "only a walk uses it", "add --walk");
     if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
-        refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing is played",
-                      "add --walk");
+        refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing plays", "add --walk");
     if (o.no_questions && !o.output.empty())
         refuse_option("--output", "without answers there is no map", "leave out --auto or --output");
     if (!o.output.empty())
@@ -372,12 +371,12 @@ std::vector<finding> check_lines(const setup& config, bool felt, line_finder fin
     std::vector<finding> all;
     if (!config.amplifier)
         all.push_back({"amplifier", felt ? level::warning : level::ok,
-                       "no [amplifier]: nothing switches it off",
+                       "no [amplifier]: nothing switches the amplifier off",
                        "wire its enable input to a GPIO line, see tactor-raspberry-pi(7)"});
     else {
         finding f = check_line("amplifier", config.amplifier->line, find);
         if (f.how == level::ok && config.amplifier->active_low)
-            f = warning("amplifier", f.found + ", on when low: a line that floats may switch it on",
+            f = warning("amplifier", f.found + ", on when low: a floating line may switch it on",
                         "use an amplifier that is on when high, with a pull-down resistor");
         all.push_back(std::move(f));
     }
@@ -393,16 +392,15 @@ int run_check(command_line& line)
     check_options o;
     CLI::App& c = line.app;
     settings& s = add_options(line, options::on_check);
-    c.add_flag("--walk", o.walk, "then drive each tactor in turn and ask where it is felt");
+    c.add_flag("--walk", o.walk, "then play each tactor in turn and ask where you feel it");
     c.add_flag("--auto", o.no_questions, "with --walk: ask no questions");
-    c.add_option("-o,--output", o.output,
-                 "with --walk: array file to write, with the channels as they were felt")
+    c.add_option("-o,--output", o.output, "with --walk: array file to write, with the channels as felt")
         ->type_name("FILE.toml");
-    add_text(c, "--max-dbfs", "DB", "with --walk: highest peak of every tactor, then and in the file",
+    add_text(c, "--max-dbfs", "DB", "with --walk: highest peak of every tactor, in the walk and in the file",
              [&o](const std::string& t) {
                  o.max_dbfs = options::parse_number("--max-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
              });
-    add_format_option(c, o.format, {"text", "json"}, "how to print it (default text)");
+    add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
     c.footer("tactor check -D hw:CARD=Tactor\n"
              "tactor check --walk -o felt.toml --level-dbfs -40 --max-dbfs -12 -D hw:CARD=Tactor\n"
              "tactor check --format json");

@@ -135,7 +135,7 @@ private:
         if (session_.signal() != 0)
             throw walk_interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())
-            throw error(error_kind::runtime, p.name, r.why, "the walk ends here");
+            throw error(error_kind::runtime, p.name, r.why, "the walk ends");
         unfinished_[i] = r.state == state_kind::finished ? "" : "interrupted: " + r.why;
         if (!unfinished_[i].empty())
             say(fmt::format("tactor {}: {}\n", i, unfinished_[i]));
@@ -166,13 +166,13 @@ private:
                 return std::nullopt;
             if (said == "q")
                 throw error(error_kind::runtime, "walk",
-                            fmt::format("left after {} of {} tactors", i, last + 1),
-                            "no map is made of a part");
+                            fmt::format("stopped after {} of {} tactors", i, last + 1),
+                            "a map needs all tactors");
             if (said == "r")
                 sound(i);
             else
-                say(said == "b" ? "This is the first, there is none before it.\n"
-                                : fmt::format("\"{}\" is none of these.\n", said));
+                say(said == "b" ? "This is the first tactor.\n"
+                                : fmt::format("\"{}\" is not one of these.\n", said));
         }
     }
 

@@ -47,7 +47,7 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
             refuse_option(option, fmt::format("\"{}\" is not known", name),
                           "one or more of " + join_names<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())
-            refuse_option(option, fmt::format("\"{}\" is there twice", name), "name each once");
+            refuse_option(option, fmt::format("\"{}\" occurs twice", name), "name each once");
         list.push_back(*v);
     }
     return list;
@@ -234,7 +234,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     const std::string argument = stroke_arguments(s).front();
     if (e.plans.contains(argument))
         throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
-                    "give the stroke, which is planned here");
+                    "give the stroke: compare plans it itself");
     const piece p = open_piece(s, e, faces, argument);
     if (!asked.picture.file.empty() && p.strokes.size() > 1)
         refuse_option("-o", fmt::format("there are {} strokes", p.strokes.size()), "a picture shows one");
@@ -272,15 +272,17 @@ int run_compare(command_line& line)
     add_strokes(line);
     settings& s = add_options(line, options::on_compare);
     c.get_option("STROKE")->description(
-        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
-        "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");
+        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), file (.toml, .csv, .svg), "
+        "or - for such a file on standard input; not a plan");
     auto* algorithms = add_text(
         c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
         [&o](const std::string& t) { o.choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
     auto* phantoms = add_text(
         c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
         [&o](const std::string& t) { o.choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
-    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
+    c.get_option("--algorithm")
+        ->description("compare only this algorithm; see --algorithms")
+        ->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
     add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",

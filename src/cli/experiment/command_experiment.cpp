@@ -40,7 +40,7 @@ void check_keys(const study::prepared_experiment& p)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
                                     r.outline.name, study::choices_in(r), study::most_keys),
-                        "motions = [...] with fewer of them");
+                        "name fewer in motions = [...]");
 }
 
 void check_noise(const study::prepared_experiment& p, const experiment_options& o)
@@ -48,10 +48,10 @@ void check_noise(const study::prepared_experiment& p, const experiment_options& 
     const bool none = !p.definition.masking.noise;
     if (none && !o.masker.empty())
         throw error(error_kind::bad_input, "--masker", "the definition has no masking noise",
-                    "[masking], or leave it out");
+                    "add [masking], or leave it out");
     if (!none && o.masker.empty())
-        say(stderr, "tactor: warning: the definition's masking noise has no device: whoever sits near hears "
-                    "the array (--masker PCM)\n");
+        say(stderr, "tactor: warning: the definition's masking noise has no device: people near the array "
+                    "hear it (--masker PCM)\n");
 }
 
 constexpr const char* masker_cure =
@@ -63,7 +63,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     std::string server = session::settle_server(pcm);
     if (!server.empty() && !o.allow_sound_server)
         throw error(error_kind::bad_input, pcm, session::server_note(server),
-                    fmt::format("{}; --allow-sound-server takes it, and writes it down", cure));
+                    fmt::format("{}; --allow-sound-server allows and records it", cure));
     session::warn_of_server(server, cure);
     return server;
 }
@@ -73,18 +73,18 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
 void warn_of_session(const study::prepared_experiment& p, const experiment_options& o)
 {
     if (!session::is_felt(p.pcm))
-        say(stderr, "tactor: warning: playing to \"{}\", which nobody feels (-D PCM plays on hardware)\n",
+        say(stderr, "tactor: warning: playing to \"{}\", not to hardware (-D PCM plays on hardware)\n",
             p.pcm);
     const std::vector<std::string>& authors = p.definition.authors;
     if (!authors.empty() && authors == study::load_definition(study::shipped_experiment).authors)
         say(stderr,
-            "tactor: warning: the data will say \"{}\" for their authors (authors in a copy of the "
+            "tactor: warning: the data name \"{}\" as their authors (set authors in a copy of the "
             "definition)\n",
             authors.front());
     const auto& runs = p.definition.runs;
     if (!o.page.shown() && !can_draw() &&
         std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
-        say(stderr, "tactor: warning: the target cannot be drawn: standard output is no terminal that can "
+        say(stderr, "tactor: warning: the target cannot be drawn: standard output is not a terminal that can "
                     "move its cursor\n");
 }
 
@@ -107,7 +107,8 @@ study::session_devices check_real_session(const study::prepared_experiment& p, c
                                           const settings& s)
 {
     if (!session::names_device(s, p.where))
-        throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
+        throw error(error_kind::bad_input, "-D", "no device is configured",
+                    "give -D PCM, or --simulate SPEC");
     check_keys(p);
     check_noise(p, o);
     study::session_devices devices{p.pcm, check_server(p.pcm, session::server_cure, o), o.masker, {}};
@@ -171,7 +172,7 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
         if (!on)
             there.fade_out();
         else if (!there.fade_in())
-            throw error(error_kind::runtime, "--masker", "the noise does not sound",
+            throw error(error_kind::runtime, "--masker", "the noise does not play",
                         "tactor devices lists them");
         show(on ? "noise\n" : "silence\n");
     };
@@ -209,7 +210,7 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
     const study::masking_options& noise = p.definition.masking.noise.value();
     study::coded_pulse* lines = nullptr;
     const std::unique_ptr<study::stage> there = open_stage(p, o, s, lines);
-    show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
+    show(fmt::format("{} noise, {} dBFS, on {}. n: noise on and off, s: a stimulus under it, q: quit.\n",
                      to_string(noise.color), noise.level_dbfs, o.masker));
     const int signal = study::until_interrupted(*there, [&] { try_noise(p, *there); }).signal;
     return signal != 0 ? session::interrupt::status(signal) : 0;
@@ -226,8 +227,8 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
     if (study::find_codes(p.where) == nullptr && folder.has_codes())
         say(stderr,
-            "tactor: warning: {}: other sessions sent codes, this one sends none ([sync] code of the "
-            "array file)\n",
+            "tactor: warning: {}: other sessions sent codes, this one does not ([sync] code of the array "
+            "file)\n",
             o.folder);
     study::runs_in_order runs;
     for (const study::run_sequence& r : p.runs)
@@ -235,7 +236,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     study::session_store store(folder, std::move(runs), study::describe_session(p, o.simulate, o.masker),
                                o.resume);
     const std::string who = fmt::format("{}{}", study::session_name(p.participant, p.definition.session),
-                                        o.simulate ? ": SIMULATED, nobody was asked" : "");
+                                        o.simulate ? ": SIMULATED, no person answered" : "");
     store.check_tables();
     if (store.resumed() && study::finished(p, store)) {
         store.refuse_cut_lines();
@@ -256,10 +257,11 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     if (why.signal != 0) {
         if (!store.begun())
             say(stderr,
-                "tactor: ended by {} before the first trial or questionnaire was done: nothing is written\n",
+                "tactor: ended by {} before the first trial or questionnaire was complete: nothing was "
+                "written\n",
                 why.by);
         else
-            say(stderr, "tactor: ended by {}: what was answered is in {}, and --resume goes on\n", why.by,
+            say(stderr, "tactor: ended by {}: the answers are in {}, and --resume continues\n", why.by,
                 o.folder);
         return session::interrupt::status(why.signal);
     }

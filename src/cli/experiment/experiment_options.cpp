@@ -98,7 +98,7 @@ std::string time_text(const study::run_time& t)
 {
     std::string text = fmt::format("{:.0f} s without the answers", t.total_s);
     if (t.waits != 0)
-        text += fmt::format(", of which {:.0f} s are waits before {}", t.waits_s, counted(t.waits, "trial"));
+        text += fmt::format(", including waits of {:.0f} s before {}", t.waits_s, counted(t.waits, "trial"));
     return text;
 }
 
@@ -113,7 +113,7 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
 {
     command
         .add_option("EXPERIMENT", o.session.definition,
-                    "park2016, or a definition: a file, see tactor-experiment(5)")
+                    "park2016, or the file of a definition, see tactor-experiment(5)")
         ->required()
         ->type_name("");
     add_text(command, "--participant", "CODE", "the participant: letters and digits",
@@ -126,20 +126,20 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     CLI::Option* resume =
         command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
     add_text(command, "--hand", "left|right",
-             "hand that wears the array; a left one has the mirrored motions of the definition",
+             "hand that wears the array; left mirrors the motions that the definition marks",
              [&o](const std::string& t) {
                  o.session.hand = choose("--hand", t, {"left", "right"}) == 0 ? study::hand_kind::left
                                                                               : study::hand_kind::right;
              });
-    command.add_option("--group", o.session.group, "the participant's group, of a definition with groups")
+    command.add_option("--group", o.session.group, "the participant's group, for a definition with groups")
         ->type_name("NAME");
-    add_text(command, "--session", "N", "number of the session, of a definition with several",
+    add_text(command, "--session", "N", "number of the session, for a definition with several",
              [&o](const std::string& t) {
                  o.session.session = static_cast<unsigned>(options::parse_whole("--session", t, {1, 99}, ""));
              });
     add_text(
         command, "--order", "N",
-        "row of the orders, such as that of a replaced participant (default: by the code)",
+        "row of the orders, such as that of a replaced participant (default: from the code)",
         [&o](const std::string& t) { // prepare() knows how many there are
             o.session.row = static_cast<std::size_t>(options::parse_whole("--order", t, {1, 1000000}, ""));
         });
@@ -163,7 +163,7 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1", [&o](const std::string& t) {
         o.simulate = study::parse_simulation(t);
     })->excludes(check);
-    command.add_flag("--print", o.print, "print the definition, to copy and change it")->excludes(resume);
+    command.add_flag("--print", o.print, "print the definition, for you to copy and edit")->excludes(resume);
     command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound")
         ->excludes(resume);
     add_format_option(command, o.format, {"text", "json"}, "format of --dry-run and --power (default text)");
@@ -174,21 +174,22 @@ void check_experiment_options(const settings& s, const experiment_options& o)
 {
     const bool power = !o.power.empty();
     if (o.format == "json" && !o.dry_run && !power)
-        refuse_option("--format", "only --dry-run and --power have one", "leave it out");
+        refuse_option("--format", "only --dry-run and --power use it", "leave it out");
     if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
-        refuse_option(asked, "nothing is played", "leave it out");
+        refuse_option(asked, "a simulated session plays nothing", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (power && !o.folder.empty() && o.parts == 0)
-        refuse_option("-o", "--power prints its result", "--part K/N, or leave it out");
+        refuse_option("-o", "--power prints its result", "add --part K/N, or leave it out");
     if (o.print || o.dry_run || o.check_noise || power)
         return;
     if (o.simulate && !o.keypads.empty())
-        refuse_option("--keypad", "in a simulated session nobody is asked", "leave one of them out");
+        refuse_option("--keypad", "a simulated session has no participant at a display",
+                      "leave one of them out");
     if (o.session.participant.empty())
-        refuse_option("--participant", "it is not said who takes part",
-                      "a code of letters and digits, as P07");
+        refuse_option("--participant", "the participant is missing",
+                      "give a code of letters and digits, as P07");
     if (o.folder.empty())
-        refuse_option("-o", "it is not said where the data go", "the folder of the study");
+        refuse_option("-o", "the folder for the data is missing", "give the folder of the study");
 }
 
 void print_dry_run_json(const study::prepared_experiment& p)
@@ -243,7 +244,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
     for (const study::stimulus& s : p.stimuli.all())
         if (s.weakened_db < 0.0)
             say(stdout,
-                "motion {} by method {}: weakened by {:.2f} dB, so that no tactor exceeds the level\n",
+                "motion {} with method {}: weakened by {:.2f} dB, so that no tactor exceeds the level\n",
                 d.motions[s.motion].name, d.methods[s.method].name, -s.weakened_db);
     for (const study::questionnaire& q : d.outline.questionnaires)
         say(stdout, "questionnaire {}: {}, {}\n", q.name, describe_time(q.when),

@@ -51,7 +51,7 @@ std::vector<std::size_t> participants_in(std::string_view text)
         all.push_back(static_cast<std::size_t>(
             options::parse_whole("--power", std::string(part), allowed_participants, "")));
         if (std::count(all.begin(), all.end(), all.back()) > 1)
-            refuse_option("--power", fmt::format("{} is said twice", all.back()), "each number once");
+            refuse_option("--power", fmt::format("{} occurs twice", all.back()), "name each number once");
     }
     return all;
 }
@@ -84,7 +84,7 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
                       std::size_t studies, const study::simulation& s)
 {
     say(stdout,
-        "{}: {} SIMULATED studies ({}): this says what the design can do where the model is right,\n"
+        "{}: {} SIMULATED studies ({}): they say what the design can find if the model is right,\n"
         "and nothing about people\n",
         e.definition.outline.name, studies, study::to_text(s));
     for (const study::run_power& p : all) {
@@ -143,7 +143,7 @@ std::size_t need_count(const files::json_value& v)
 {
     const double n = v.need_number();
     if (n < 0.0 || n > allowed_studies.high || n != std::floor(n))
-        v.refuse("is no count");
+        v.refuse("is not a count");
     return static_cast<std::size_t>(n);
 }
 
@@ -197,7 +197,7 @@ void check_other_part(const std::string& file, const json& common, const study::
                         fmt::format("it has part {} of {}{}", there.value("part", json()).dump(),
                                     there.value("parts", json()).dump(),
                                     common.contains(key) ? fmt::format(" of other studies ({})", key) : ""),
-                        "another file, or remove it");
+                        "name another file, or remove it");
 }
 
 // Adds the counts of a part to those of the others, which are of no more than so many studies.
@@ -217,7 +217,7 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
                                            {"untested", &at.untested}}) {
                 *sum += need_count(counts[i][key]);
                 if (*sum > studies)
-                    counts[i][key].refuse("makes more than there are studies");
+                    counts[i][key].refuse("exceeds the number of studies");
             }
         }
     }
@@ -275,7 +275,8 @@ std::pair<std::size_t, std::size_t> part_in(std::string_view text)
     const std::size_t parts =
         slash < text.size() ? detail::number_in<std::size_t>(text.substr(slash + 1)).value_or(0) : 0;
     if (part < 1 || part > parts)
-        refuse_option("--part", fmt::format("\"{}\" is no part", text), "K/N with K from 1 to N, as 3/100");
+        refuse_option("--part", fmt::format("\"{}\" is not a part", text),
+                      "give K/N with K from 1 to N, as 3/100");
     return {part, parts};
 }
 
@@ -316,7 +317,7 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
     if (o.parts > o.studies)
         refuse_option("--part",
                       fmt::format("{} parts of {}", o.parts, counted(o.studies, "study", "studies")),
-                      "a study or more in each part");
+                      "give each part at least one study");
     study::power_request asked{*o.simulate,    o.power, o.studies,
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
     const json common = describe_parts(e, o);
@@ -329,7 +330,7 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
     int signal = 0;
     auto powers = simulate(e, asked, signal);
     if (!powers) {
-        say(stderr, "tactor: ended by a signal, before there was a result\n");
+        say(stderr, "tactor: ended by a signal before there was a result\n");
         return session::interrupt::status(signal);
     }
     if (!o.merge.empty())

@@ -237,8 +237,8 @@ void check_live(const settings& s)
     for (const options::option& o : options::all())
         if ((o.where & (options::planning | options::by_client)) != 0 && (o.where & options::live) == 0 &&
             s.gives(o))
-            refuse_option(option_name(o), "a live stroke does not know it",
-                          "its points say when it is where");
+            refuse_option(option_name(o), "a live stroke cannot use it",
+                          "the points of a live stroke have their own times");
     if (s.stream.arm)
         refuse_option("--arm", "a live stroke starts with its first point", "leave it out");
     detail::note_input("/dev/fd/0");
@@ -278,8 +278,7 @@ int play(settings& s, const play_options& o)
     if (s.stream.live)
         check_live(s);
     else if (s.stream.smooth_s)
-        refuse_option("--smooth", "only points that come one by one are smoothed",
-                      "use it with --live, or leave it out");
+        refuse_option("--smooth", "it only smooths live points", "use it with --live, or leave it out");
     check_rounds(s, o);
     if (o.socket)
         return play_remote(s, o);
@@ -381,8 +380,8 @@ int live_lines::descriptor() const noexcept
 void live_lines::warn(const std::string& remark) const
 {
     say(stderr,
-        "tactor: warning: standard input:{}: {} (x y [intensity] is the order; further points of this kind "
-        "are counted)\n",
+        "tactor: warning: standard input:{}: {} (the order is x y [intensity]; further points of this kind "
+        "are only counted)\n",
         line_, remark);
 }
 

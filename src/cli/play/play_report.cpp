@@ -35,31 +35,30 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
     io.one_of("state", ended ? to_string(r.state) : "not played",
               {"finished", "cancelled", "interrupted", "not played"},
               {"finished, cancelled, interrupted or not played"});
-    io("frames", frames, {"how many were played"});
-    io("length_frames", s.length_frames, {"how many it has, in one round"});
-    io.or_null(
-        "rounds", s.rounds,
-        {"how often it was played, with --repeat; null of a live stroke, and where a server repeated it"});
-    io("played_s", seconds(frames, rate), {"how long it was played", detail::from_0});
+    io("frames", frames, {"number of frames that played"});
+    io("length_frames", s.length_frames, {"number of frames that it has, in one round"});
+    io.or_null("rounds", s.rounds,
+               {"number of rounds, with --repeat; null for a live stroke, and if a server repeated it"});
+    io("played_s", seconds(frames, rate), {"time that it played", detail::from_0});
     files::weakening_members(io, s.weakened);
-    io("late_s", r.late_s, {"how much later than asked for it began", detail::from_0});
+    io("late_s", r.late_s, {"delay of its start after the requested time", detail::from_0});
     io.or_null("started_ns", r.started_ns,
-               {"CLOCK_MONOTONIC of its first sample at the DAC; null where it did not sound or the clock of "
-                "the DAC was not known"});
+               {"CLOCK_MONOTONIC of its first sample at the DAC; null if it did not sound or the clock of "
+                "the DAC was unknown"});
     io.object_or_null(
         "delay", r.delay,
-        {"of a live stroke's points: from when each was read until the DAC had the first frame that it "
-         "changed; null where none sounded, and for other strokes"},
+        {"for the points of a live stroke: time from reading a point to the first frame at the DAC that it "
+         "changed; null if no point sounded, and for other strokes"},
         [](auto& inner, const live_delay& d) {
-            constexpr about of_them{"the least, the mean and the most of them"};
+            constexpr about of_them{"smallest, mean and largest delay"};
             inner("points", d.points,
-                  {"how many were counted: not those that a newer one overtook before the next period"});
+                  {"number of points, without those that a newer one replaced before the next period"});
             inner("least_s", d.least_s, of_them);
             inner("mean_s", d.mean_s, of_them);
             inner("most_s", d.most_s, of_them);
         });
     io("held_points", r.held_points,
-       {"points of a live stroke with an intensity above 1, which sounded as 1"});
+       {"points of a live stroke with an intensity above 1, which played as 1"});
     io("outside_points", r.outside_points,
        {"points of a live stroke outside the array, which moved to its edge"});
     io.or_null("reason", detail::omit_empty(r.why), {"why it was interrupted; else null"});
@@ -69,16 +68,16 @@ template <class Io>
 void device_members(Io& io, const stream_setup& d)
 {
     io("pcm", d.name, {"its name"});
-    io("channels", d.channels, {"channels that are played"});
+    io("channels", d.channels, {"channels in use"});
     io("device_channels", std::max(d.device_channels, d.channels),
-       {"channels that the device has; those beyond the played ones are silent"});
+       {"channels of the device; those not in use are silent"});
     io("rate_hz", d.rate, {"sample rate"});
     io("format", d.format, {"of its samples: float, s16, s24 (three bytes), s24-4 (four) or s32"});
     io("period_frames", d.period_frames, {"lengths of period and buffer"});
     io("buffer_frames", d.buffer_frames, {"lengths of period and buffer"});
     io("latency_ms", session::latency_ms(d), {"length of the buffer", detail::from_0});
     io("batch", d.batch, {"whether its position moves by whole periods"});
-    io("has_clock", d.has_clock, {"whether it keeps the time itself, as null and files do not"});
+    io("has_clock", d.has_clock, {"whether it has its own clock, which null and files do not have"});
 }
 
 template <class Io>
@@ -86,34 +85,34 @@ void counter_members(Io& io, const play_report& r)
 {
     constexpr about written{"written to the device"};
     constexpr about faults{"page faults of the audio thread; the latter waited for a disk"};
-    constexpr about pulses{"pulses that were sent on the line of [sync], and those that were not"};
-    constexpr about late{"how late they were against the clock of the DAC"};
+    constexpr about pulses{"pulses sent on the line of [sync], and pulses missed"};
+    constexpr about late{"how late they were relative to the clock of the DAC"};
     const player_stats& s = r.stats;
     io("periods", s.periods, written);
     io("frames", s.frames, written);
     io("xruns", s.xruns, {"how often the device ran dry"});
     io("xrun_s", s.xrun_s,
-       {"for how long in the newest 64, oldest first; 0 where the device cannot tell", detail::from_0});
+       {"lengths of the newest 64, oldest first; 0 if the device cannot tell", detail::from_0});
     io("latest_wakeup_s", s.latest_wakeup_s,
-       {"how much later than a period the audio thread woke up, at most", detail::from_0});
+       {"longest time beyond a period until the audio thread woke up", detail::from_0});
     io("ring_low_water", s.ring_low_water,
-       {"fewest drives that waited for the audio thread while a stroke played"});
+       {"smallest number of drives that waited for the audio thread while a stroke played"});
     io("minor_faults", s.minor_faults, faults);
     io("major_faults", s.major_faults, faults);
     io("limited_frames", s.limited_frames, {"samples that a tactor's max_dbfs changed"});
     io("power_limited_frames", s.power_limited_frames,
-       {"frames in which the power of all tactors together was held down"});
+       {"frames in which the limit on the power of all tactors together acted"});
     io("drives_cut", s.drives_cut,
        {"drives that were cut short, or silent, because their tactor had been driven for too long"});
     io("stalls", s.stalls, {"how often the amplifier was switched off because the player stood still"});
-    io("off_failures", s.off_failures, {"how often its line refused to be switched off"});
-    io("left_on", s.left_on, {"whether the last try failed: it may be on"});
+    io("off_failures", s.off_failures, {"how often its line refused to switch off"});
+    io("left_on", s.left_on, {"whether the last try failed: the amplifier may be on"});
     io("sync_pulses", s.sync_pulses, pulses);
     io("sync_missed", s.sync_missed, pulses);
     io("sync_mean_late_s", s.sync_mean_late_s, late);
     io("sync_worst_late_s", s.sync_worst_late_s, late);
     io("reopened", r.reopened, {"how often a lost device was opened again"});
-    io("realtime", s.realtime, {"whether real-time priority was granted, and not given up"});
+    io("realtime", s.realtime, {"whether the thread got real-time priority, and kept it"});
     io("locked_memory", r.locked_memory, {"whether the memory was locked"});
 }
 
@@ -126,7 +125,7 @@ void report_members(Io& io, const play_report& r)
     io.list(
         "strokes", r.strokes, {"one for each STROKE, in order"},
         [&r](auto& inner, const stroke_outcome& s, std::size_t) { stroke_members(inner, s, r.device.rate); });
-    io.object("counters", {"of the whole run"}, [&r](auto& inner) { counter_members(inner, r); });
+    io.object("counters", {"for the whole run"}, [&r](auto& inner) { counter_members(inner, r); });
 }
 
 std::string xruns_text(const player_stats& s)
@@ -177,7 +176,7 @@ std::string describe(const stroke_outcome& s, unsigned rate)
                             d.mean_s * 1e3, d.least_s * 1e3, d.most_s * 1e3);
     }
     if (s.report && s.report->held_points != 0)
-        text += fmt::format("; {} above intensity 1 sounded as 1", counted(s.report->held_points, "point"));
+        text += fmt::format("; {} above intensity 1 played as 1", counted(s.report->held_points, "point"));
     if (s.report && s.report->outside_points != 0)
         text += fmt::format("; {} outside the array moved to its edge",
                             counted(s.report->outside_points, "point"));

@@ -32,7 +32,7 @@ void spell(json& schema)
 json titled(std::string_view what, const json& object)
 {
     json j = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"title", fmt::format("tactor {}; tactor-json(5) has it, too", what)}};
+              {"title", fmt::format("tactor {}; see also tactor-json(5)", what)}};
     j.update(object);
     spell(j);
     return j;

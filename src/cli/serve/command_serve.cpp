@@ -52,7 +52,7 @@ std::string default_socket(bool others)
     if (others)
         return {};
     throw error(error_kind::bad_input, "socket",
-                "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",
+                "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR names a folder for it",
                 "name one with --socket PATH, or under [serve] in the configuration");
 }
 
@@ -93,7 +93,7 @@ void check_limits(const session::stream_options& asked, const environment& e)
     const auto refuse = [](const char* option, double value, double limit, const char* unit,
                            const char* how) {
         refuse_option(option,
-                      fmt::format("{} {} lifts the limit of {} {} under [limits]", plain_number(value, 4),
+                      fmt::format("{} {} exceeds the limit of {} {} under [limits]", plain_number(value, 4),
                                   unit, plain_number(limit, 4), unit),
                       fmt::format("give that or {}, or change the file", how));
     };
@@ -143,8 +143,8 @@ void provide_descriptors(const server::service_limits& l)
     now.rlim_cur = std::min(wanted, now.rlim_max);
     if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
         say(stderr,
-            "tactor: warning: too few descriptors: {} may be open, and {} clients need {}: later ones are "
-            "refused (raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            "tactor: warning: too few descriptors: {} may be open, but {} clients need {}: the server will "
+            "refuse later ones (raise ulimit -n, or LimitNOFILE= of the unit)\n",
             now.rlim_cur, l.max_clients, wanted);
 }
 
@@ -195,11 +195,11 @@ void warn_of_access(const server::endpoints& at, const std::string& token)
     const bool has_peers = !at.osc_peers.empty();
     if (!at.osc_address.empty() && !has_peers && !net::is_loopback(at.osc.get()))
         throw error(error_kind::bad_input, "osc " + at.osc_address,
-                    "it is reached from other machines, and nothing says which are heard",
-                    "say osc_peers under [serve] in the configuration, or listen on 127.0.0.1");
+                    "other machines can reach it, and osc_peers lists none",
+                    "set osc_peers under [serve] in the configuration, or listen on 127.0.0.1");
     if (!at.osc_address.empty())
-        say(stderr, "tactor: warning: osc {}: every user of this machine may draw there{}\n", at.osc_address,
-            has_peers ? ", and whoever sends in the name of osc_peers" : "");
+        say(stderr, "tactor: warning: osc {}: every user of this machine can draw through it{}\n",
+            at.osc_address, has_peers ? ", and anybody who sends with an address in osc_peers" : "");
     constexpr std::size_t least_token = 16;
     for (const auto& [kind, address, fd] :
          {std::tuple("tcp", &at.tcp_address, &at.tcp), std::tuple("http", &at.http_address, &at.http)}) {
@@ -208,18 +208,18 @@ void warn_of_access(const server::endpoints& at, const std::string& token)
         const bool beyond = !net::is_loopback(fd->get());
         if (!token.empty() && beyond && token.size() < least_token)
             throw error(error_kind::bad_input, fmt::format("{} {}", kind, *address),
-                        fmt::format("it is reached from other machines, and the token has {}",
+                        fmt::format("other machines can reach it, and the token has only {}",
                                     counted(token.size(), "character")),
                         fmt::format("put at least {} characters into token_file", least_token));
         if (!token.empty())
             continue;
         if (beyond)
             throw error(error_kind::bad_input, fmt::format("{} {}", kind, *address),
-                        "it is reached from other machines, and nobody needs a token",
-                        "say token_file under [serve] in the configuration, or listen on 127.0.0.1");
+                        "other machines can reach it, and no token is set",
+                        "set token_file under [serve] in the configuration, or listen on 127.0.0.1");
         say(stderr,
-            "tactor: warning: {} {}: every user of this machine may draw there (token_file under [serve] "
-            "asks for a token)\n",
+            "tactor: warning: {} {}: every user of this machine can draw through it (set token_file under "
+            "[serve] to require a token)\n",
             kind, *address);
     }
 }
@@ -245,7 +245,7 @@ void print_endpoints(const server::endpoints& at, const session::ceiling& highes
     if (std::fflush(stdout) == 0)
         return;
     // A program that waits for these lines does not get them; clients are served all the same.
-    say(stderr, "tactor: warning: standard output: {}: where it listens could not be said there\n",
+    say(stderr, "tactor: warning: standard output: {}: the addresses could not be printed there\n",
         std::strerror(errno));
     std::clearerr(stdout);
 }
@@ -339,10 +339,11 @@ int run_serve(command_line& line)
     c.add_option("--socket", o.socket,
                  "Unix socket (default: tactor.sock in RUNTIME_DIRECTORY, else in XDG_RUNTIME_DIR)")
         ->type_name("PATH");
-    c.add_option("--tcp", o.tcp, "also listen at this TCP port; 0 takes a free one")
+    c.add_option("--tcp", o.tcp, "also listen on this TCP port; 0 selects a free one")
         ->type_name("[HOST:]PORT");
-    c.add_option("--osc", o.osc, "take OSC at this UDP port; 0 takes a free one")->type_name("[HOST:]PORT");
-    c.add_option("--http", o.http, "serve a page to draw on, and WebSockets, at this port")
+    c.add_option("--osc", o.osc, "receive OSC on this UDP port; 0 selects a free one")
+        ->type_name("[HOST:]PORT");
+    c.add_option("--http", o.http, "serve a page to draw on, and WebSockets, on this port")
         ->type_name("[HOST:]PORT");
     add_text(c, "--idle-stop", "S", "stop the stream after this time without a stroke (default: never)",
              [&o](const std::string& t) {
@@ -355,8 +356,7 @@ int run_serve(command_line& line)
                      options::parse_number("--max-level-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
              });
     settings& s = add_options(line, options::on_serve);
-    add_format_option(c, format, {"text", "json"},
-                      "format of the lines that say where it listens (default text)");
+    add_format_option(c, format, {"text", "json"}, "format of the printed addresses (default text)");
     c.footer("tactor serve --http 4003 -D null\n"
              "tactor serve --http 4003 --max-level-dbfs -40 -D hw:CARD=Tactor\n"
              "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");

@@ -36,7 +36,7 @@ void refuse_owners(const settings& s)
 {
     for (const options::option& o : options::all())
         if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
-            refuse_option(option_name(o), "it is not for strokes that a server plays",
+            refuse_option(option_name(o), "it has no effect on strokes that a server plays",
                           "leave it out with --socket");
 }
 
@@ -74,8 +74,8 @@ net::json make_params(const std::string& argument)
     const detail::whole_text text = piped ? detail::read_text(STDIN_FILENO, shown_name(argument), most_bytes)
                                           : detail::read_text_file(argument, most_bytes);
     if (files::holds_plans(text))
-        throw error(error_kind::bad_input, shown_name(argument), "it is a plan, which a server does not take",
-                    "give the stroke");
+        throw error(error_kind::bad_input, shown_name(argument),
+                    "it is a plan, which a server does not accept", "give the stroke");
     return {{std::string(detail::find_stroke_format(text, piped ? "" : argument)), std::string_view(text)}};
 }
 

@@ -104,8 +104,8 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
             code = failed;
     }
     if (socket && code == ENOENT && is_address(*socket))
-        throw error(error_kind::not_available, "server at " + *socket, "it is no path of a Unix socket",
-                    "--socket takes the path that tactor serve prints; other programs use addresses, see "
+        throw error(error_kind::not_available, "server at " + *socket, "it is not the path of a Unix socket",
+                    "give --socket the path that tactor serve prints; other programs use addresses, see "
                     "tactor-protocol(7)");
     throw error(error_kind::not_available, fmt::format("server at {}", fmt::join(places, ", ")),
                 code == ENOENT ? "there is none" : std::strerror(code),
@@ -123,7 +123,8 @@ void rpc_client::send(const net::json& message)
         if (n < 0 && (errno == EINTR || errno == EAGAIN))
             continue;
         if (n < 0)
-            throw error(error_kind::runtime, "server", "it is gone", "see what it says");
+            throw error(error_kind::runtime, "server", "the connection ended",
+                        "see the messages of the server");
         sent += static_cast<std::size_t>(n);
     }
 }
@@ -162,7 +163,7 @@ void rpc_client::receive()
     if (n < 0 && (errno == EINTR || errno == EAGAIN))
         return;
     if (n <= 0)
-        throw error(error_kind::runtime, "server", "it is gone", "see what it says");
+        throw error(error_kind::runtime, "server", "the connection ended", "see the messages of the server");
     buffer_.append(bytes, static_cast<std::size_t>(n));
 }
 
@@ -174,7 +175,8 @@ std::optional<net::json> rpc_client::message()
     net::json m = net::json::parse(buffer_.substr(0, end), nullptr, false);
     buffer_.erase(0, end + 1);
     if (!m.is_object())
-        throw error(error_kind::runtime, "server", "it does not speak this protocol", "is it tactor serve?");
+        throw error(error_kind::runtime, "server", "it does not use this protocol",
+                    "name the socket of a tactor serve");
     return m;
 }
 

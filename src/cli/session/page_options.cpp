@@ -27,7 +27,7 @@ void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
 {
     command
         .add_option("--keypad", into,
-                    "also take answers from this input device, and keep them from other programs")
+                    "also accept answers from this input device, and hide them from other programs")
         ->type_name("DEVICE")
         ->expected(1)
         ->take_all();
@@ -37,7 +37,7 @@ CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::
 {
     return add_text(command, "--masker", "PCM", help, [&into](const std::string& t) {
         if (t.empty())
-            refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
+            refuse_option("--masker", "no device is named", "name one, as hw:CARD=Phones");
         into = t;
     });
 }
@@ -45,9 +45,9 @@ CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::
 void check_page_options(const page_options& o, bool simulated)
 {
     if (o.at && !o.on_page.value_or(true))
-        refuse_option("--page", "the participant sees the terminal", "leave out --display, or --page");
+        refuse_option("--page", "the participant uses the terminal", "leave out --display, or --page");
     if (simulated && o.shown())
-        refuse_option(o.at ? "--page" : "--display", "in a simulated session nobody looks at a page",
+        refuse_option(o.at ? "--page" : "--display", "a simulated session has no page",
                       "leave one of them out");
 }
 
@@ -60,8 +60,8 @@ net::owned_fd open_page(const page_options& o)
     if (!net::is_loopback(fd.get()))
         refuse_option(
             "--page",
-            fmt::format("{} is not of this machine alone: whoever is on the network could answer", at.host),
-            "[127.0.0.1:]PORT, and ssh -L PORT:127.0.0.1:PORT from the participant's machine");
+            fmt::format("other machines can reach {}: anybody on the network could answer", at.host),
+            "use [127.0.0.1:]PORT, and ssh -L PORT:127.0.0.1:PORT from the participant's machine");
     say(stderr, "tactor: the participant's page is at http://{}/\n", net::local_address(fd.get()));
     return fd;
 }

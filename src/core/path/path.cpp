@@ -330,8 +330,7 @@ inline namespace v0 {
 path path::polyline(std::span<const point> points)
 {
     if (points.empty())
-        throw error(error_kind::bad_input, "polyline", "has no point",
-                    "give where it starts and where it ends")
+        throw error(error_kind::bad_input, "polyline", "has no point", "give its start and its end")
             .with_field("points");
     detail::outline o;
     o.vertices.reserve(points.size());
@@ -345,7 +344,7 @@ path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg
 {
     if (!(radius_mm > 0.0 && radius_mm <= detail::max_mm))
         throw error(error_kind::bad_input, "arc", fmt::format("radius {} mm", radius_mm),
-                    fmt::format("it is more than 0 and at most {:g} mm", detail::max_mm))
+                    fmt::format("give more than 0 and at most {:g} mm", detail::max_mm))
             .with_field("radius_mm");
     if (!(std::abs(from_deg) <= 1e6))
         throw error(error_kind::bad_input, "arc", fmt::format("first angle {} degrees", from_deg),
@@ -353,7 +352,7 @@ path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg
             .with_field("from_deg");
     if (!(std::abs(sweep_deg) <= 360.0 && sweep_deg != 0.0))
         throw error(error_kind::bad_input, "arc", fmt::format("sweep of {} degrees", sweep_deg),
-                    "it is between -360 and 360 degrees and not 0")
+                    "give -360 to 360 degrees, not 0")
             .with_field("sweep_deg");
     constexpr double radian = 3.14159265358979323846 / 180.0;
     const double from = std::remainder(from_deg, 360.0);

@@ -192,7 +192,7 @@ private:
     point quadratic_handle_;
 };
 
-constexpr const char* starts = "it starts with M x y";
+constexpr const char* starts = "start it with M x y";
 
 // Arguments of the commands: n is a number, f a flag.
 constexpr std::pair<char, std::string_view> commands[] = {
@@ -212,7 +212,7 @@ public:
         if (at_ == data_.size())
             fail("is empty", starts);
         if (upper(data_[at_]) != 'M')
-            fail(fmt::format("{} where a path starts", found()), starts);
+            fail(fmt::format("{} at the start of a path", found()), starts);
         while (at_ < data_.size()) {
             command();
             skip_blanks(data_, at_);
@@ -252,7 +252,7 @@ private:
             const bool comma = separator();
             if (at_ == data_.size() || !begins_number(data_[at_])) {
                 if (comma)
-                    fail(fmt::format("{} where a number is wanted", found()), "a number follows each comma");
+                    fail(fmt::format("{} instead of a number", found()), "a number follows each comma");
                 return;
             }
         }
@@ -272,7 +272,7 @@ private:
     double flag(char c)
     {
         if (at_ == data_.size() || (data_[at_] != '0' && data_[at_] != '1'))
-            fail(fmt::format("{} where {} wants a flag", found(), c), "flags are 0 or 1");
+            fail(fmt::format("{} instead of a flag for {}", found(), c), "flags are 0 or 1");
         return data_[at_++] == '1' ? 1.0 : 0.0;
     }
 
@@ -281,11 +281,11 @@ private:
         const std::size_t begin = at_;
         const auto value = scan_number(data_, at_);
         if (!value)
-            fail(fmt::format("{} where {} wants a number", found(), c),
+            fail(fmt::format("{} instead of a number for {}", found(), c),
                  fmt::format("{} takes {}", c, counted(count, "number")));
         if (!(std::abs(*value) <= limit_)) {
             at_ = begin;
-            fail(fmt::format("{:g} is beyond {:g}", *value, limit_), "is it the right unit?");
+            fail(fmt::format("{:g} is beyond {:g}", *value, limit_), "check the unit");
         }
         return *value;
     }

@@ -52,19 +52,18 @@ void recorded_points::check(const timed_point& p) const
 {
     const auto within = [this](recorded value, std::string_view name, double v, double most) {
         if (!(std::abs(v) <= most))
-            refuse(value, fmt::format("{} {}", name, v),
-                   fmt::format("it is between {:g} and {:g}", -most, most));
+            refuse(value, fmt::format("{} {}", name, v), fmt::format("give {:g} to {:g}", -most, most));
     };
     within(recorded::t_s, "t_s", p.t_s, farthest_time_s);
     within(recorded::x_mm, "x_mm", p.position.x_mm, max_mm);
     within(recorded::y_mm, "y_mm", p.position.y_mm, max_mm);
     if (!(p.intensity >= 0.0))
-        refuse(recorded::intensity, fmt::format("intensity {}", p.intensity), "it is 0 or more");
+        refuse(recorded::intensity, fmt::format("intensity {}", p.intensity), "give 0 or more");
     if (p.intensity > intensity_max_)
         refuse(recorded::intensity,
-               fmt::format("intensity {} is above {:g}, which means the level asked for", p.intensity,
+               fmt::format("intensity {} is above {:g}, which means the requested level", p.intensity,
                            intensity_max_),
-               "say which value means 1: {intensity_max=100} for per cent, {intensity_max=127} for MIDI, "
+               "set the value that means 1: {intensity_max=100} for per cent, {intensity_max=127} for MIDI, "
                "{intensity_max=255} for 8 bits");
 }
 
@@ -76,7 +75,7 @@ double recorded_points::since_first(double t_s)
     // Two times far from zero may have the same difference.
     if (!points_.empty() && t < points_.back().t_s)
         refuse(recorded::t_s,
-               fmt::format("time {} s is before {} s of the {} before", t_s, last_time_s_, unit_),
+               fmt::format("time {} s is before {} s of the previous {}", t_s, last_time_s_, unit_),
                "times ascend");
     if (t > longest_stroke_s)
         refuse(recorded::t_s, fmt::format("time {} s is {} s after the first {}", t_s, t, unit_),
@@ -119,23 +118,23 @@ void recorded_points::append(const timed_point& p)
     }
     if (points_.size() == most_points)
         refuse(recorded::row, fmt::format("more than {} points", most_points),
-               "thin them out, or cut it in two");
+               "leave some out, or split the recording");
     points_.push_back(p);
 }
 
 void recorded_points::warn()
 {
     if (gaps_.count != 0)
-        warnings_.push_back(fmt::format("{}: no place (nan) in {}: the touch is lifted there", gaps_.first,
+        warnings_.push_back(fmt::format("{}: no place (nan) in {}: the finger is lifted there", gaps_.first,
                                         gaps_.count == 1
                                             ? fmt::format("this {}", unit_)
                                             : fmt::format("{} from here on", counted(gaps_.count, unit_))));
     if (repeated_.count == 1)
-        warnings_.push_back(fmt::format("{}: repeats the time of the {} before, which does not count",
+        warnings_.push_back(fmt::format("{}: has the same time as the previous {}, which does not count",
                                         repeated_.first, unit_));
     if (repeated_.count > 1)
-        warnings_.push_back(fmt::format("{}: repeats the time of the {} before, as {} {}s do in all; the "
-                                        "last of equal times counts",
+        warnings_.push_back(fmt::format("{}: has the same time as the previous {}, and so do {} {}s in all; "
+                                        "the last of equal times counts",
                                         repeated_.first, unit_, repeated_.count, unit_));
 }
 
@@ -144,8 +143,8 @@ std::vector<timed_point> recorded_points::take()
     if (points_.size() < 2)
         refuse(recorded::row,
                fmt::format("{} of at least 2 points{}", points_.size(),
-                           repeated_.count != 0 ? " with times of their own" : ""),
-               "give where the stroke starts and where it ends");
+                           repeated_.count != 0 ? " with different times" : ""),
+               "give the start and the end of the stroke");
     warn();
     return std::move(points_);
 }

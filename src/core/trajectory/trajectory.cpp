@@ -54,14 +54,14 @@ void check_duration(double duration_s)
 {
     if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
         throw bad_field("duration_s", fmt::format("{:g} s", duration_s),
-                        fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
+                        fmt::format("give more than 0 and at most {:g} s", longest_stroke_s));
 }
 
 void check_intensity(std::string_view what, double intensity)
 {
     if (!(intensity >= 0.0 && intensity <= max_intensity))
         throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
-                    fmt::format("it is a factor from 0 to {:g}", max_intensity))
+                    fmt::format("give a factor from 0 to {:g}", max_intensity))
             .with_field("intensity");
 }
 
@@ -132,15 +132,14 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
     };
     if (!(std::abs(p.t_s) <= detail::longest_stroke_s))
         refuse(fmt::format("time {:g} s", p.t_s),
-               fmt::format("a stroke takes at most {:g} s", detail::longest_stroke_s));
+               fmt::format("a stroke lasts at most {:g} s", detail::longest_stroke_s));
     for (const double v : {p.position.x_mm, p.position.y_mm}) {
         if (!(std::abs(v) <= detail::max_mm))
-            refuse(fmt::format("coordinate {:g} mm", v),
-                   fmt::format("it is at most {:g} mm", detail::max_mm));
+            refuse(fmt::format("coordinate {:g} mm", v), fmt::format("give at most {:g} mm", detail::max_mm));
     }
     check_intensity(fmt::format("point {}", i + 1), p.intensity);
     if (i == 0 && p.t_s != 0.0)
-        refuse(fmt::format("time {} s", p.t_s), "the first time is 0");
+        refuse(fmt::format("time {} s", p.t_s), "make the first time 0");
     if (i > 0 && !(p.t_s > points[i - 1].t_s))
         refuse(fmt::format("time {} s is not after {} s", p.t_s, points[i - 1].t_s), "times ascend");
 }
@@ -205,8 +204,9 @@ double moving_time_s(const movement& m, double length_mm)
     if (!(rests < *m.duration_s))
         throw detail::bad_field(
             "pauses",
-            fmt::format("{:g} s in all leave nothing of the {:g} s of the stroke", rests, *m.duration_s),
-            "the duration is that of all, with its pauses");
+            fmt::format("{:g} s in all leave no time for moving in the {:g} s of the stroke", rests,
+                        *m.duration_s),
+            "the duration includes the pauses");
     return *m.duration_s - rests;
 }
 
@@ -335,7 +335,7 @@ trajectory trajectory::timed(std::vector<timed_point> points)
 {
     if (points.size() < 2)
         throw error(error_kind::bad_input, "timed points", fmt::format("{} of at least 2", points.size()),
-                    "give where it starts and where it ends")
+                    "give its start and its end")
             .with_field("points");
     double length = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -358,7 +358,7 @@ trajectory trajectory::with_speed(double speed_mm_s) const
 {
     const double length = length_mm();
     if (!(speed_mm_s > 0.0 && std::isfinite(speed_mm_s)))
-        throw detail::bad_field("speed_mm_s", fmt::format("{:g} mm/s", speed_mm_s), "it is more than 0");
+        throw detail::bad_field("speed_mm_s", fmt::format("{:g} mm/s", speed_mm_s), "give more than 0");
     if (!(length > 0.0))
         return *this;
     const double moving = length / speed_mm_s;

@@ -532,9 +532,9 @@ std::string text(reason_kind r, int code)
     case reason_kind::lost:
         switch (-code) {
         case ETIMEDOUT:
-            return "the device does not move any more";
+            return "the device stopped";
         case EPIPE:
-            return "the device was given up: one xrun after the other";
+            return "the device was closed after too many xruns in a row";
         default:
             return "the device is gone";
         }
@@ -549,7 +549,7 @@ std::string text(reason_kind r, int code)
     case reason_kind::starved:
         return "no more points came";
     case reason_kind::too_long:
-        return "it has lasted as long as it may";
+        return "it reached the longest allowed duration";
     case reason_kind::muted:
         return "the amplifier was off";
     case reason_kind::amplifier:

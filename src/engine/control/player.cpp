@@ -125,7 +125,7 @@ float to_gain(double level_db)
 {
     if (!(level_db >= player::least_level_db && level_db <= 0.0))
         throw error(error_kind::bad_input, "level_db", fmt::format("it is {}", level_db),
-                    fmt::format("{} to 0 dB", player::least_level_db));
+                    fmt::format("give {} to 0 dB", player::least_level_db));
     return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
 
@@ -183,7 +183,8 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
     if (limit == 0.0)
         throw error(
             error_kind::bad_input, "stroke",
-            fmt::format("it drives tactor {} on channel {}, where the player's array has none", i, channel),
+            fmt::format("it drives tactor {} on channel {}, but the player's array has no tactor there", i,
+                        channel),
             replan);
     if (s.asked[i] > limit * rounding)
         throw error(error_kind::bad_input, "stroke",
@@ -205,8 +206,8 @@ const array& checked(const array& a, const stream_setup& s)
                         fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
     if (const std::string lost = lost_tactor(a, s.wiring); !lost.empty())
         throw error(error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
-                    "give each channel one of the device's, at 1, where the PCM is defined (ttable, "
-                    "bindings), or play on the card itself, hw:CARD=NAME");
+                    "in the definition of the PCM (ttable, bindings) lead each channel to its own channel of "
+                    "the device, at 1, or play on the card itself, hw:CARD=NAME");
     return a;
 }
 
@@ -228,10 +229,10 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
         if (made.asked[i] > 0.0)
             check_tactor(made, i, limits);
     if (made.marker && limits[*made.marker] > 0.0)
-        throw error(
-            error_kind::bad_input, "stroke",
-            fmt::format("its marker is on channel {}, where the player's array has a tactor", *made.marker),
-            "choose a spare channel for it")
+        throw error(error_kind::bad_input, "stroke",
+                    fmt::format("its marker is on channel {}, but the player's array has a tactor there",
+                                *made.marker),
+                    "choose a spare channel for it")
             .with_field("marker_channel");
 }
 
@@ -314,7 +315,7 @@ live_stroke player::begin(const live_options& o)
 bool player::on_end(stroke_id id, std::function<void(const stroke_report&)> done)
 {
     if (!done)
-        throw error(error_kind::bad_input, "on_end", "there is nothing to call", "give a function");
+        throw error(error_kind::bad_input, "on_end", "there is no function to call", "give a function");
     std::unique_lock lock(impl_->mutex);
     const auto found = impl_->find_report(id);
     if (found == impl_->ended.end()) {

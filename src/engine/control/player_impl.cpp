@@ -388,12 +388,12 @@ std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w)
         if (const std::string odd = remark(gains_at(w, a.tactors[i])); !odd.empty())
             all.push_back(fmt::format("{}, {}", place(a, i), odd));
     if (w.most_gain > 1.0 + rounding)
-        all.push_back(fmt::format("ALSA's configuration raises samples by up to {} on the way to the device, "
-                                  "and clips them there at full scale",
+        all.push_back(fmt::format("ALSA's configuration amplifies samples by up to {} on the way to the "
+                                  "device, and clips them there at full scale",
                                   gain_text(w.most_gain)));
     if (!w.level_by.empty())
-        all.push_back(
-            fmt::format("a mixer control sets the level of all tactors: {} is between", w.level_by));
+        all.push_back(fmt::format(
+            "a mixer control sets the level of all tactors: {} is between player and device", w.level_by));
     return all;
 }
 

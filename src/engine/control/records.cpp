@@ -92,7 +92,7 @@ place find_folder()
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
         return {.why = fmt::format("{}: {}", folder, describe(errno))};
     if (!is_own(folder, S_IWGRP | S_IWOTH))
-        return {.why = fmt::format("{} is not a folder of this user alone", folder)};
+        return {.why = fmt::format("{} must be a folder that only this user can write to", folder)};
     return {.folder = folder};
 }
 
@@ -225,12 +225,12 @@ std::string text(const fault& f)
 {
     return f.why + (f.what == fault_kind::not_kept
                         ? ": the next run will not know for how long the array was driven"
-                        : ": each tactor counts as driven for as long as it may be");
+                        : ": each tactor counts as driven for as long as allowed");
 }
 
 fault not_read(const std::string& path)
 {
-    return {fault_kind::not_read, path + " cannot be read as a whole"};
+    return {fault_kind::not_read, path + " cannot be read completely"};
 }
 
 fault not_written(const std::string& path, int code)
@@ -558,23 +558,23 @@ void stream_log::look_at_stream(const stream_status& s)
     }
     if (rose(link_.count.realtime_given_up.load(std::memory_order_relaxed), given_up_))
         add(log_kind::warning, "the audio thread gave up its real-time priority: it had worked for some 0.1 "
-                               "s without a pause (longer periods, or fewer strokes at once, need less)");
+                               "s without a pause (use longer periods, or fewer strokes at once)");
     if (rose(s.stage == stream_stage::suspended, asleep_))
         add(log_kind::warning, "the system sleeps: the stream stands still");
     if (s.running && s.epoch > epoch_) {
         epoch_ = s.epoch;
-        add(log_kind::info, fmt::format("the stream runs again, started {} times by now", s.epoch));
+        add(log_kind::info, fmt::format("the stream runs again, started {} times so far", s.epoch));
     }
     const amplifier_link& a = link_.amplifier;
     if (grown(link_.count.stalls, stalls_) != 0)
         add(log_kind::warning, "the audio thread, or the whole process, stood still: the amplifier goes off");
     if (const std::uint32_t mutes = a.mutes.load(std::memory_order_acquire);
         std::exchange(mutes_, mutes) != mutes)
-        add(log_kind::warning, "the amplifier was muted: what sounded is not felt");
+        add(log_kind::warning, "the amplifier was muted: what played was not felt");
     if (grown(link_.count.off_failures, off_failures_) != 0)
-        add(log_kind::error, "the amplifier's line refuses to be switched off: it is tried again");
+        add(log_kind::error, "the amplifier's line refuses to switch off: trying again");
     if (rose(a.stuck.load(std::memory_order_seq_cst), stuck_))
-        add(log_kind::error, "the amplifier may be on: its line was given up");
+        add(log_kind::error, "the amplifier may be on: its line still refuses, and no further try follows");
     if (rose(a.ready.load(std::memory_order_acquire) && s.running, ready_))
         add(log_kind::info, "strokes may sound");
 }
@@ -587,10 +587,10 @@ void stream_log::look_at_limits()
                         counted(n, "drive"), seconds_text(limits_.max_drive_s),
                         seconds_text(limits_.window_s)));
     if (const std::uint64_t n = grown(link_.count.power_limited, power_limited_); n != 0)
-        add(log_kind::warning, fmt::format("the power of all tactors was held at {} dBFS in {}",
+        add(log_kind::warning, fmt::format("the limit reduced the power of all tactors to {} dBFS in {}",
                                            plain_number(limits_.power_dbfs), counted(n, "frame")));
     if (const std::uint64_t n = grown(link_.count.limited, limited_); n != 0)
-        add(log_kind::warning, fmt::format("{} held at a channel's own limit", counted(n, "sample")));
+        add(log_kind::warning, fmt::format("{} reduced to a channel's own limit", counted(n, "sample")));
 }
 
 void stream_log::look_at_end(const stroke_report& r) noexcept
@@ -601,7 +601,7 @@ void stream_log::look_at_end(const stroke_report& r) noexcept
         if (r.held_points != 0)
             add(log_kind::warning,
                 fmt::format(
-                    "live stroke {}: {} above intensity 1 sounded as 1: the level asked for is the ceiling",
+                    "live stroke {}: {} above intensity 1 played as 1: the requested level is the ceiling",
                     r.id.number, counted(r.held_points, "point")));
         if (r.outside_points != 0)
             add(log_kind::warning, fmt::format("live stroke {}: {} outside the array moved to its edge",

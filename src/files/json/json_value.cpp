@@ -35,12 +35,12 @@ std::string range_text(const detail::bounds& range)
 ordered_json read_object(const std::string& text, const std::string& file)
 {
     std::size_t byte = 0;
-    const char* why = "it is no JSON";
+    const char* why = "it is not JSON";
     try {
         ordered_json j = ordered_json::parse(text);
         if (j.is_object())
             return j;
-        why = "it is no object";
+        why = "it is not an object";
     } catch (const ordered_json::parse_error& e) {
         byte = std::min(e.byte, text.size());
     } catch (const ordered_json::exception&) { // a number that no double holds
@@ -48,7 +48,7 @@ ordered_json read_object(const std::string& text, const std::string& file)
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
     const auto line = static_cast<unsigned>(1 + std::count(text.begin(), end, '\n'));
     throw error(error_kind::bad_input, source_place{file, line}, why,
-                "it was changed, or not written to its end");
+                "write it again: it was changed, or its end is missing");
 }
 
 void json_value::refuse(std::string_view why, std::string_view hint) const
@@ -66,7 +66,7 @@ json_value json_value::operator[](const std::string& key) const
     if (!there())
         return {nullptr, *file_, hint_, std::move(place)};
     if (!value_->is_object())
-        refuse("is no object");
+        refuse("is not an object");
     const auto at = value_->find(key);
     return {at == value_->end() ? nullptr : &*at, *file_, hint_, std::move(place)};
 }
@@ -84,7 +84,7 @@ std::vector<json_value> json_value::list() const
     if (!there())
         return all;
     if (!value_->is_array())
-        refuse("is no list");
+        refuse("is not a list");
     for (const ordered_json& one : *value_)
         all.push_back({&one, *file_, hint_, fmt::format("{}[{}]", place_, all.size())});
     return all;
@@ -102,12 +102,12 @@ std::optional<T> json_value::get(bool (ordered_json::*is_one)() const noexcept, 
 
 std::optional<double> json_value::number() const
 {
-    return get<double>(&ordered_json::is_number, "is no number");
+    return get<double>(&ordered_json::is_number, "is not a number");
 }
 
 std::optional<std::string> json_value::text() const
 {
-    return get<std::string>(&ordered_json::is_string, "is no text");
+    return get<std::string>(&ordered_json::is_string, "is not a text");
 }
 
 std::optional<bool> json_value::truth() const
@@ -136,7 +136,7 @@ void json_value::need_members() const
     if (!need_member().there())
         refuse("is null");
     if (!value_->is_object())
-        refuse("is no object");
+        refuse("is not an object");
 }
 
 std::vector<double> json_value::need_numbers() const
@@ -173,7 +173,7 @@ void json_reader::finish() const
     for (const std::string& key : object_.keys())
         if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
             const std::string_view near = detail::nearest_name(key, known_);
-            object_[key].refuse("is no field of it", near.empty() ? "" : detail::meant_name(key, near));
+            object_[key].refuse("is an unknown field", near.empty() ? "" : detail::meant_name(key, near));
         }
 }
 
@@ -192,7 +192,7 @@ double json_reader::whole(const json_value& from, const detail::bounds& range, b
     const double high = std::min(range.high, most);
     const double v = from.need_number();
     if (!(v >= low && v <= high) || v != std::floor(v))
-        from.refuse(fmt::format("is no whole number from {} to {}", low, high));
+        from.refuse(fmt::format("is not a whole number from {} to {}", low, high));
     return v;
 }
 

@@ -67,7 +67,7 @@ public:
         const std::string name = need_text();
         const std::optional<Kind> k = detail::find_kind<Kind>(name);
         if (!k)
-            refuse("is \"" + name + "\", which is not known");
+            refuse("is \"" + name + "\", which is unknown");
         return *k;
     }
     std::vector<json_value> need_list() const;
@@ -129,7 +129,7 @@ public:
     void constant(const char* name, std::string_view text)
     {
         if (const json_value at = member(name); at.need_text() != text)
-            at.refuse("is no \"" + std::string(text) + '"');
+            at.refuse("is not a \"" + std::string(text) + '"');
     }
     template <class Make>
     void fact(const char* name, const Make&, const detail::about& what)
@@ -171,7 +171,7 @@ public:
     void exactly_one(const char* a, const char* b) const
     {
         if (object_[a].there() == object_[b].there())
-            object_.refuse(std::string("has not exactly one of ") + a + " and " + b);
+            object_.refuse(std::string("must have exactly one of ") + a + " and " + b);
     }
     void new_line() const noexcept {}
 
@@ -239,7 +239,7 @@ private:
     {
         const std::vector<json_value> given = from.need_list();
         if (given.size() != Size)
-            from.refuse("is no list of " + std::to_string(Size) + " numbers");
+            from.refuse("is not a list of " + std::to_string(Size) + " numbers");
         for (std::size_t i = 0; i < Size; ++i)
             take(given[i], all[i], what);
     }

@@ -59,7 +59,8 @@ std::optional<waveform> find_beside(const std::string& file, const plan_sound& s
 waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings_kind recordings)
 {
     if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
-        stroke["waveform"].refuse(fmt::format("is a file, {}, and this text is none", *s.waveform));
+        stroke["waveform"].refuse(
+            fmt::format("is the file {}, but this is a text without a place", *s.waveform));
     const auto found = find_beside(stroke.file(), s);
     try {
         return found ? *found : parse_waveform(*s.waveform);
@@ -82,7 +83,7 @@ void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recording
     p.wave.texture = s.texture.value_or(p.wave.texture);
     p.wave.texture_mm = s.texture_mm.value_or(p.wave.texture_mm);
     if (s.am_hz.has_value() != s.am_depth.has_value())
-        stroke["am_hz"].refuse("goes with am_depth");
+        stroke["am_hz"].refuse("needs am_depth");
     if (s.am_hz)
         p.am = {*s.am_hz, *s.am_depth};
     p.course = s.course.value_or(p.course);
@@ -112,7 +113,7 @@ void check_bursts(const json_value& f, const array& a, const plan& p, const std:
         const burst& b = bursts[i];
         const auto refuse = [&](const std::string& why) { f[fmt::format("bursts[{}]", i)].refuse(why); };
         if (b.onset_s < latest)
-            refuse("begins before the one before it");
+            refuse("begins before the previous one");
         latest = b.onset_s;
         for (std::size_t k = 0; k < b.drives.size(); ++k) {
             if (b.drives[k].tactor >= a.tactors.size())
@@ -149,7 +150,7 @@ void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> burst
     if (!parts.is_sampled)
         return;
     if (parts.step_s != continuous_step_s)
-        f["continuous"]["step_s"].refuse(fmt::format("only {} s can be played", continuous_step_s));
+        f["continuous"]["step_s"].refuse(fmt::format("use {} s", continuous_step_s));
     check_samples(f, parts.tactors, p, samples);
     try {
         p.curve = curve(p.stroke_duration_s, std::move(samples));
@@ -187,7 +188,7 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
     if (p.curve)
         p.curve->sample(p.curve->size() - 1, last);
     if (way.empty())
-        f["bursts"].refuse("there are none");
+        f["bursts"].refuse("it has none");
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
     stroke s{.name = parts.name};
     s.motion = trajectory::timed(std::move(way));
@@ -221,7 +222,7 @@ public:
     plan_file result() &&
     {
         if (read_.made.plans.empty())
-            throw error(error_kind::bad_input, file_, "there is no plan in it", how_to_make);
+            throw error(error_kind::bad_input, file_, "it has no plan", how_to_make);
         return std::move(read_);
     }
 
@@ -273,7 +274,7 @@ private:
         if (parts.moved)
             read_.made.moved.push_back(*std::move(parts.moved));
         if (!read_.made.moved.empty() && read_.made.moved.size() != read_.made.plans.size())
-            all["compensation"].refuse("is said of some plans and not of all");
+            all["compensation"].refuse("is set in some plans and not in all");
         return false;
     }
 

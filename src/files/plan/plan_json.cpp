@@ -239,13 +239,13 @@ void members(Io& io, People& p)
 {
     constexpr about differ{"how far they differ; the first is null with the observer centroid",
                            detail::from_0};
-    io("people", p.choice.people, {"how many"});
+    io("people", p.choice.people, {"number of people"});
     io("seed", p.choice.seed, {"seed of the draw"});
     io("sigma_factor", where(p.by_taps, p.choice.sigma_factor), differ);
     io("threshold_db", p.choice.threshold_db, differ);
     io("place_mm", p.choice.place_mm, differ);
     io("parts", std::array{0.05, 0.95},
-       {"0.05 and 0.95: parts of the people that stay below the two ends of each interval"});
+       {"0.05 and 0.95: shares of the people below the two ends of each interval"});
 }
 
 template <class Io, either<row_spread> Spread>
@@ -292,7 +292,7 @@ void error_members(Io& io, const prediction& r, observer_kind by)
     io("target_length_mm", where(by_taps, r.tapped.target_length_mm),
        {"the same of the target's places at their onsets", detail::from_0});
     io.or_null("length_ratio", r.tapped.length_ratio,
-               {"the first by the second; null where the target rests", detail::from_0});
+               {"the first divided by the second; null if the target rests", detail::from_0});
 }
 
 template <class Io>
@@ -304,13 +304,12 @@ void result_members(Io& io, const comparison_row& r, observer_kind by)
     io("algorithm", r.algorithm, names);
     io("phantom", r.phantom, names);
     io("refused", where(r.refused.has_value(), std::string(r.refused ? r.refused->what() : "")),
-       {"why it cannot play the stroke; null where it can. All that follows is there only where this is "
-        "null"});
+       {"why it cannot play the stroke; null if it can. The following fields exist only if this is null"});
     io.where_null("refused", !r.refused, [&](auto& rest) {
-        rest("bursts", where(!p.curve, p.bursts.size()), {"how many; null of the algorithm continuous"});
-        rest.or_null(
-            "soa_s", p.soa_s,
-            {"onset to onset of two bursts; null where that differs from burst to burst", detail::above_0});
+        rest("bursts", where(!p.curve, p.bursts.size()),
+             {"number of bursts; null for the algorithm continuous"});
+        rest.or_null("soa_s", p.soa_s,
+                     {"time from onset to onset; null if it differs between bursts", detail::above_0});
         rest("total_s", p.total_s, {"end of the last sound", detail::from_0});
         error_members(rest, r, by);
         rest("taps", where(has_taps(r, by), r.taps), {"the bursts that are felt, by onset"});
@@ -327,22 +326,22 @@ void comparison_members(Io& io, const comparison& c, const array& a)
     const detail::observer_choice built_for{observer_kind::low_speed, c.observer.low_speed};
     io.constant("schema", "tactor-compare/1");
     io("note", detail::prediction_note(c.observer), {"what kind of figures these are"});
-    io("observer", c.observer, {"who is predicted to feel it"});
+    io("observer", c.observer, {"the observer"});
     io("compensated_for", where(c.compensated, built_for),
        {"null, or the observer for whom bursts were moved, with {compensate}"});
     io("spread", where(c.spread.people != 0, drawn_people{c.spread, by_taps}),
-       {"null, or who was drawn with {spread}"});
+       {"null, or the people drawn with {spread}"});
     io("faces", detail::omit_usual(c.faces, faces_kind::delaunay),
-       {"nearest with {faces=nearest}; else it is not there"});
-    io.object("stroke", {"what is drawn"}, [&](auto& inner) {
+       {"nearest with {faces=nearest}; otherwise absent"});
+    io.object("stroke", {"the stroke"}, [&](auto& inner) {
         inner("name", c.target.name, {"its name, or that of the file"});
         inner("duration_s", c.target.motion.duration_s(),
               {"time in which the target moves", detail::above_0});
         inner("length_mm", c.target.motion.length_mm(), {"length of its path", detail::from_0});
         inner("note", detail::omit_empty(note_text(c.target.note)),
-              {"only of park2016-1 to -4: that they are reconstructed"});
+              {"only for park2016-1 to -4: a note that they are reconstructed"});
     });
-    io.object("array", {"where it is drawn"}, [&](auto& inner) {
+    io.object("array", {"the array"}, [&](auto& inner) {
         inner("name", a.name, {"name of the array"});
         inner.list("tactors", a.tactors, {"all of them, in order"},
                    [](auto& one, auto& t, std::size_t number) { identity_members(one, t, number); });

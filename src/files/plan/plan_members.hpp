@@ -59,35 +59,34 @@ void members(Io& io, Facts& f)
 template <class Io, either<carrier_point> Point>
 void members(Io& io, Point& c)
 {
-    io("t_s", c.t_s, {"time from the stroke's beginning", detail::from_0});
+    io("t_s", c.t_s, {"time from the stroke's start", detail::from_0});
     io("hz", c.hz, {"frequency", {0.0, detail::bounds_of::carrier_hz.high}});
-    unless_usual(
-        io, "bend", c.bend, carrier_point{}.bend,
-        {"only where easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 between "
-         "the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - u) (a + b u + "
-         "c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
-         {-1e7, 1e7}});
+    unless_usual(io, "bend", c.bend, carrier_point{}.bend,
+                 {"only if easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 "
+                  "between the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - "
+                  "u) (a + b u + c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
+                  {-1e7, 1e7}});
 }
 
 template <class Io, either<plan_sound> Sound>
 void members(Io& io, Sound& s)
 {
-    constexpr detail::about texture{
-        "only of a WAV file: how it lies along the stroke, and how much of the path has all of it",
-        detail::from_0};
-    io("waveform", s.waveform, {"what vibrates, as {waveform} says it; absent: a sine"});
-    io("noise_seed", s.noise_seed, {"only of noise: which"});
+    constexpr detail::about texture{"only for a WAV file: how it extends along the stroke, and the length of "
+                                    "path that the whole file covers",
+                                    detail::from_0};
+    io("waveform", s.waveform, {"the waveform, as for {waveform}; absent: a sine"});
+    io("noise_seed", s.noise_seed, {"only for noise: its seed"});
     io("recording", s.recording,
-       {"only of a WAV file: which. A plan is refused where the file has changed. A file of that name and "
-        "contents beside the plan counts, too"});
+       {"only for a WAV file: which file. If the file has changed, tactor refuses the plan. A file with the "
+        "same name and contents in the folder of the plan is also accepted"});
     io("texture", s.texture, texture);
     io("texture_mm", s.texture_mm, texture);
     io("am_hz", s.am_hz, {"only with amplitude modulation: its frequency and depth", detail::above_0});
     io("am_depth", s.am_depth,
        {"only with amplitude modulation: its frequency and depth", detail::bounds_of::part});
     io("course", s.course,
-       {"only of a carrier that changes: its frequency over time, linear between these points where bend "
-        "does not say otherwise; of a WAV file along the path, how often that comes round"});
+       {"only for a carrier that changes: its frequency over time, linear between these points unless bend "
+        "says otherwise; for a WAV file along the path, how often the file repeats"});
 }
 
 /// A thing that is one number, or one for each of several frequencies in Hz.
@@ -123,7 +122,8 @@ void members(Io& io, Place& p)
 {
     io("tactor", p.tactor, {"number of the tactor"});
     io("at_s", p.at_s, {"when, from the start of the piece", detail::from_0});
-    io("strokes", p.strokes, {"those that sound there then: their places in the piece, from 0"});
+    io("strokes", p.strokes,
+       {"the strokes that sound there at that time: their places in the piece, from 0"});
 }
 
 /// Describes by how much a piece is weaker than asked for, and where its strokes meet.
@@ -131,7 +131,7 @@ template <class Io>
 void weakening_members(Io& io, const weakening& w)
 {
     io.fact("weakened_db", [&w] { return std::optional(w.weakened_db); },
-            {"how much weaker than asked for the whole piece is, so that no tactor exceeds the level, see "
+            {"how much weaker than requested the whole piece is, so that no tactor exceeds the level, see "
              "{together}; 0: not at all",
              detail::up_to_0});
     io.fact("meets",
@@ -139,7 +139,7 @@ void weakening_members(Io& io, const weakening& w)
                 return w.weakened_db < 0.0 ? std::optional(loudest_place{w.tactor, w.at_s, w.plans})
                                            : std::nullopt;
             },
-            {"only where it is weakened: where it would be loudest"});
+            {"only if it is weakened: the place and time of the highest level"});
 }
 
 /// Parts of an object that is read. A written one has the same members, as references.
@@ -180,17 +180,17 @@ template <class Io, either<tactor_spec> Tactor>
 void tactor_members(Io& io, Tactor& t, std::size_t number)
 {
     identity_members(io, t, number);
-    io("polarity", t.polarity, {"1, or -1 where its samples are inverted", {-1.0, 1.0}});
+    io("polarity", t.polarity, {"1, or -1 if its samples are inverted", {-1.0, 1.0}});
     io("gain_db", t.gain_db, {"its gain"});
-    io("max_dbfs", t.max_dbfs, {"the greatest peak that it may be given", detail::up_to_0});
+    io("max_dbfs", t.max_dbfs, {"its highest allowed peak", detail::up_to_0});
     io.with("threshold_dbfs", find_thresholds(t), [&t](const auto& v) { set_thresholds(t, v); },
-            {"its measured threshold; a list of [frequency, threshold] where there are several; or null"});
+            {"its measured threshold; a list of [frequency, threshold] if there are several; or null"});
     io("rise_s", t.rise_s,
-       {"rise time of the actuator; absent where the array says none. Where one is given a burst that sounds "
+       {"rise time of the actuator; absent if the array has none. With a rise time, a burst that sounds "
         "alone on the tactor has a boost, see Slow actuators",
         {0.0, 1.0, true}});
     io("displacement_um_at_0dbfs", t.displacement_um_at_0dbfs,
-       {"measured peak displacement at 0 dBFS, um; absent where the array says none", {0.0, 10000.0, true}});
+       {"measured peak displacement at 0 dBFS, um; absent if the array has none", {0.0, 10000.0, true}});
 }
 
 template <class Io, either<array> Array>
@@ -204,7 +204,7 @@ void members(Io& io, Array& a)
 template <class Io, either<fit_matrix> Fit>
 void members(Io& io, Fit& f)
 {
-    io("margin_mm", f.margin_mm, {"distance from the array's edge that was asked for", detail::from_0});
+    io("margin_mm", f.margin_mm, {"requested distance from the array's edge", detail::from_0});
     io("matrix", f.matrix,
        {"a, b, c, d, e, f of x' = a x + c y + e and y' = b x + d y + f, in mm; all other places in this "
         "object are x' and y'"});
@@ -215,7 +215,7 @@ void members(Io& io, Envelope& e)
 {
     io("kind", e.kind, {"raised-cosine, linear, exponential or tukey"});
     io("tukey_part", e.tukey_part,
-       {"of tukey: both ramps together, as a part of the burst", detail::bounds_of::part});
+       {"for tukey: both ramps together, as a part of the burst", detail::bounds_of::part});
     io.or_null("attack_s", e.attack_s, {"time in which they rise, or null: as {ramp} says", detail::from_0});
     io.or_null("release_s", e.release_s, {"time in which they fall, or null: as they rise", detail::from_0});
 }
@@ -233,7 +233,7 @@ void members(Io& io, Tap& t)
     constexpr detail::about target{"where the target is then"};
     constexpr detail::about alone{"where the burst would be felt by itself"};
     constexpr detail::about felt{"where it is predicted to be felt"};
-    io("onset_s", t.onset_s, {"begin of the burst", detail::from_0});
+    io("onset_s", t.onset_s, {"onset of the burst", detail::from_0});
     io("target_x_mm", t.target.x_mm, target);
     io("target_y_mm", t.target.y_mm, target);
     io("alone_x_mm", t.alone.x_mm, alone);
@@ -247,9 +247,9 @@ void members(Io& io, Compensated& c)
 {
     constexpr detail::about parameters{"its parameters", detail::above_0};
     constexpr detail::about residual{
-        "what that leaves of the error, were each burst felt by itself at its own point", detail::from_0};
-    constexpr detail::about predicted{"distance from the places felt to the target, with the phantom's own "
-                                      "error; null without a burst that is felt",
+        "the error that remains, if each burst were felt at its own point when alone", detail::from_0};
+    constexpr detail::about predicted{"distance from the felt places to the target, including the phantom's "
+                                      "own error; null without a felt burst",
                                       detail::from_0};
     const auto felt = [&c](auto what) {
         return [&c, what] { return detail::nullable<double>{summarise(c.taps).*what}; };
@@ -259,7 +259,7 @@ void members(Io& io, Compensated& c)
     io("sigma_v_mm_s", c.observer.sigma_v_mm_s, parameters);
     io.constant("built_for", "taps");
     io("bursts_at_edge", c.at_edge,
-       {"how many could not be moved as far as they should, since the array ends"});
+       {"number of bursts that reach the edge of the array before their intended place"});
     io("residual_rms_mm", c.residual_rms_mm, residual);
     io("residual_largest_mm", c.residual_largest_mm, residual);
     io.fact("predicted_rms_mm", felt(&tap_summary::rms_error_mm), predicted);
@@ -271,14 +271,14 @@ template <class Io, either<conflict> Conflict>
 void members(Io& io, Conflict& c)
 {
     io("tactor", c.tactor, {"number of the tactor"});
-    io("from_s", c.from_s, {"begin and end", detail::from_0});
-    io("to_s", c.to_s, {"begin and end", detail::from_0});
+    io("from_s", c.from_s, {"start and end", detail::from_0});
+    io("to_s", c.to_s, {"start and end", detail::from_0});
 }
 
 template <class Io, either<meeting> Meeting>
 void members(Io& io, Meeting& m)
 {
-    io("tau_s", m.t_s, {"when the target is there", detail::from_0});
+    io("tau_s", m.t_s, {"time at which the target is there", detail::from_0});
     io("x_mm", m.position.x_mm, {"where"});
     io("y_mm", m.position.y_mm, {"where"});
 }
@@ -294,21 +294,22 @@ void place_members(Io& io, Burst& b, const array& a, const char* place, const ch
     io.list("drives", b.drives, {drives}, [&a](auto& inner, auto& d, std::size_t) {
         inner("tactor", d.tactor, {"number of the tactor"});
         inner.fact("channel", [&] { return a.tactors[d.tactor].channel; }, {"its channel"});
-        inner("amplitude", d.amplitude, {"how strongly; 1 is the intensity asked for", {0.0, 1000.0}});
+        inner("amplitude", d.amplitude, {"its amplitude; 1 is the requested intensity", {0.0, 1000.0}});
     });
 }
 
 template <class Io, either<burst> Burst, class Parts>
 void burst_members(Io& io, Burst& b, const Parts& r)
 {
-    io("onset_s", b.onset_s, {"its begin", detail::from_0});
-    io("duration_s", b.duration_s, {"how long it lasts", detail::from_0});
+    io("onset_s", b.onset_s, {"its onset", detail::from_0});
+    io("duration_s", b.duration_s, {"its duration", detail::from_0});
     io.fact("ramp_s", [&] { return burst_ramp_s(b.onset_s, b.duration_s, r.plan, r.options); },
             {"raised cosine at each end of it", detail::from_0});
-    io("tau_s", b.tau_s, {"only of tactile-brush: when the target is at its place", detail::from_0});
+    io("tau_s", b.tau_s,
+       {"only for tactile-brush: time at which the target is at its place", detail::from_0});
     place_members(
-        io, b, r.tactors, "where it is to be felt; where bursts were moved, where it is played",
-        "the intensity asked for, as the intensity scale and the level of the stroke make it an amplitude",
+        io, b, r.tactors, "the place where it should be felt; if bursts were moved, the place where it plays",
+        "the requested intensity as an amplitude, by the intensity scale and the level of the stroke",
         "the tactors that make it, in order");
 }
 
@@ -317,8 +318,7 @@ void point_members(Io& io, Burst& b, const Parts& r)
 {
     io("t_s", b.onset_s, {"time of the point", detail::from_0});
     place_members(io, b, r.tactors, "where the target is",
-                  "the intensity asked for, as the same make it an amplitude",
-                  "the tactors that sound, in order");
+                  "the requested intensity as an amplitude, by the same", "the tactors that sound, in order");
 }
 
 template <class Io, class Parts>
@@ -329,19 +329,19 @@ void stroke_members(Io& io, Parts& r)
     io("duration_s", p.stroke_duration_s, {"time in which the target moves", detail::above_0});
     io("length_mm", p.stroke_length_mm, {"length of its path", detail::from_0});
     io("carrier_hz", p.carrier_hz,
-       {"frequency of the vibration; where it changes, at the beginning", detail::above_0});
+       {"frequency of the vibration; if it changes, at the start", detail::above_0});
     members(io, r.sound);
     io.with("note", detail::omit_empty(note_text(r.note)),
             [&r](const auto& given) {
                 r.note = given == note_text(note_kind::reconstructed) ? note_kind::reconstructed : r.note;
             },
-            {"only of park2016-1 to -4: that they are reconstructed"});
+            {"only for park2016-1 to -4: a note that they are reconstructed"});
     io.with("fit", make_matrix(r.fit),
             [&r](const auto& given) {
                 if (given)
                     r.fit = make_fitting(*given);
             },
-            {"only with {fit}: what became of places as they were drawn"});
+            {"only with {fit}: how the places were fitted"});
 }
 
 template <class Io, class Parts>
@@ -352,24 +352,23 @@ void render_members(Io& io, Parts& r)
     io("channels", o.channels, {"number of channels"});
     io("frames", r.frames, {"length of the whole piece"});
     io("phase", o.phase, {"stroke or burst: where the carrier's phase starts"});
-    io.or_null("ramp_s", o.ramp_s, {"what {ramp} says; null: the default, burst by burst", detail::from_0});
-    io("sl_db", o.sl_db, {"what {sl} says, in dB over each tactor's threshold; only without level_dbfs"});
+    io.or_null("ramp_s", o.ramp_s, {"value of {ramp}; null: the default for each burst", detail::from_0});
+    io("sl_db", o.sl_db, {"value of {sl}, in dB above each tactor's threshold; only without level_dbfs"});
     io.with("level_dbfs", o.sl_db ? std::optional<double>() : std::optional(o.level_dbfs),
             [&o](const auto& given) {
                 if (given)
                     o.level_dbfs = *given;
             },
-            {"what {level_dbfs} says; only without sl_db", detail::up_to_0});
+            {"value of {level_dbfs}; only without sl_db", detail::up_to_0});
     io.exactly_one("level_dbfs", "sl_db");
-    io("overlap", r.plan.overlap, {"energy, max or sum: what becomes of bursts that overlap on one tactor"});
-    io.fact(
-        "peak_dbfs",
-        [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options, r.weakened.weakened_db); },
-        {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold and "
-         "weakened_db in it; null where the level is above a threshold that it does not have, and nothing "
-         "drives it"});
+    io("overlap", r.plan.overlap, {"energy, max or sum: how bursts that overlap on one tactor combine"});
+    io.fact("peak_dbfs",
+            [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options, r.weakened.weakened_db); },
+            {"for each tactor in order: the peak of its channel for amplitude 1, including its gain or "
+             "threshold and weakened_db; null if the level is relative to a threshold that it does not have, "
+             "and nothing drives it"});
     unless_usual(io, "together", o.together, together_kind::weaken,
-                 {"sum where strokes that meet on a tactor add up; absent: the piece is weakened, as with "
+                 {"sum if strokes that overlap on a tactor add up; absent: the piece is weakened, as with "
                   "{together=weaken}"});
     unless_usual(io, "envelope", o.envelope, burst_envelope{},
                  {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
@@ -382,7 +381,7 @@ void render_members(Io& io, Parts& r)
                 o.marker_channel = given.value->channel;
                 o.marker_s = given.value->duration_s;
             },
-            {"null, or the mark of each stroke's beginning"});
+            {"null, or the marker at each stroke's start"});
 }
 
 template <class Io, class Parts>
@@ -393,23 +392,20 @@ void plan_members(Io& io, Parts& r)
     io.template named<algorithm_kind>("algorithm", p.algorithm, {"park2016, tactile-brush or continuous"});
     io.template named<phantom_kind>(
         "phantom", p.phantom, {"the phantom model: inverse-distance, barycentric, linear, log or gaussian"});
-    unless_usual(
-        io, "faces", p.faces, faces_kind::delaunay,
-        {"nearest where the three closest tactors of the array make a phantom; without it it is those of "
-         "the Delaunay face, as with {faces=delaunay}"});
+    unless_usual(io, "faces", p.faces, faces_kind::delaunay,
+                 {"nearest if the three closest tactors of the array make a phantom; absent: those of the "
+                  "Delaunay face, as with {faces=delaunay}"});
     io("start_s", r.start_s,
-       {"start of the stroke in the piece, which is all strokes of the file; all other times count from "
-        "there",
+       {"start of the stroke in the piece, which is all strokes of the file; all other times are relative to "
+        "it",
         detail::from_0});
     io("start_frame", r.start_frame, {"the stroke's first frame in the piece"});
     io("follows", r.follows,
-       {"true where it begins when the stroke before it ends, or the piece begins; false where its start was "
-        "given"});
-    io.object("stroke", {"what is drawn"}, [&r](auto& inner) { stroke_members(inner, r); });
-    io("array", r.tactors, {"where it is drawn"});
-    io.or_null(
-        "soa_s", p.soa_s,
-        {"onset to onset of two bursts; null where that differs from burst to burst", detail::above_0});
+       {"true if it begins when the previous stroke ends, or the piece begins; false if its start was set"});
+    io.object("stroke", {"the stroke"}, [&r](auto& inner) { stroke_members(inner, r); });
+    io("array", r.tactors, {"the array"});
+    io.or_null("soa_s", p.soa_s,
+               {"time from onset to onset; null if it differs between bursts", detail::above_0});
     io("total_s", p.total_s, {"end of the last sound", detail::from_0});
     io.object("render", {"how the plan becomes samples; the same in all strokes of a file"},
               [&r](auto& inner) { render_members(inner, r); });
@@ -417,22 +413,23 @@ void plan_members(Io& io, Parts& r)
     io.new_line();
     io.template rows<burst>(
         "bursts", [&p](const auto& row) { std::for_each(p.bursts.begin(), p.bursts.end(), row); },
-        {"by onset; none of the algorithm continuous"},
+        {"by onset; empty for the algorithm continuous"},
         [&r](auto& inner, auto& b) { burst_members(inner, b, r); });
     io.new_line();
-    io.part("continuous", r.is_sampled, {"only of the algorithm continuous"}, [&r](auto& inner) {
+    io.part("continuous", r.is_sampled, {"only for the algorithm continuous"}, [&r](auto& inner) {
         inner("step_s", r.step_s,
               {"time from point to point; the last is at the end of the stroke", detail::above_0});
         inner.fact("ramp_s", [&r] { return burst_ramp_s(0.0, r.plan.stroke_duration_s, r.plan, r.options); },
                    {"raised cosine at each end of the stroke", detail::from_0});
         inner.template rows<burst>(
             "points", [&r](const auto& row) { for_each_row(r.plan, row); },
-            {"from the stroke's begin to its end"},
+            {"from the stroke's start to its end"},
             [&r](auto& innermost, auto& b) { point_members(innermost, b, r); });
     });
     io.new_line();
     io("compensation", r.moved,
-       {"only with {compensate}: for whom bursts were moved; their places are those that are played"});
+       {"only with {compensate}: the observer for whom bursts were moved; the places of the bursts are those "
+        "that play"});
     io("conflicts", p.conflicts, {"times in which one tactor serves two bursts"});
     io("dropped", p.dropped, {"crossings of the grid that {drop_points} left out"});
     io("warnings", p.warnings, {"texts"});

@@ -67,8 +67,9 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
     while (!first.empty() && first.back() == '\r')
         first.remove_suffix(1);
     if (const std::size_t at = first.find('\r'); at != std::string_view::npos)
-        throw error(error_kind::bad_input, detail::find_place(text, at, name), "its lines end in CR alone",
-                    "save it with line ends of Unix, or convert it: tr '\\r' '\\n' < OLD > NEW");
+        throw error(error_kind::bad_input, detail::find_place(text, at, name), "its lines end in CR only",
+                    "save it with Unix line ends, or convert it: tr '\\r' '\\n"
+                    "' < OLD > NEW");
 }
 
 /// Returns the separator of a line of names or numbers if it is no comma, else null.
@@ -117,9 +118,8 @@ void refuse_other_columns(std::string_view text, const std::string& name)
             return;
         if (comment.line != 0)
             throw error(error_kind::bad_input, comment, "the line that names the columns is a comment",
-                        "take its # away; numpy.savetxt() takes comments=\"\"");
-        throw error(error_kind::bad_input, here, "there is no line that names the columns",
-                    "begin with: t_s,x_mm,y_mm");
+                        "remove its #; numpy.savetxt() accepts comments=\"\"");
+        throw error(error_kind::bad_input, here, "no line names the columns", "begin with: t_s,x_mm,y_mm");
     }
 }
 
@@ -205,11 +205,11 @@ private:
         const std::size_t begin = at + 1;
         const std::size_t end = line_.find('"', begin);
         if (end == std::string_view::npos)
-            fail(at + 1, "a quote that does not end", "quotes are not needed");
+            fail(at + 1, "a quote does not end", "leave out the quotes");
         at = end + 1;
         detail::skip_blanks(line_, at);
         if (at < line_.size() && line_[at] != ',')
-            fail(at + 1, "text behind a quote", "separate the columns by commas");
+            fail(at + 1, "there is text after a quote", "separate the columns by commas");
         return {line_.substr(begin, end - begin), begin + 1};
     }
 
@@ -221,7 +221,7 @@ private:
             const auto c =
                 static_cast<std::size_t>(std::find(names.begin(), names.end(), f.text) - names.begin());
             if (c < columns && seen[c])
-                fail(f.column, fmt::format("column {} twice", names[c]), "name each column once");
+                fail(f.column, fmt::format("the column {} occurs twice", names[c]), "name each column once");
             if (c < columns)
                 seen[c] = true;
             order_.push_back(static_cast<column>(c));
@@ -265,9 +265,9 @@ private:
         split();
         if (fields_.size() != order_.size())
             fail(fields_[std::min(fields_.size(), order_.size()) - 1].column,
-                 fmt::format("{} where the header names {}", counted(fields_.size(), "value"),
+                 fmt::format("{}, but the header names {}", counted(fields_.size(), "value"),
                              counted(order_.size(), "column")),
-                 "numbers have a decimal point, and a comma stands only between them");
+                 "write a decimal point, and commas only between numbers");
         timed_point p;
         for (std::size_t i = 0; i < order_.size(); ++i)
             if (order_[i] != columns && order_[i] != t_s && is_missing(fields_[i].text))
@@ -292,8 +292,7 @@ private:
     double value(const field& f, column c) const
     {
         if (f.text.empty())
-            fail(f.column, fmt::format("{} is missing", names[c]),
-                 "give a number, or nan where there is none");
+            fail(f.column, fmt::format("{} is missing", names[c]), "give a number, or nan for none");
         std::size_t end = 0;
         const auto v = scan_number(f.text, end);
         if (!v || end != f.text.size())
@@ -324,7 +323,7 @@ private:
 
 std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name, double intensity_max)
 {
-    detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
+    detail::check_size(text, name, detail::max_stroke_bytes, "check that it is the right file");
     if (!without_blanks(text).empty())
         detail::refuse_other_form(text, name, "csv");
     refuse_other_columns(detail::without_mark(text), name);

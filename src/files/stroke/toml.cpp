@@ -82,8 +82,8 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
     const auto texture_mm = t.number("texture_mm", bounds_of::texture_mm);
     waveform w;
     if (text && folder == nullptr && waveform_names_file(*text))
-        t.fail("waveform", fmt::format("waveform is a file, {}, and this text is none", *text),
-               "give the stroke as a file of its own");
+        t.fail("waveform", fmt::format("waveform is the file {}, but this is a text without a place", *text),
+               "give the stroke as a file");
     if (text)
         w = with_place(t, "waveform", [&] { return parse_waveform(*text, folder ? *folder : ""); });
     const bool recorded = w.kind == waveform_kind::recording;
@@ -126,7 +126,7 @@ void for_each_part(const toml_table& t, std::string_view key, std::string_view s
                     fmt::format("give {}", shape));
         const double part = t.to_number((*entry)[0], "the part of the path", bounds_of::part);
         if (!(part > before))
-            fail_at(t.where(node), fmt::format("the part {} of {} does not come after {}", part, key, before),
+            fail_at(t.where(node), fmt::format("the part {} of {} is not after {}", part, key, before),
                     "parts ascend from 0, the path's start, to 1, its end");
         before = part;
         take(part, *entry);
@@ -196,8 +196,8 @@ void read_choices(const toml_table& t, stroke& s)
     s.choices.burst_s = t.number("burst_s", bounds_of::burst_s);
     if (s.choices.soa_s && s.choices.burst_s && *s.choices.burst_s > *s.choices.soa_s)
         t.fail("burst_s",
-               fmt::format("burst_s is {}, longer than soa_s of {}", *s.choices.burst_s, *s.choices.soa_s),
-               "bursts must not overlap: at most soa_s");
+               fmt::format("burst_s is {}, longer than soa_s, {}", *s.choices.burst_s, *s.choices.soa_s),
+               "make it at most soa_s: bursts must not overlap");
     for (const char* key : {"burst_s", "soa_s"})
         if (t.has(key))
             s.places.choices = t.where(key);
@@ -368,7 +368,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
     if (kind == "timed") {
         if (!keys.uneven.empty())
             t.fail(keys.uneven,
-                   fmt::format("timed points have times and intensities of their own, and {} is for a path",
+                   fmt::format("timed points have their own times and intensities, and {} is for a path",
                                keys.uneven),
                    "leave it out, or give the path as points");
         s.motion = read_timed(t, keys, intensity_max, s.warnings);
@@ -424,7 +424,7 @@ void follow(stroke& s, double wait_s, std::size_t back)
 void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
 {
     if (strokes > most_strokes)
-        t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("at most {}", most_strokes));
+        t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("use at most {}", most_strokes));
 }
 
 /// Strokes one after the other as the keys start_s and start_from of their tables say.
@@ -484,7 +484,7 @@ file_entry repeat_entry(const toml_table& t, file_entry e)
     const auto pause = t.number("pause_s", {0.0, longest_stroke_s});
     if (pause && times == 1)
         t.fail("pause_s", "nothing is repeated",
-               "add repeat = 2 or more; pauses = [[part, seconds], ...] is along a path");
+               "add repeat = 2 or more; for pauses along a path use pauses = [[part, seconds], ...]");
     if (times == 1)
         return e;
     const std::size_t once = e.strokes.size();
@@ -531,7 +531,7 @@ file_entry read_group(const toml_table& t, const std::string& name, const readin
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
-        t.fail("stroke", "groups in groups too deep", fmt::format("at most {}", deepest_group));
+        t.fail("stroke", "groups in groups too deep", fmt::format("use at most {}", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");
     if (inside.empty())
         t.fail("stroke", "a group without a stroke", "add [[stroke.stroke]]");
@@ -542,8 +542,8 @@ file_entry read_group(const toml_table& t, const std::string& name, const readin
     for (stroke& s : e.strokes) {
         place_stroke(t, s);
         if (fit && s.fit)
-            t.fail("fit", fmt::format("{} is fitted already", detail::quoted(s.name)),
-                   "fit the group, or what is in it");
+            t.fail("fit", fmt::format("{} is in a group that is fitted", detail::quoted(s.name)),
+                   "fit either the group or the strokes in it");
         if (fit)
             s.fit = fit;
     }
@@ -559,7 +559,7 @@ file_entry read_entry(const toml_table& t, const std::string& name, const readin
 
 std::vector<stroke> read_strokes(std::string_view text, const std::string& name, const reading& r)
 {
-    check_size(text, name, max_tree_bytes, "timed points by the million belong in a CSV file");
+    check_size(text, name, max_tree_bytes, "put millions of timed points into a CSV file");
     const toml::table document = parse_toml(text, name);
     const toml_table root(document, "a stroke file", name);
     for (const char* key : {"array", "output", "defaults"})
@@ -568,7 +568,7 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
                       "give it as {array=FILE} or {config=FILE}");
     root.only({"stroke"});
     if (!root.has("stroke"))
-        fail_at({name, 0, 0}, "there is no stroke in it", "add [stroke] or [[stroke]]");
+        fail_at({name, 0, 0}, "it has no stroke", "add [stroke] or [[stroke]]");
 
     if (root.node("stroke")->is_table()) {
         sequence one(false);
@@ -578,7 +578,7 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
     }
     const std::vector<toml_table> tables = root.tables("stroke");
     if (tables.empty())
-        root.fail("stroke", "there is no stroke in it", "add [stroke] or [[stroke]]");
+        root.fail("stroke", "it has no stroke", "add [stroke] or [[stroke]]");
     return read_all(tables, false, stem(name), r, 0).strokes;
 }
 

@@ -51,8 +51,7 @@ double number_at(std::string_view text, std::size_t& at)
         throw value_fault{at, fmt::format("{} is not a number", detail::quoted(text.substr(at))),
                           "e.g. 12.5"};
     if (!(std::abs(*v) <= max_user_units))
-        throw value_fault{begin, fmt::format("{:g} is beyond {:g}", *v, max_user_units),
-                          "is it the right unit?"};
+        throw value_fault{begin, fmt::format("{:g} is beyond {:g}", *v, max_user_units), "check the unit"};
     return *v;
 }
 
@@ -62,8 +61,8 @@ double svg_number(std::string_view text)
     skip_blanks(text, at);
     const double v = number_at(text, at);
     if (const auto rest = without_blanks(text.substr(at)); !rest.empty())
-        throw value_fault{at, fmt::format("{} behind the number", detail::quoted(rest)),
-                          "a number without a unit"};
+        throw value_fault{at, fmt::format("{} follows the number", detail::quoted(rest)),
+                          "give a number without a unit"};
     return v;
 }
 
@@ -246,7 +245,7 @@ svg_length parse_svg_length(std::string_view text)
     for (const auto& [name, mm] : units)
         if (name == unit)
             return {v * mm, true};
-    throw value_fault{at, fmt::format("unit {} is not known", detail::quoted(unit)),
+    throw value_fault{at, fmt::format("unit {} is unknown", detail::quoted(unit)),
                       "known units: mm, cm, in, pt, pc, px, Q"};
 }
 
@@ -256,7 +255,7 @@ svg_view_box parse_svg_view_box(std::string_view text)
     if (v.size() != 4)
         throw value_fault{0, fmt::format("{} of 4 numbers", v.size()), "give x, y, width and height"};
     if (!(v[2] > 0.0 && v[3] > 0.0))
-        throw value_fault{0, "has no size", "width and height are more than 0"};
+        throw value_fault{0, "has no size", "give a width and a height above 0"};
     return {{v[0], v[1]}, v[2], v[3]};
 }
 
@@ -312,7 +311,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
                     "the file is not well-formed XML");
     }
     if (svg_tag(root()) != "svg")
-        fail(root(), fmt::format("{} is not <svg>", called(root())), "is it an SVG file?");
+        fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");
     for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
         note_other_file(n, "<?xml-stylesheet?>");
     // A search that finds nothing visits all, and not by recursion. Of two with one id the first counts.
@@ -401,8 +400,7 @@ std::optional<double> svg_document::number(pugi::xml_node n, const char* attribu
     return read(n, attribute, [low, high](std::string_view text) {
         const double v = svg_number(text);
         if (!(v >= low && v <= high))
-            throw value_fault{0, fmt::format("{:g}", v),
-                              fmt::format("it is between {:g} and {:g}", low, high)};
+            throw value_fault{0, fmt::format("{:g}", v), fmt::format("give {:g} to {:g}", low, high)};
         return v;
     });
 }
@@ -418,14 +416,15 @@ void svg_document::note(std::optional<std::size_t> offset, std::string_view key,
 
 void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why) const
 {
-    note(offset(n), what, fmt::format("{} of {} is not followed{}", what, called(n), why), ", nor of",
-         ": what it hides or moves plays as if it were not there");
+    note(offset(n), what, fmt::format("{} of {} is not supported{}", what, called(n), why), ", nor of",
+         ": a shape that it hides or moves plays as if it were not there");
 }
 
 void svg_document::note_other_file(pugi::xml_node n, std::string_view what) const
 {
     note(offset(n), "stylesheet", fmt::format("{} names another file, which is not read", what), ", as do",
-         ": what its rules hide or move plays as if they were not there (put the rules into the drawing)");
+         ": a shape that its rules hide or move plays as if they were not there (put the rules into the "
+         "drawing)");
 }
 
 // Rules are nearly always paint, which does not decide what plays; Illustrator hides layers by their class.
@@ -441,25 +440,25 @@ void svg_document::note_rules(pugi::xml_node style)
             const std::string_view before = css.substr(0, open);
             const std::string_view selectors = before.substr(before.rfind(';') + 1);
             const std::size_t close = std::min(css.find('}', open), css.size() - 1);
-            for_each_declaration(
-                css.substr(open + 1, close - open), [&](std::size_t property, std::string_view v) {
-                    const std::string value = tidy(v.substr(0, v.find('!')));
-                    if ((property == svg_display && value == "none") ||
-                        (property == svg_visibility && (value == "hidden" || value == "collapse"))) {
-                        if (!add_hidden(selectors))
-                            fail(style,
-                                 fmt::format("a rule hides what {} selects, which is not understood",
-                                             quoted(without_blanks(selectors))),
-                                 "delete what is hidden, or export presentation attributes");
-                        return;
-                    }
-                    if (property < svg_paints || notes_.contains("style"))
-                        return;
-                    note(offset(style), "style",
-                         fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",
-                         ": what it hides or moves plays as if it were not there (export presentation "
-                         "attributes)");
-                });
+            for_each_declaration(css.substr(open + 1, close - open), [&](std::size_t property,
+                                                                         std::string_view v) {
+                const std::string value = tidy(v.substr(0, v.find('!')));
+                if ((property == svg_display && value == "none") ||
+                    (property == svg_visibility && (value == "hidden" || value == "collapse"))) {
+                    if (!add_hidden(selectors))
+                        fail(style,
+                             fmt::format("a rule hides the elements of {}, a selector that is not supported",
+                                         quoted(without_blanks(selectors))),
+                             "delete the hidden elements, or export presentation attributes");
+                    return;
+                }
+                if (property < svg_paints || notes_.contains("style"))
+                    return;
+                note(offset(style), "style",
+                     fmt::format("{} in {} is not supported", svg_properties[property], called(style)), "",
+                     ": a shape that it hides or moves plays as if it were not there (export presentation "
+                     "attributes)");
+            });
             css.remove_prefix(close + 1);
         }
     }

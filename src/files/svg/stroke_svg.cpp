@@ -119,10 +119,10 @@ public:
             throw doc_.to_error(*left_out_);
         if (hidden_)
             doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
-                      "take out display, visibility and styles such as &st0;");
+                      "remove display, visibility and styles such as &st0;");
         throw doc_.to_error(
-            {std::nullopt, "no shape in it",
-             "strokes are path, line, polyline, polygon, rect, circle and ellipse; make paths of text"});
+            {std::nullopt, "it has no shape",
+             "use path, line, polyline, polygon, rect, circle or ellipse; convert text to paths"});
     }
 
 private:
@@ -138,7 +138,7 @@ private:
             const auto px = [&](const svg_length& l) {
                 if (!(l.value > 0.0))
                     doc_.fail(n, fmt::format("{} has no size", doc_.called(n)),
-                              "width and height are more than 0");
+                              "give a width and a height above 0");
                 return l.in_mm ? l.value / detail::mm_per_px : l.value;
             };
             const double ratio = box ? box->width / box->height : 1.0;
@@ -208,7 +208,7 @@ private:
             if (!c.attribute("systemLanguage"))
                 return c;
             doc_.note(doc_.offset(c), "systemLanguage",
-                      fmt::format("systemLanguage of {} is not followed", doc_.called(c)), ", nor of",
+                      fmt::format("systemLanguage of {} is not supported", doc_.called(c)), ", nor of",
                       ": a <switch> plays its first shape without one");
             if (!first)
                 first = c;
@@ -231,7 +231,7 @@ private:
     {
         if (++elements_ > most_elements || ++s.depth > deepest)
             doc_.fail(n, elements_ > most_elements ? "too many elements" : "nested too deep",
-                      "simplify the drawing, and take out loops of <use>");
+                      "simplify the drawing, and remove loops of <use>");
         if (!draws(n))
             return note_no_shape(n);
         const std::string_view tag = svg_tag(n);
@@ -279,7 +279,7 @@ private:
         if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos && !silent &&
             (tag == "svg" || svg_tag(n.parent()) != "switch") && !is_hidden(n, svg_style(n)))
             doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.called(n)), ", nor",
-                      ": only shapes do, and text made into paths");
+                      ": only shapes do, and text converted to paths");
     }
 
     // Keeps the first hidden element, to name it if nothing draws.
@@ -291,10 +291,9 @@ private:
 
     void note_unknown(xml_node n, const char* property, std::string_view value) const
     {
-        doc_.note(
-            doc_.offset(n), property,
-            fmt::format("{} of {} is not understood ({})", property, doc_.called(n), detail::quoted(value)),
-            ", nor of", ": that is taken as hidden");
+        doc_.note(doc_.offset(n), property,
+                  fmt::format("{} of {} is unknown ({})", property, doc_.called(n), detail::quoted(value)),
+                  ", nor of", ": the element counts as hidden");
     }
 
     // Returns true if display is "none", or not understood, which is noted.
@@ -351,8 +350,8 @@ private:
         }
         if (n.attribute("data-intensity-from"))
             doc_.note(doc_.offset(n), "data-intensity-from",
-                      fmt::format("data-intensity-from of {} is not followed", doc_.called(n)), ", nor of",
-                      ": data-intensity says how strong a line is");
+                      fmt::format("data-intensity-from of {} is not supported", doc_.called(n)), ", nor of",
+                      ": use data-intensity for the strength of a line");
     }
 
     void use(xml_node n, scope s)
@@ -380,7 +379,7 @@ private:
         std::vector<outline> outlines = svg_shape(doc_, n, per_mm_);
         if (outlines.empty())
             doc_.leave_out(n, fmt::format("{} draws nothing", doc_.called(n)),
-                           "it needs a size, or path data that draws");
+                           "give it a size, or path data that draws");
         const double scale = std::hypot(s.to_mm.a, s.to_mm.b) * std::hypot(s.to_mm.c, s.to_mm.d);
         if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
             doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
@@ -405,12 +404,12 @@ private:
         keep_drawn(n, paths);
         if (!looks_.insert(look).second && !n.attribute("data-start-s"))
             doc_.note(doc_.offset(n), "twice",
-                      fmt::format("{} has the shape of one before it", doc_.called(n)), ", as does",
+                      fmt::format("{} has the same shape as an earlier element", doc_.called(n)), ", as does",
                       ": it plays again");
         if (!s.is_painted() && !doc_.has_rules())
             doc_.note(doc_.offset(n), "unpainted",
                       fmt::format("{} has neither fill nor stroke, or no opacity", doc_.called(n)),
-                      ", nor has", ": it plays all the same");
+                      ", nor has", ": it still plays");
         add(n, s, paths);
     }
 
@@ -433,8 +432,8 @@ private:
         const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);
         auto start = doc_.number(n, "data-start-s", 0.0, detail::longest_stroke_s);
         if (duration && n.attribute("data-speed-mm-s"))
-            doc_.fail(n, fmt::format("{} has data-duration-s and data-speed-mm-s", doc_.called(n)),
-                      "give one of the two");
+            doc_.fail(n, fmt::format("{} has both data-duration-s and data-speed-mm-s", doc_.called(n)),
+                      "keep one of them");
         double all = 0.0;
         for (const path& p : paths)
             all += p.length_mm();
@@ -446,8 +445,8 @@ private:
             const double part = all > 0.0 ? length / all : 1.0 / static_cast<double>(paths.size());
             const double time = duration ? *duration * part : length / speed;
             if (time > detail::longest_stroke_s)
-                doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
-                          "a stroke takes at most a day");
+                doc_.fail(n, fmt::format("{} lasts {:g} s", doc_.called(n), time),
+                          "a stroke lasts at most a day");
             strokes_.push_back(
                 {.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
                  .motion = trajectory::along(paths[i], {.duration_s = time, .easing = s.easing}, s.intensity),

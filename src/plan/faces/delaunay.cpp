@@ -44,7 +44,7 @@ void check_distinct(const std::vector<point>& points, const std::vector<site>& s
     for (std::size_t i = 0; i < sites.size(); ++i)
         if (!places.emplace(sites[i].x(), sites[i].y()).second)
             throw error(error_kind::bad_input, "array",
-                        fmt::format("two tactors at ({:.9g}, {:.9g}) mm are too near to each other for an "
+                        fmt::format("two tactors at ({:.9g}, {:.9g}) mm are too close to each other for an "
                                     "array of this extent",
                                     points[i].x_mm, points[i].y_mm),
                         "check the unit: places are in millimetres");

@@ -27,7 +27,7 @@ void check_faces(phantom_kind k, faces_kind f)
 {
     if (f == faces_kind::nearest && k != phantom_kind::inverse_distance)
         throw bad_field("faces",
-                        fmt::format("nearest goes with inverse-distance only, not with {}", to_string(k)),
+                        fmt::format("nearest works only with inverse-distance, not with {}", to_string(k)),
                         "use {faces=delaunay} or {phantom=inverse-distance}");
 }
 
@@ -413,8 +413,7 @@ std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_op
         return make_phantom(o.phantom, l, faces_used(o));
     }
     if (o.faces != faces_kind::delaunay)
-        throw bad_field("faces",
-                        "nearest goes with inverse-distance only, not with a phantom model of your own",
+        throw bad_field("faces", "nearest works only with inverse-distance, not with your own phantom model",
                         "use {faces=delaunay} or {phantom=inverse-distance}");
     return o.custom_phantom;
 }

@@ -41,10 +41,10 @@ std::filesystem::path own_folder()
 const painter_module& load()
 {
     if (TACTOR_HAS_PAINTER == 0)
-        throw error(error_kind::runtime, "picture", "tactor was built without what paints PNG and PDF",
-                    "write SVG, or build it anew with -Dplots=enabled, where Cairo is");
+        throw error(error_kind::runtime, "picture", "tactor was built without PNG and PDF",
+                    "write SVG, or build it again with -Dplots=enabled and Cairo");
     const std::filesystem::path folder = own_folder();
-    std::string why = folder.empty() ? "/proc/self/exe, which says where the tool is, cannot be read" : "";
+    std::string why = folder.empty() ? "/proc/self/exe, the place of the tool, cannot be read" : "";
     for (const char* place : places) {
         if (folder.empty())
             break;
@@ -59,8 +59,8 @@ const painter_module& load()
             return *static_cast<const painter_module*>(entry);
     }
     throw error(error_kind::runtime, "picture",
-                fmt::format("what paints PNG and PDF cannot be loaded: {}", why),
-                "write SVG, or install tactor anew");
+                fmt::format("the module for PNG and PDF cannot be loaded: {}", why),
+                "write SVG, or install tactor again");
 }
 
 const painter_module& painter()

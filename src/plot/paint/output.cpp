@@ -264,10 +264,10 @@ file_format find_format(const fs::path& file)
     if (e == ".pdf")
         return file_format::pdf;
     throw error(error_kind::bad_input, file.string(),
-                e.empty() ? "has no extension, so it is not said which format the picture has"
-                          : fmt::format("\"{}\" is no format for a picture", e),
+                e.empty() ? "has no extension, so the format of the picture is unknown"
+                          : fmt::format("\"{}\" is not a picture format", e),
                 e.empty() && file.string().starts_with("/dev/")
-                    ? "its name says which: write FILE.svg, .png or .pdf, and pass that on"
+                    ? "write FILE.svg, .png or .pdf, and pass that file on"
                     : "end the name in .svg, .png or .pdf");
 }
 

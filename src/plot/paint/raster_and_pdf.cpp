@@ -194,7 +194,7 @@ std::string to_png(const canvas& c, unsigned dpi)
     if (width > most_pixels || height > most_pixels || width * height > most_area)
         throw error(error_kind::bad_input, "--dpi",
                     fmt::format("{} dpi make {:.0f} x {:.0f} pixels", dpi, width, height),
-                    "ask for fewer dpi or a smaller --width, or for SVG or PDF");
+                    "use fewer dpi or a smaller --width, or SVG or PDF");
     const surface_ptr surface(
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)),
         &cairo_surface_destroy);

@@ -41,7 +41,7 @@ class Tactor(_t.NamedTuple):
     threshold_dbfs : float or None
         Measured detection threshold.
     polarity : int
-        1, or -1 where it is wired the other way round.
+        1, or -1 if its wires are swapped.
     actuator : str
         How it works.
     thresholds : tuple of (float, float)
@@ -154,7 +154,7 @@ class Array(_Value):
         with reading(path) as name:
             setup = _tactor.Setup.load(name)
             if setup.array is None:
-                raise InputError(os.fspath(path), "says no [array]", "see tactor.toml(5)")
+                raise InputError(os.fspath(path), "has no [array]", "see tactor.toml(5)")
         return cls._wrap(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
 
     @classmethod
@@ -422,7 +422,7 @@ def _make_core(name: str, tactors: _t.Iterable[Tactor], worn: _Worn = ("", "", N
 def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
     """Returns a value for each tactor: the members of an iterable, else the same for all."""
     if isinstance(values, (str, bytes)):
-        raise InputError(what, f"{_shown(values)} is no list", "give one for each tactor", field=what)
+        raise InputError(what, f"{_shown(values)} is not a list", "give one for each tactor", field=what)
     try:
         all_of_them = list(values)
     except TypeError:

@@ -23,9 +23,9 @@ def _floats(what: str, values: _t.Any, nan: bool = False) -> _t.Any:
             raise TypeError("it has " + ("masked values" if _is_masked(raw) else f"values of type {raw.dtype}"))
         numbers: _t.Any = np.ascontiguousarray(raw, dtype=np.float64) if raw.ndim else np.float64(raw)
     except (TypeError, ValueError, OverflowError) as e:
-        raise InputError(what, f"it is no array of numbers: {e}", "give real numbers", field=what) from None
+        raise InputError(what, f"it is not an array of numbers: {e}", "give real numbers", field=what) from None
     if np.isnan(numbers).any() and not (nan and raw.dtype.kind == "f"):  # which None becomes, too
-        raise InputError(what, "there is what is no number in it", field=what)
+        raise InputError(what, "it has a value that is not a number", field=what)
     return numbers
 
 
@@ -83,7 +83,7 @@ def _place(what: str, value: _t.Any) -> tuple[float, float]:
     try:
         x, y = value
     except (TypeError, ValueError):
-        raise InputError(what, f"{_shown(value)} is no place", "give (x_mm, y_mm)", field=what) from None
+        raise InputError(what, f"{_shown(value)} is not a place", "give (x_mm, y_mm)", field=what) from None
     return _number(what, x), _number(what, y)
 
 

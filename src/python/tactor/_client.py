@@ -210,7 +210,7 @@ def _parse_address(tcp: str) -> tuple[str, int]:
     host, _, port = tcp.rpartition(":")
     bare = host[1:-1] if host.startswith("[") and host.endswith("]") else host
     if not (port.isascii() and port.isdigit() and 0 < int(port) < 65536) or (bare == host and ":" in host):
-        raise InputError("tcp", f"{_shown(tcp)} is no address", "HOST:PORT as tactor serve --tcp prints it", field="tcp")
+        raise InputError("tcp", f"{_shown(tcp)} is not an address", "give HOST:PORT as tactor serve --tcp prints it", field="tcp")
     return bare or "127.0.0.1", int(port)
 
 
@@ -254,7 +254,7 @@ class _Connection:
 
     def _send(self, message: dict[str, _t.Any]) -> None:
         if os.getpid() != self.owner:
-            raise StreamError("client", "this process was forked from the one that has it", "make one of its own")
+            raise StreamError("client", "it belongs to the process that this one was forked from", "open a client in this process")
         try:
             line = json.dumps(message, allow_nan=False).encode() + b"\n"
         except (TypeError, ValueError) as e:

@@ -233,7 +233,7 @@ class Plan(_Value):
         try:
             text = json.dumps(d, allow_nan=False, default=_plain)
         except (TypeError, ValueError, RecursionError) as e:
-            raise InputError("plan", f"it is no JSON: {e}", "see tactor-json(5)") from None
+            raise InputError("plan", f"it is not JSON: {e}", "see tactor-json(5)") from None
         try:
             return cls._read(text, "plan")
         except Error as e:
@@ -461,7 +461,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     sigma_mm : float
         low-speed: uncertainty of a place on the skin (default 5). 0.001 to 1000 mm.
     sigma_v_mm_s : float
-        low-speed: spread of the speeds that are expected (default 100). 0.001 to 1000000 mm/s.
+        low-speed: spread of the expected speeds (default 100). 0.001 to 1000000 mm/s.
     carrier : float
         Frequency of the vibration (default 250). 1 to 384000 Hz.
     waveform : str
@@ -472,7 +472,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     noise_seed : int
         noise: seed of its samples (default 1). 0 to 9007199254740992.
     texture : str
-        FILE.wav: play it as the carrier's cycle (default), in its own time, or along the path. One of "cycle", "time", "length".
+        FILE.wav: play it as the carrier's cycle (default), at its own rate, or along the path. One of "cycle", "time", "length".
     texture_mm : float
         texture="length": length of path for the whole file (default: the whole path). 0 to 1000000 mm.
     phase : str

@@ -82,7 +82,7 @@ def _profile(name: str, points: _t.Any) -> _t.Any:
     """Returns (part, value) as rows of two numbers."""
     table = _floats(name, points)
     if table.size != 0 and (table.ndim != 2 or table.shape[1] != 2):
-        raise InputError(name, "it is no list of (part, value)", "parts from 0, the path's start, to 1, its end")
+        raise InputError(name, "it is not a list of (part, value)", "give parts from 0, the path's start, to 1, its end")
     return table.tolist() if table.size else []
 
 

@@ -58,17 +58,17 @@ def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list
     if value is None:
         return []
     if one is not None:
-        raise InputError(what, f"there is also {what[:-1]}", "give one of them", field=what)
+        raise InputError(what, f"it cannot be combined with {what[:-1]}", "give one of them", field=what)
     if not isinstance(value, (str, _abc.Iterable)):
-        raise InputError(what, f"{_shown(value)} is no list of names", field=what)
+        raise InputError(what, f"{_shown(value)} is not a list of names", field=what)
     names = value.split(",") if isinstance(value, str) else list(value)
     if not names:
         raise InputError(what, "there are none", "name at least one", field=what)
     for name in names:
         if not isinstance(name, str):
-            raise InputError(what, f"{_shown(name)} is no name", "only built-in ones are compared", field=what)
+            raise InputError(what, f"{_shown(name)} is not a name", "name built-in ones", field=what)
         if names.count(name) > 1:
-            raise InputError(what, f"{name!r} is there twice", "name each once", field=what)
+            raise InputError(what, f"{name!r} occurs twice", "name each once", field=what)
     return names
 
 

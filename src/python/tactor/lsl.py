@@ -67,7 +67,7 @@ class Markers(_Unique):
     Raises
     ------
     DeviceError
-        When liblsl cannot be loaded, or makes no stream.
+        If liblsl cannot be loaded, or cannot make a stream.
     """
 
     def __init__(self, name: str = "tactor", source_id: str = "tactor", library: str | os.PathLike[str] | None = None) -> None:
@@ -79,7 +79,7 @@ class Markers(_Unique):
         self._outlet = self._lsl.lsl_create_outlet(self._info, 0, 360) if self._info else None
         if not self._outlet:
             self.close()
-            raise DeviceError("liblsl", "it makes no stream", "its log says why")
+            raise DeviceError("liblsl", "it cannot make a stream", "see its log")
 
     def mark(self, ticket: _T, label: str = "", rate: int | None = None) -> _T:
         """Sends the markers of a stroke once it has ended; gives the ticket back.

@@ -67,7 +67,7 @@ for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(ke
 for (const name of SWITCHES) on_click(name, () => { state[name] = !state[name]; changed("playing", "curves"); });
 on_click("speaker", () => {
   if (!state.speaker) return silence_speaker();
-  say(is_simulated() ? "You hear it while you draw" : "Play is heard on this computer's own loudspeakers; they must not be the array's card");
+  say(is_simulated() ? "You hear it while you draw" : "Play sounds on this computer's loudspeakers; they must not be on the array's card");
 });
 on_click("point-curve", () => change_point({corner: false}));
 on_click("point-corner", () => change_point({corner: true}));

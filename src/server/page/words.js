@@ -43,7 +43,7 @@ const option_name = name => OPTION_NAMES[name] ?? plain_name(name);
 export function fault_text({message, data}) {
   const {what = "", why, hint, line} = data ?? {}, plain = text => text.replace(/\boptions\.(\w+)/g, (_, name) => `“${option_name(name)}”`);
   if (!why) return message;
-  if (/no line of the grid/.test(why)) return "the Tactile Brush begins and ends on lines of the grid, and this stroke does not";
+  if (/off the lines of the grid/.test(why)) return "the Tactile Brush begins and ends on lines of the grid, and this stroke does not";
   const about = line ? `line ${line}` : OF_PROTOCOL.test(what) ? "" : option_name(what.replace(/^options\./, ""));
   return `${about && `${about}: `}${plain(why)}${hint && !(line && hint.length > SHORT_HINT) ? ` (${plain(hint)})` : ""}`;
 }

@@ -63,9 +63,8 @@ std::string library_messages::first() const
 namespace {
 
 constexpr std::size_t most_names = 12; // of PCMs in one message
-constexpr const char* no_card_hint =
-    "load the card's driver or overlay, or plug it in; {command:devices} lists what "
-    "there is; the PCM null needs no card";
+constexpr const char* no_card_hint = "load the card's driver or overlay, or plug it in; {command:devices} "
+                                     "lists all devices; the PCM null needs no card";
 
 std::string thing(const std::string& name)
 {
@@ -126,7 +125,7 @@ error no_device(const std::string& name, unsigned device, const card_info& c, co
         devices.push_back(d.number);
     const std::string why = fmt::format("card {} has no playback device {}", c.id, device);
     if (devices.empty())
-        return unavailable(name, why, "it has none at all: take another card");
+        return unavailable(name, why, "it has none: use another card");
     return unavailable(name, why, fmt::format("its playback devices: {}", fmt::join(devices, ", ")));
 }
 
@@ -161,15 +160,16 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
     else if (contains(bundled, type))
         hint = "install it: sudo apt install libasound2-plugins";
     else
-        hint =
-            fmt::format("is the type {} in its definition misspelt? Else install what has that file", type);
+        hint = fmt::format(
+            "check the spelling of the type {} in its definition, or install the package with that file",
+            type);
     return unavailable(name, with_detail("a plugin of ALSA's is missing", detail),
                        fmt::format("{}; or {}", hint, on_a_card(s)));
 }
 
 error no_jack(const std::string& name, const surroundings& s)
 {
-    return unavailable(name, "it leads to JACK, whose server does not run",
+    return unavailable(name, "it leads to JACK, but no JACK server is running",
                        "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s));
 }
 
@@ -201,7 +201,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
         return unavailable(name, with_detail("there is no sound card", detail), no_card_hint);
     if (defined)
         return {error_kind::not_available, thing(name),
-                with_detail("ALSA's configuration defines it, but not all that it refers to", detail),
+                with_detail("ALSA's configuration defines it, but not everything that it refers to", detail),
                 "look at its slave in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
     std::string hint = near(plain, cards, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
@@ -239,16 +239,18 @@ error busy(const std::string& name, const surroundings& s)
         server = server || contains(servers, h.program);
     }
     return unavailable(name, fmt::format("it is busy: {} plays on it", who),
-                       server ? "a sound server has it: the udev rules keep those off the card Tactor"
-                              : fmt::format("stop it, e.g. kill {}", holders.front().pid));
+                       server
+                           ? "a sound server uses it: the udev rules keep sound servers off the card Tactor"
+                           : fmt::format("stop it, e.g. kill {}", holders.front().pid));
 }
 
 error forbidden(const std::string& name, const surroundings& s)
 {
     const std::string group = playback_group(s.root);
     if (group == "root")
-        return unavailable(name, "no permission to open it",
-                           "/dev/snd is root's alone: run as root, or let udev give it to the group audio");
+        return unavailable(
+            name, "no permission to open it",
+            "only root may open /dev/snd: run as root, or let udev give it to the group audio");
     return unavailable(name, "no permission to open it",
                        fmt::format("join the group {0}: sudo usermod -aG {0} $USER, then log in again",
                                    group.empty() ? "audio" : group));
@@ -258,11 +260,10 @@ error forbidden(const std::string& name, const surroundings& s)
 // installed, and then fails with an errno that means nothing to people ("Host is down").
 error no_server(const std::string& name, const std::string& detail, const surroundings& s)
 {
-    const std::string hint =
-        "start it, as the user who is logged in: systemctl --user start pipewire-pulse, or pulseaudio "
-        "--start; root and services have none of their own. Or ";
+    const std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, "
+                             "or pulseaudio --start; root and services have no sound server. Or ";
     return {error_kind::not_available, thing(name),
-            with_detail("it leads to a sound server (PipeWire, PulseAudio), which is not there", detail),
+            with_detail("it leads to a sound server (PipeWire, PulseAudio) that is not running", detail),
             hint + on_a_card(s)};
 }
 

@@ -54,7 +54,7 @@ error unreadable(int code, const library_messages& messages)
     }
     return {error_kind::not_available, file.empty() ? "ALSA's configuration" : file,
             with_detail("ALSA cannot read its configuration", why.empty() ? snd_strerror(code) : why),
-            "mend or remove this file, or one that it includes; ALSA plays nothing until then"};
+            "repair or remove this file, or one that it includes; ALSA plays nothing until then"};
 }
 
 configuration parse(const std::string& text)
@@ -108,7 +108,7 @@ handle open(const alsa_options& o, snd_config_t* top)
 {
     if (const std::string fault = find_fault(top, o.pcm); !fault.empty())
         throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm), fault,
-                    "mend its definition in /etc/asound.conf or ~/.asoundrc: ALSA's library would end this "
+                    "repair its definition in /etc/asound.conf or ~/.asoundrc: ALSA's library would end this "
                     "program");
     const library_messages messages;
     snd_pcm_t* p = nullptr;
@@ -237,10 +237,10 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
     wider.wider = true;
     const bool holds = !has_channels && set_channels(p, copy(space), wider) != 0;
     const std::string why =
-        s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
+        s.empty() ? "it supports each of them alone, but not together" : fmt::format("refused: {}", s);
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                  fmt::format("cannot play {}; {}", request_text(o), why),
-                 fmt::format("it can do {}{}", describe(space),
+                 fmt::format("it supports {}{}", describe(space),
                              holds ? "; {wider=true} leaves the other channels silent" : ""))
         .with_field(has_channels ? "" : "channels");
 }
@@ -309,9 +309,9 @@ stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& a
     s.planar = access == SND_PCM_ACCESS_RW_NONINTERLEAVED;
     if (s.device_channels != asked_for.channels || s.rate != o.rate || period == 0 || buffer < period)
         throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                    fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it",
-                                request_text(o), counted(s.device_channels, "channel"), s.rate,
-                                s.period_frames, s.buffer_frames),
+                    fmt::format("asked for {}, it gave {} at {} Hz with {} of {} frames", request_text(o),
+                                counted(s.device_channels, "channel"), s.rate, s.period_frames,
+                                s.buffer_frames),
                     "use the PCM without plugins, e.g. hw:CARD=NAME");
     return s;
 }

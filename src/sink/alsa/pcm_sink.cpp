@@ -349,12 +349,12 @@ try {
                 s.rate, to_string(s.format), s.buffer_frames / s.period_frames, s.period_frames,
                 s.period_frames == o.period_frames && s.buffer_frames == o.periods * s.period_frames
                     ? ""
-                    : fmt::format("; {} of {} were wished", o.periods, o.period_frames));
+                    : fmt::format("; {} of {} were requested", o.periods, o.period_frames));
     if (s.batch)
         detail::log(o.log, log_kind::debug, "PCM \"{}\": its position moves by whole periods", o.pcm);
     if (!s.wiring.hidden_by.empty())
         detail::log(o.log, log_kind::warning,
-                    "PCM \"{}\": which of the device's channels its own reach is not known: {} is between",
+                    "PCM \"{}\": it is unknown which channels of the device its own reach: {} is between",
                     o.pcm, s.wiring.hidden_by);
     return std::make_unique<pcm_sink>(std::move(h), std::move(s), as_card || place);
 } catch (const error&) {
@@ -388,7 +388,8 @@ std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<boo
 {
     constexpr double longest_s = 5.0;
     if (!pause)
-        throw error(error_kind::bad_input, "reopen_alsa", "there is nothing that waits", "give a function");
+        throw error(error_kind::bad_input, "reopen_alsa", "there is no function that waits",
+                    "give a function");
     detail::log(o.log, log_kind::info, "waiting for PCM \"{}\" to come back", o.pcm);
     for (double wait_s = 0.1; pause(wait_s); wait_s = std::min(2.0 * wait_s, longest_s)) {
         try {

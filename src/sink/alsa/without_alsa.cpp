@@ -14,7 +14,7 @@ namespace {
 error without(std::string_view what)
 {
     return {error_kind::not_available, what, "tactor was built without ALSA",
-            "build it anew with -Dalsa=enabled, where libasound is"};
+            "build it again with -Dalsa=enabled and libasound"};
 }
 
 } // namespace

@@ -194,8 +194,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
             v = compute_cells(r.run, own.trials);
         if (measures ? own.trials.empty() : !v) {
             r.missing.push_back({d.participants[i], own.trials.empty()
-                                                        ? "no trial that counts"
-                                                        : "no trial that counts in some of the cells"});
+                                                        ? "no trial counts"
+                                                        : "no trial counts in some of the cells"});
             continue;
         }
         r.trials += own.trials.size();
@@ -283,8 +283,8 @@ void warn_of_figures(analysis& a, const run_analysis& r)
     for (std::size_t i = 0; i < r.worths.size(); ++i)
         if (r.n != 0 && !r.worths[i].log_worth)
             warn("worth of " + r.run.methods[i],
-                 fmt::format("the choices between it and {}, also by way of others, go one way or are "
-                             "missing, so it is not finite",
+                 fmt::format("the choices between it and {}, directly and through other methods, all go one "
+                             "way or are missing, so it is not finite",
                              r.run.methods[0]));
     const auto warn_of_effect = [&](const std::string& name, const effect& e) {
         if (e.ms_error && !e.f)

@@ -51,8 +51,8 @@ std::string change_text(const std::string& key, const ordered& began, const orde
     const std::string after = now.contains(key) ? now[key].dump() : "none";
     constexpr std::size_t longest = 60;
     if (std::max(before.size(), after.size()) > longest)
-        return fmt::format("\"{}\" is not as it was when the session began", key);
-    return fmt::format("the session was begun with {} {}, and now it is {}", key, before, after);
+        return fmt::format("\"{}\" differs from the start of the session", key);
+    return fmt::format("the session began with {} {}, but now it is {}", key, before, after);
 }
 
 std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
@@ -101,25 +101,25 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
             throw error(error_kind::bad_input, "--resume",
                         fmt::format("there is no {} in {}", session_name(folder_.code(), folder_.session()),
                                     folder_.path().string()),
-                        "correct --participant, or leave --resume out: then a new session begins");
+                        "correct --participant, or leave out --resume to begin a new session");
         return;
     }
     if (!resume)
         throw error(
             error_kind::bad_input, "--participant",
-            fmt::format("there is {} of {} already",
+            fmt::format("there is already {} of {}",
                         folder_.session() ? fmt::format("session {}", *folder_.session()) : "a session",
                         folder_.code()),
-            "--resume goes on with it; somebody else needs another code");
+            "use --resume to continue it, or another code for another person");
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
-        throw error(error_kind::bad_input, file.string(), "it is no JSON", "it was changed");
+        throw error(error_kind::bad_input, file.string(), "it is not JSON", "it was changed");
     ordered both = facts_; // keys of either
     both.update(began);
     for (const auto& [key, value] : both.items())
         if (!is_as_begun(key, began.value(key, ordered("")), facts_.value(key, ordered(""))))
             throw error(error_kind::bad_input, file.string(), change_text(key, began, facts_),
-                        "a session goes on as it was begun");
+                        "continue a session as it began");
     facts_ = began;
     resumed_ = true;
 }
@@ -212,7 +212,7 @@ void session_store::keep(const Write& write)
         release();
         write();
         throw error(error_kind::runtime, e.subject(), e.why(),
-                    "the last answer is kept; free some space, and --resume goes on");
+                    "the last answer is kept; free some space, then use --resume");
     }
 }
 
@@ -352,8 +352,8 @@ void session_store::check_tables() const
             lost = lost == nullptr ? r : lost;
         else if (lost != nullptr)
             throw error(error_kind::bad_input, table(*lost).string(),
-                        fmt::format("it is missing, and the run {} came after it", r->outline.name),
-                        "put it back: its trials would be asked once more");
+                        fmt::format("it is missing, but the run {} came after it", r->outline.name),
+                        "put it back: otherwise its trials would come once more");
         rows(*r);
         practice_rows(*r);
     }
@@ -373,8 +373,8 @@ std::vector<std::string> session_store::mend()
     const auto cut = [&](const fs::path& file, const text_table& t) {
         const auto at = t.cut_at();
         if (at)
-            done.push_back(fmt::format("{}: its last line was cut off: what is left of it is in {}",
-                                       file.string(), cut_file(file, *at).string()));
+            done.push_back(fmt::format("{}: its last line was incomplete and was moved to {}", file.string(),
+                                       cut_file(file, *at).string()));
         return at.has_value();
     };
     const bool lost_people = !is_on_disk(folder_.path() / "participants.tsv");
@@ -401,8 +401,8 @@ std::vector<std::string> session_store::mend()
     }
     const auto note_lost = [&](bool lost, const fs::path& file, const std::string& what) {
         done.push_back(file.string() +
-                       (lost ? ": it is missing: a new one is begun (put the old one back from a copy)"
-                             : fmt::format(": {} was missing, and is there again", what)));
+                       (lost ? ": it is missing: a new one begins (put the old one back from a copy)"
+                             : fmt::format(": {} was missing and was added again", what)));
     };
     if (added)
         note_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + folder_.code());

@@ -48,9 +48,10 @@ bool make_study_folder(const fs::path& folder)
     const fs::path parent = folder.parent_path();
     if (!parent.empty() && !fs::is_directory(parent, ignored))
         throw error(error_kind::bad_input, folder.string(),
-                    fmt::format("the folder \"{}\" does not exist", parent.string()), "make it first");
+                    fmt::format("the folder \"{}\" does not exist", parent.string()), "create it first");
     if (is_on_disk(folder) && !fs::is_directory(folder, ignored))
-        throw error(error_kind::bad_input, folder.string(), "it is no folder", "name a folder for the study");
+        throw error(error_kind::bad_input, folder.string(), "it is not a folder",
+                    "name a folder for the study");
     const bool is_new = !is_on_disk(folder);
     make_folder(folder);
     return is_new;
@@ -81,7 +82,7 @@ std::optional<std::size_t> find_row(const text_table& t, const named_cells& cell
 
 using ordered = nlohmann::ordered_json;
 
-constexpr const char* simulated_note = "SIMULATED: nobody was asked. The answers come from a model; they "
+constexpr const char* simulated_note = "SIMULATED: no person answered. The answers come from a model; they "
                                        "test the software and say nothing about people.";
 
 // Texts by which a data set says what wrote it.
@@ -99,12 +100,17 @@ ordered column_json(std::string_view description, std::string_view units = {})
 std::string readme_text(const experiment_definition& d, bool simulated)
 {
     return fmt::format(
-        "{}\n\n{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the "
-        "skin, and after\neach trial a question was answered; each run is a task of its own, and "
-        "sub-CODE/{}beh has a line for each\ntrial. What the columns mean is in task-NAME_beh.json. The "
-        "definition, the array, the levels and each\nstimulus, named by the SHA-256 of its plan, are in "
-        "sourcedata. Trials whose column void is true were\nplayed or answered under conditions that were "
-        "not as planned; they do not count, and come again.\ntactor analyze prints the statistics.\n",
+        "{}\n"
+        "\n"
+        "{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the skin, "
+        "and after\n"
+        "each trial the participant answered a question. Each run is one task, and sub-CODE/{}beh has a line "
+        "for each\n"
+        "trial. task-NAME_beh.json explains the columns. The definition, the array, the levels and each\n"
+        "stimulus, named by the SHA-256 of its plan, are in sourcedata. Trials whose column void is true "
+        "did\n"
+        "not play, or were not answered, as planned; they do not count, and come again.\n"
+        "tactor analyze prints the statistics.\n",
         d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.outline.name,
         d.session ? "ses-N/" : "");
 }
@@ -115,7 +121,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
     j["participant_id"] =
         column_json(simulated ? simulated_note : "A code, which says nothing about who it is");
     j["age"] = column_json("Age", "years");
-    j["sex"] = column_json("Sex, as the participant says");
+    j["sex"] = column_json("Sex, as the participant stated it");
     j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
     j["handedness"] = column_json("Hand that the participant prefers");
     j["handedness"]["Levels"] = {{"R", "right"}, {"L", "left"}, {"A", "both"}};
@@ -215,8 +221,8 @@ constexpr std::size_t fraction_digits = 6;
 void check_code(const std::string& code)
 {
     if (code.empty() || make_file_name(code) != code)
-        throw error(error_kind::bad_input, "--participant", fmt::format("\"{}\" is no code", code),
-                    "letters and digits only, as P07");
+        throw error(error_kind::bad_input, "--participant", fmt::format("\"{}\" is not a code", code),
+                    "use only letters and digits, as P07");
 }
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)
@@ -229,8 +235,8 @@ study_folder::study_folder(fs::path folder, const experiment_definition& d, std:
 {
     remove_leftovers(folder_);
     if (!is_on_disk(folder_ / "dataset_description.json") && has_other_things(folder_))
-        throw error(error_kind::bad_input, folder_.string(), "there are other things in it",
-                    "a study needs a folder of its own");
+        throw error(error_kind::bad_input, folder_.string(), "it contains other files",
+                    "give the study its own folder");
     refuse_others();
 }
 
@@ -244,7 +250,7 @@ study_folder::~study_folder()
 void study_folder::refuse_others()
 {
     const auto kind = [](bool simulated) { return simulated ? "simulated" : "real"; };
-    constexpr const char* one_kind = "simulated and real sessions need a folder each";
+    constexpr const char* one_kind = "keep simulated and real sessions in different folders";
     std::vector<std::string> otherwise;
     std::vector<std::pair<std::string, session_number>> all; // codes, with a session
     std::error_code failed;
@@ -257,26 +263,26 @@ void study_folder::refuse_others()
         if (!is_on_disk(file))
             continue;
         if (code != code_ && in_small_letters(code) == in_small_letters(code_))
-            throw error(error_kind::bad_input, "--participant",
-                        fmt::format("sub-{} is here already, and sub-{} is the same name where a disk does "
-                                    "not know capitals",
-                                    code, code_),
-                        "choose another code");
+            throw error(
+                error_kind::bad_input, "--participant",
+                fmt::format("sub-{} exists, and sub-{} is the same name on a disk that ignores capitals",
+                            code, code_),
+                "choose another code");
         const std::string who = session_name(code, session);
         const session_data s = read_session(file);
         if (s.simulated != simulated_)
             throw error(
                 error_kind::bad_input, folder_.string(),
-                fmt::format("{} is {}, and this session is {}", who, kind(s.simulated), kind(simulated_)),
+                fmt::format("{} is {}, but this session is {}", who, kind(s.simulated), kind(simulated_)),
                 one_kind);
         if (const std::string found = find_difference(s.experiment, definition_.outline); !found.empty())
             throw error(error_kind::bad_input, folder_.string(),
                         fmt::format("{} had another experiment: {}", who, found),
-                        "each experiment needs a folder of its own");
+                        "give each experiment its own folder");
         if (code == code_ && session != definition_.session && s.group != definition_.group)
             throw error(error_kind::bad_input, "--group",
-                        fmt::format("{} is of group \"{}\", not \"{}\"", who, s.group, definition_.group),
-                        "a participant is in one group");
+                        fmt::format("{} is in group \"{}\", not \"{}\"", who, s.group, definition_.group),
+                        "keep a participant in one group");
         if (s.text != definition_.text)
             otherwise.push_back(who);
     }
@@ -286,18 +292,18 @@ void study_folder::refuse_others()
             warnings_.push_back(fmt::format("sub-{} and sub-{}: {}", code, code_, alike_codes));
     for (unsigned n = 1; n < definition_.session.value_or(1); ++n)
         if (std::ranges::count(all, std::pair(code_, session_number(n))) == 0)
-            warnings_.push_back(fmt::format("{} is not here", session_name(code_, n)));
+            warnings_.push_back(fmt::format("the folder has no {}", session_name(code_, n)));
     if (!otherwise.empty()) {
         std::sort(otherwise.begin(), otherwise.end());
         warnings_.push_back(fmt::format("{} had another text of this definition: levels, gaps, methods and "
-                                        "motions may have been others (session.json has them)",
+                                        "motions may differ (session.json has them)",
                                         fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
     if (is_on_disk(description) && says_simulated(read_file(description)) == !simulated_)
         throw error(
             error_kind::bad_input, description.string(),
-            fmt::format("it is of {} sessions, and this one is {}", kind(!simulated_), kind(simulated_)),
+            fmt::format("it has {} sessions, but this one has {}", kind(!simulated_), kind(simulated_)),
             one_kind);
 }
 
@@ -362,7 +368,7 @@ void study_folder::check_lists() const
     if (const auto row = find_row(people, {{"participant_id", "sub-" + code_}});
         row && !group.empty() && people.has("group"))
         if (const auto listed = people.cell(*row, "group"); listed && *listed != group)
-            people.refuse(*row, fmt::format("sub-{} is of group \"{}\", not \"{}\"", code_, *listed, group),
+            people.refuse(*row, fmt::format("sub-{} is in group \"{}\", not \"{}\"", code_, *listed, group),
                           "use --group with the group of the list, or correct the list");
     const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
@@ -372,8 +378,8 @@ void study_folder::check_lists() const
         for (const auto& [column, text] : make_cells(q, code_, session(), {}, {}))
             if (!answers.has(column))
                 throw error(error_kind::bad_input, source_place{answers.file(), 1},
-                            fmt::format("there is no column {}, which the questionnaire has", column),
-                            "give a questionnaire that was changed another name");
+                            fmt::format("the column {} of the questionnaire is missing", column),
+                            "give a changed questionnaire another name");
     }
 }
 

@@ -71,7 +71,7 @@ std::uint64_t whole(std::string_view key, std::string_view text)
 {
     const double v = number(key, text, 0.0, 0x1p53);
     if (v != std::floor(v))
-        refuse(fmt::format("{} is {}", key, text), "a whole number");
+        refuse(fmt::format("{} is {}", key, text), "give a whole number");
     return static_cast<std::uint64_t>(v);
 }
 
@@ -86,7 +86,7 @@ void take(observer_settings& o, std::string_view key, std::string_view value)
     else if (key == "seed")
         o.seed = whole(key, value);
     else
-        refuse(fmt::format("\"{}\" is not known", key));
+        refuse(fmt::format("\"{}\" is unknown", key));
 }
 
 // Keeps the entries of the measured tactors, if the list has one for each tactor of the array.
@@ -97,7 +97,7 @@ void choose_measured(observer_settings& o, const std::vector<unsigned>& measured
         return;
     if (n != all)
         refuse(fmt::format("{} for {}", counted(n, "threshold"), counted(measured.size(), "tactor")),
-               "one for all, or one for each");
+               "give one for all, or one for each");
     std::vector<double> own;
     for (const unsigned t : measured)
         own.push_back(o.thresholds_dbfs[t]);
@@ -394,7 +394,7 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
     for (std::string_view item : detail::split(text, ',')) {
         if (const std::size_t equals = item.find('='); equals != item.npos) {
             if (std::find(seen.begin(), seen.end(), item.substr(0, equals)) != seen.end())
-                refuse(fmt::format("{} is said twice", item.substr(0, equals)));
+                refuse(fmt::format("{} occurs twice", item.substr(0, equals)));
             seen.push_back(item.substr(0, equals));
             item.remove_prefix(equals + 1);
         } else if (seen.empty() || seen.back() != "threshold") {

@@ -46,8 +46,8 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
     for (const auto& [key, value] : all.items())
         ours = ours && j.contains(key);
     if (!ours || !j["date"].is_string())
-        throw error(error_kind::bad_input, file.string(), "it does not say how a calibration was begun",
-                    "begin another, with another log");
+        throw error(error_kind::bad_input, file.string(), "it does not say how the calibration began",
+                    "start a new calibration with another log");
     return j;
 }
 
@@ -60,9 +60,9 @@ void take_beginning(const fs::path& file, calibration_settings& s)
     for (const auto& [key, value] : now.items())
         if (key != "masker_pcm" && began[key] != value)
             throw error(error_kind::bad_input, file.string(),
-                        fmt::format("the session was begun with {} {}, and {} is asked for", key,
-                                    began[key].dump(), value.dump()),
-                        "a session goes on as it was begun");
+                        fmt::format("the session began with {} {}, but now it is {}", key, began[key].dump(),
+                                    value.dump()),
+                        "continue a session as it began");
 }
 
 // Returns the name of the file with the settings: that of the log with the extension .json.
@@ -176,7 +176,8 @@ void check_beginning(const fs::path& log, calibration_settings& s)
     const fs::path beginning = settings_file(log);
     if (!is_on_disk(beginning))
         throw error(error_kind::bad_input, beginning.string(),
-                    "it is missing, which says how the session was begun", "begin another, with other names");
+                    "it is missing, and it records how the session began",
+                    "start a new calibration with another file name");
     take_beginning(beginning, s);
 }
 
@@ -192,17 +193,18 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
     made_ = !begun && !is_on_disk(file_);
     if (resume && made_)
         throw error(error_kind::bad_input, "--resume", fmt::format("there is no log {}", file_.string()),
-                    "correct -o or --log, or leave --resume out: then a new session begins");
+                    "correct -o or --log, or leave out --resume to begin a new session");
     open();
     try {
         lines_ = read_lines();
         // A log without answers, left for example by a missing device, begins anew.
         if (!resume && lines_.rows() > 0)
-            throw error(error_kind::bad_input, file_.string(), "there is such a file already",
-                        "--resume goes on with the session that it is of; another needs other names");
+            throw error(error_kind::bad_input, file_.string(), "it exists",
+                        "use --resume to continue its session, or other names for a new one");
         if (!begun && lines_.rows() > 0)
             throw error(error_kind::bad_input, beginning.string(),
-                        "it is missing, which says how the log was begun", "begin another, with another log");
+                        "it is missing, and it records how the log began",
+                        "start a new calibration with another log");
         if (!begun || !resume)
             detail::write_file(beginning, settings_text(s), detail::owner_kind::program);
         if (synced_)
@@ -241,7 +243,7 @@ void calibration_log::open()
         throw error(bad_name ? error_kind::bad_input : error_kind::runtime, file_.string(),
                     code == ELOOP ? "it is a link" : std::strerror(code), "name a log that can be written");
     if (::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode))
-        throw error(error_kind::bad_input, file_.string(), "it is no regular file", "name another log");
+        throw error(error_kind::bad_input, file_.string(), "it is not a regular file", "name another log");
     if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
         throw error(error_kind::bad_input, file_.string(), "another session is writing it",
                     "end that one first, or name another log");
@@ -256,7 +258,7 @@ text_table calibration_log::read_lines() const
     text_table t(file_, text, last_line::may_be_cut);
     for (const auto& [column, cell] : log_cells({}))
         if (!t.has(column))
-            throw error(error_kind::bad_input, file_.string(), "it is no log of a calibration",
+            throw error(error_kind::bad_input, file_.string(), "it is not the log of a calibration",
                         "name another log");
     if (t.is_open() && t.columns().back() == "onset_frame")
         if (const auto frame = t.cell(t.rows() - 1, "onset_frame"); frame && frame->starts_with('n'))
@@ -321,14 +323,15 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
     for (std::size_t row = 0; row < lines.rows(); ++row) {
         if (c.done())
             lines.refuse(row, "the session ends before this line",
-                         "the log is not of this session; begin another, with another log");
+                         "the log belongs to another session; start a new calibration with another log");
         const calibration_trial trial = c.next();
         const calibration_answer own =
             simulated != nullptr ? simulated->answer(trial) : answer_in(lines, row);
         const bool possible = trial.interval == 0 || own.interval == 1 || own.interval == 2;
         if (!possible || !is_same(log_cells(c.answer(own)), lines, row))
-            lines.refuse(row, "this is not how the session went",
-                         "the log was changed, or is not of this session; begin another, with another log");
+            lines.refuse(row, "the session went differently",
+                         "the log was changed, or belongs to another session; start a new calibration with "
+                         "another log");
     }
 }
 
@@ -353,8 +356,8 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
 void check_new_output(const std::filesystem::path& file)
 {
     if (is_on_disk(file))
-        throw error(error_kind::bad_input, file.string(), "there is such a file already",
-                    "choose another name: it is not overwritten");
+        throw error(error_kind::bad_input, file.string(), "it exists",
+                    "choose another name: tactor does not overwrite it");
     try_whole(file);
 }
 
@@ -375,8 +378,8 @@ void check_finished(const std::filesystem::path& file, const calibration_setting
     if (!written || is_foreign(*written, s) || written->method != to_string(s.method) ||
         written->carrier_hz != s.carrier_hz || written->interval_s != s.interval_s ||
         written->seed != s.seed || written->date != s.date || tactors != s.tactors)
-        throw error(error_kind::bad_input, file.string(), "it is not what this session came to",
-                    "choose another name: it is not overwritten");
+        throw error(error_kind::bad_input, file.string(), "it does not match the result of this session",
+                    "choose another name: tactor does not overwrite it");
 }
 
 bool is_foreign(const calibration_origin& earlier, const calibration_settings& s)
@@ -436,9 +439,9 @@ std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_
                 {i, fmt::format("it is {:.1f} dB above the median of the array's ({:.1f} dBFS)", above,
                                 usual_dbfs)});
         else if (own != measured.end() && own->check_below_right.value_or(0) >= too_many_below)
-            doubtful.push_back({i, fmt::format("{} of {} answers 6 dB below it were right, after a second "
-                                               "staircase too",
-                                               *own->check_below_right, check_count)});
+            doubtful.push_back(
+                {i, fmt::format("{} of {} answers 6 dB below it were right, even after a second staircase",
+                                *own->check_below_right, check_count)});
     }
     return doubtful;
 }

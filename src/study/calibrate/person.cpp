@@ -78,7 +78,7 @@ void person::make_room(const score& s)
     const double wait_s = stage_.room_s(s, 0.0);
     if (wait_s == 0.0)
         return;
-    session::show(fmt::format("a pause of {:.1f} s, so that tactors are not driven for too long\n", wait_s));
+    session::show(fmt::format("a pause of {:.1f} s, so that no tactor vibrates for too long\n", wait_s));
     stage_.pass(wait_s, [](double) { return true; });
 }
 
@@ -107,14 +107,14 @@ void person::begin()
              .choices = {words_["begin"]},
              .keys = " "});
     session::show(
-        choice ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
+        choice ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess if you do not know.\n"
                : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
                  "is it;\n"
                  "n: not felt at any level.\n");
     if (!keys_.has_keys())
         return;
-    session::show(page_ != nullptr ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
-                                   : "Any key begins, Ctrl-C ends; what was answered is kept.\n");
+    session::show(page_ != nullptr ? "The participant begins, Ctrl-C ends; the answers are kept.\n"
+                                   : "Any key begins, Ctrl-C ends; the answers are kept.\n");
     while (keys_.wait().text.empty())
         ;
 }
@@ -123,7 +123,7 @@ void person::begin()
 void person::rest()
 {
     on_page({.name = "introduce", .text = words_["rest"], .choices = {words_["begin"]}, .keys = " "});
-    session::show("A break: the participant begins again.\n");
+    session::show("A break: the participant continues.\n");
     while (keys_.wait().text.empty())
         ;
 }

@@ -46,7 +46,7 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
         all.push_back(i->path());
     if (failed)
         throw error(error_kind::bad_input, source_place{folder.string()}, failed.message(),
-                    "it must be readable as a whole")
+                    "let it be readable, with everything in it")
             .with_os_code(failed.value());
     return all;
 }
@@ -60,7 +60,7 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
             continue;
         if (std::find(known.begin(), known.end(), name.substr(prefix.size())) == known.end())
             throw error(error_kind::bad_input, source_place{path.string()},
-                        "it is of nobody in participants.tsv", "add a line, or move it away");
+                        "participants.tsv does not list its participant", "add a line, or move it away");
     }
 }
 
@@ -70,12 +70,12 @@ std::vector<std::string> read_codes(const fs::path& folder)
     std::error_code failed;
     if (!fs::is_directory(fs::status(folder, failed)))
         throw error(error_kind::bad_input, source_place{folder.string()},
-                    failed ? failed.message() : "it is no folder", "name the folder of a study")
+                    failed ? failed.message() : "it is not a folder", "name the folder of a study")
             .with_os_code(failed ? failed.value() : ENOTDIR);
     std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
     if (known.empty())
         throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
-                    "nobody is in it", "tactor experiment adds a line for each participant");
+                    "it lists no participant", "tactor experiment adds a line for each participant");
     refuse_strangers(folder, known);
     return known;
 }
@@ -117,7 +117,7 @@ std::vector<std::string> select(const std::vector<std::string>& known, const sel
         else
             selected.push_back(code);
     if (selected.empty())
-        throw selection_error("participants", "nobody is left", "somebody must have taken part");
+        throw selection_error("participants", "no participant remains", "select at least one participant");
     return selected;
 }
 
@@ -127,7 +127,7 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
     const std::string_view name = t.need(row, column);
     const auto at = std::find(known.begin(), known.end(), name);
     if (at == known.end())
-        t.refuse(row, fmt::format("{} \"{}\" is none of the run's", column, name),
+        t.refuse(row, fmt::format("{} \"{}\" is not in the run", column, name),
                  fmt::format("one of {}", fmt::join(known, ", ")));
     return static_cast<std::size_t>(at - known.begin());
 }
@@ -139,9 +139,10 @@ unsigned read_twice(const text_table& t, std::size_t row, std::string_view colum
     const auto response = t.whole(row, "response", least, most);
     const auto own = t.whole(row, column, least, most);
     if (!response && !own)
-        t.refuse(row, fmt::format("there is no {}", column), "a trial that counts has one");
+        t.refuse(row, fmt::format("the {} is missing", column), "a trial that counts needs one");
     if (response && own && *response != *own)
-        t.refuse(row, fmt::format("response is {} and {} {}", *response, column, *own), "they are the same");
+        t.refuse(row, fmt::format("response is {}, but {} is {}", *response, column, *own),
+                 "make them equal");
     return own ? *own : *response;
 }
 
@@ -150,12 +151,12 @@ double read_value(const text_table& t, std::size_t row, const run_outline& run)
 {
     const auto value = t.number(row, "value");
     if (!value)
-        t.refuse(row, "there is no value", "the value of the comparison");
+        t.refuse(row, "the value is missing", "give the value of the comparison");
     const auto is_same = [&value](double one) {
         return std::abs(one - *value) <= 1e-12 * std::max(1.0, std::abs(one));
     };
     if (std::ranges::none_of(run.values, is_same))
-        t.refuse(row, fmt::format("value {} is none of the run's", t.need(row, "value")),
+        t.refuse(row, fmt::format("value {} is not in the run", t.need(row, "value")),
                  fmt::format("one of {}", fmt::join(run.values, ", ")));
     return *value;
 }
@@ -165,7 +166,7 @@ unsigned read_one_of_two(const text_table& t, std::size_t row)
 {
     const auto response = t.whole(row, "response", 1, 2);
     if (!response)
-        t.refuse(row, "there is no response", "a trial that counts has one");
+        t.refuse(row, "the response is missing", "a trial that counts needs one");
     return *response;
 }
 
@@ -180,7 +181,7 @@ void read_measure(trial& r, const text_table& t, std::size_t row, const run_outl
         r.method_2 = find_place(t, row, "method_2", run.methods);
         r.signal = r.method_1 != r.method_2;
     } else if (run.standard && !standard_first && t.need(row, "method_2") != standard_name) {
-        t.refuse(row, "no stimulus is the standard", "one of each trial is");
+        t.refuse(row, "no stimulus is the standard", "each trial needs one");
     }
     if (!run.vary.empty() && r.signal)
         r.value = read_value(t, row, run);
@@ -200,7 +201,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.motion = find_place(t, row, "motion", run.motions);
     r.response_time_s = t.number(row, "response_time");
     if (r.response_time_s.value_or(0.0) < 0.0)
-        t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "0 or more seconds");
+        t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 or more seconds");
     if (find_task(run.task).measures) {
         read_measure(r, t, row, run);
         return r;
@@ -213,7 +214,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     } else {
         r.method_2 = find_place(t, row, "method_2", run.methods);
         if (r.method_1 == r.method_2)
-            t.refuse(row, "both stimuli are of one method", "choose compares two");
+            t.refuse(row, "both stimuli have the same method", "choose compares two");
         r.response = read_one_of_two(t, row);
     }
     return r;
@@ -226,7 +227,7 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
     run_data d = read_run(t, run);
     if (t.cut_at())
         t.refuse_cut(d.trials.size() < run.trials
-                         ? "tactor experiment --resume keeps what is left of it beside the table, and goes on"
+                         ? "use tactor experiment --resume, which keeps the rest of it next to the table"
                          : "complete it, or delete it");
     return d;
 }
@@ -254,8 +255,8 @@ public:
     {
         if (first_.empty())
             throw error(error_kind::bad_input, source_place{(folder_ / "sourcedata").string()},
-                        "nobody has a session.json",
-                        "tactor experiment writes it, with the experiment in it");
+                        "no participant has a session.json",
+                        "tactor experiment writes it, with the definition in it");
         for (std::vector<run_data>& runs : set_.data)
             runs.resize(set_.experiment.runs.size());
         return std::move(set_);
@@ -278,10 +279,10 @@ private:
             runs.resize(set_.experiment.runs.size());
         }
         if (group != s.group)
-            throw error(
-                error_kind::bad_input, session_name(code, session),
-                fmt::format("it is of group \"{}\", and an earlier session of group \"{}\"", s.group, group),
-                "a participant is in one group: correct session.json, or {exclude} the participant");
+            throw error(error_kind::bad_input, session_name(code, session),
+                        fmt::format("it is in group \"{}\", but an earlier session is in group \"{}\"",
+                                    s.group, group),
+                        "a participant is in one group: correct session.json, or {exclude} the participant");
         for (std::size_t i = 0; i < set_.experiment.runs.size(); ++i) {
             const run_outline& run = find_run(set_, set_.participants.size() - 1, i);
             const fs::path table = table_path(code, session, run);
@@ -318,8 +319,8 @@ private:
             differs("their experiments differ: " + found, "choose with {participants} or {exclude}");
         if (s.text != text_)
             set_.warnings.push_back(fmt::format(
-                "{} and {}: the texts of their experiments differ, though not in what is analysed", first_,
-                name));
+                "{} and {}: the texts of their experiments differ, but not in parts that the analysis reads",
+                first_, name));
     }
 
     // Refuses a table of no run: the analysis would pass over it in silence.
@@ -333,7 +334,7 @@ private:
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
                 std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), is_its_table))
                 throw error(error_kind::bad_input, source_place{path.string()},
-                            "it is of no run of the experiment", "move it away");
+                            "it belongs to no run of the experiment", "move it away");
         }
     }
 
@@ -400,7 +401,7 @@ session_data read_session(const std::filesystem::path& file)
 {
     const std::string name = file.string();
     const nlohmann::ordered_json j = files::read_object(read_file(file), name);
-    const files::json_value all(j, name, "tactor-analyze(1) says what is read");
+    const files::json_value all(j, name, "tactor-analyze(1) lists what it reads");
     session_data s;
     s.simulated = all["simulated"].need_truth();
     s.text = all["experiment"]["text"].need_text();
@@ -409,7 +410,7 @@ session_data read_session(const std::filesystem::path& file)
     if (!groups.empty()) {
         s.group = all["group"].need_text();
         if (std::ranges::find(groups, s.group, &group_outline::name) == groups.end())
-            all["group"].refuse("is no group of the experiment");
+            all["group"].refuse("is not a group of the experiment");
     }
     return s;
 }
@@ -423,7 +424,7 @@ std::vector<session_number> list_sessions(const fs::path& folder, std::string_vi
                 if (const std::string name = path.filename().string(); name.starts_with("ses-")) {
                     const auto n = detail::number_in<unsigned>(name.substr(4));
                     if (!n || fmt::format("ses-{}", *n) != name)
-                        throw error(error_kind::bad_input, source_place{path.string()}, "it is no session",
+                        throw error(error_kind::bad_input, source_place{path.string()}, "it is not a session",
                                     "call it ses-1, ses-2 and so on, or move it away");
                     all.insert(n);
                 }
@@ -485,9 +486,9 @@ std::vector<std::string> read_participants(const text_table& t)
     for (std::size_t i = 0; i < t.rows(); ++i) {
         const std::string_view code = read_code(t.need(i, "participant_id"));
         if (code.empty())
-            t.refuse(i, "this is no participant_id", "sub- and letters and digits");
+            t.refuse(i, "this is not a participant_id", "use sub- with letters and digits");
         if (std::find(all.begin(), all.end(), code) != all.end())
-            t.refuse(i, fmt::format("sub-{} is there twice", code), "everybody has one line");
+            t.refuse(i, fmt::format("sub-{} occurs twice", code), "give each participant one line");
         all.emplace_back(code);
     }
     return all;
@@ -503,14 +504,14 @@ run_data read_run(const text_table& t, const run_outline& run)
     for (std::size_t i = 0; i < t.rows(); ++i) {
         const auto place = t.whole(i, "trial", 1, run.trials > 0 ? run.trials : 1000000);
         if (!place)
-            t.refuse(i, "there is no trial", "its place in the sequence, from 1");
+            t.refuse(i, "the trial is missing", "give its place in the sequence, from 1");
         const unsigned attempt = t.whole(i, "attempt", 1, 1000000).value_or(1);
         if (t.truth(i, "void")) {
             ++d.voids;
             continue;
         }
         if (!seen.insert(*place).second)
-            t.refuse(i, fmt::format("trial {} counts twice", *place), "all its attempts but one are void");
+            t.refuse(i, fmt::format("trial {} counts twice", *place), "make all its attempts but one void");
         trial r = read_trial(t, i, run);
         if (t.has("early") && t.cell(i, "early"))
             r.early = t.truth(i, "early");
@@ -531,8 +532,8 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
             if (!is_new)
                 throw error(
                     error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
-                    fmt::format("sub-{} is in {} too", code, (home->second / "participants.tsv").string()),
-                    "name each folder once, and rename a code that two people have");
+                    fmt::format("sub-{} is also in {}", code, (home->second / "participants.tsv").string()),
+                    "name each folder once, and rename a code that two people share");
             known.push_back(code);
         }
     reader r;

@@ -46,16 +46,16 @@ struct task_row {
 /// Rows in the order of task_kind.
 inline constexpr std::array<task_row, 8> tasks{{
     {"choose",
-     "Two stimuli, one after the other, of which one is chosen",
+     "Two stimuli, one after the other; the participant chooses one",
      "Which of the two stimuli was chosen, 1 or 2",
      {"Which of the two was more like the target?", "Which of the two was more even?"}},
     {"rate",
-     "One stimulus, which is rated",
+     "One stimulus, which the participant rates",
      "The rating, {}",
      {"How much was it like the target?", "How even was it?"}},
     {"identify",
-     "One stimulus, whose motion is named",
-     "The motion that was named",
+     "One stimulus; the participant names its motion",
+     "The motion that the participant named",
      {"Which movement was it?", "Which movement was it?", "Which movement was it?"}},
     {"detect",
      "One stimulus or none",
@@ -68,20 +68,20 @@ inline constexpr std::array<task_row, 8> tasks{{
      {"Were both the same?", "Were both the same?", "Were both the same?"},
      true},
     {"estimate",
-     "One stimulus, or a standard and then a stimulus, to which a number is given",
-     "The number that was given",
+     "One stimulus, or a standard and then a stimulus, which the participant gives a number",
+     "The number that the participant gave",
      {},
      true,
      true},
     {"constant",
-     "One stimulus that is judged, or a standard and a comparison of which one is chosen; stated values",
+     "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
      "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
      {},
      true,
      true},
     {"adaptive",
-     "One stimulus that is judged, or a standard and a comparison of which one is chosen; values by the "
-     "answers before",
+     "One stimulus to judge, or a standard and a comparison to choose from; the previous answers choose the "
+     "values",
      "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
      {},
      true,
@@ -320,7 +320,7 @@ struct selection {
 bool are_alike(std::string_view a, std::string_view b);
 
 /// Warning about such codes.
-inline constexpr std::string_view alike_codes = "these codes look alike: is it one person?";
+inline constexpr std::string_view alike_codes = "these codes look alike: check whether they are one person";
 
 /// Reads the codes in participants.tsv, without sub-. \throws error (bad_input) with file and line.
 std::vector<std::string> read_participants(const text_table& t);

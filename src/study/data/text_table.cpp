@@ -112,11 +112,11 @@ std::string read_file(const std::filesystem::path& file)
     const std::filesystem::file_status s = std::filesystem::status(file, failed);
     if (!std::filesystem::exists(s))
         throw error(error_kind::bad_input, source_place{file.string()}, failed.message(),
-                    "the folder of a study is what tactor experiment wrote")
+                    "name a folder that tactor experiment wrote")
             .with_os_code(failed.value());
     if (!std::filesystem::is_regular_file(s))
-        throw error(error_kind::bad_input, source_place{file.string()}, "it is no file",
-                    "the folder of a study has files only");
+        throw error(error_kind::bad_input, source_place{file.string()}, "it is not a file",
+                    "only regular files belong in the folder of a study");
     return std::string(
         std::string_view(detail::read_text_file(file, most_bytes, detail::owner_kind::program)));
 }
@@ -128,12 +128,12 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
     std::error_code failed;
     const auto refuse = [&](std::string_view why) {
         throw error(error_kind::bad_input, source_place{at.string()}, why,
-                    "mend it, or leave its participant out with {exclude}")
+                    "correct it, or leave out its participant with {exclude}")
             .with_os_code(failed.value());
     };
     for (const fs::path& part : below) {
         if (at != study && !fs::is_directory(at, failed))
-            refuse(failed ? failed.message() : "it is no folder");
+            refuse(failed ? failed.message() : "it is not a folder");
         at /= part;
         if (fs::symlink_status(at, failed).type() == fs::file_type::not_found)
             return false;
@@ -179,7 +179,7 @@ void text_table::take_header(table_line line)
     for (const auto& [sign, name] : others)
         if (line.cells.size() == 1 && line.cells.front().text.find(sign) != std::string::npos)
             refuse_at(
-                line.begin(), fmt::format("{} are between the columns, not tabs", name),
+                line.begin(), fmt::format("{} separate the columns, not tabs", name),
                 "save it with tabs: in a spreadsheet as text with {Tab} between fields, in R and pandas with "
                 "sep = \"\\t\"");
     while (line.cells.back().text.empty())
@@ -193,8 +193,8 @@ void text_table::take_header(table_line line)
             refuse_at(line.begin(), "a column has no name",
                       "leave out the numbers of rows: index = False in pandas, row.names = FALSE in R");
         if (has(c.text))
-            refuse_at(line.begin(), fmt::format("the column {} is there twice", c.text),
-                      "each has a name of its own");
+            refuse_at(line.begin(), fmt::format("the column {} occurs twice", c.text),
+                      "give each column its own name");
         columns_.push_back(std::move(c.text));
     }
 }
@@ -210,12 +210,12 @@ void text_table::take_row(table_line line, bool may_be_cut)
     if (!plain)
         refuse_at(line.begin(), "it is not UTF-8", utf8_hint);
     if (line.cells.size() == columns_.size() + 1 && rows_.empty() && line.cells.front().text == "1")
-        refuse_at(line.begin(), "it begins with the row's number, which has no column",
+        refuse_at(line.begin(), "it begins with a row number, which has no column",
                   "leave it out: row.names = FALSE in R");
     if (line.cells.size() != columns_.size())
         refuse_at(line.begin(),
                   fmt::format("it has {}, not {}", counted(line.cells.size(), "column"), columns_.size()),
-                  "there is a tab between two of them, and n/a where there is no value");
+                  "put a tab between two cells, and n/a in a cell without a value");
     rows_.push_back(std::move(line));
 }
 
@@ -229,7 +229,7 @@ std::optional<std::size_t> text_table::find(std::string_view column) const
 void text_table::need_column(std::string_view column) const
 {
     if (!has(column))
-        refuse_at(0, fmt::format("there is no column {}", column), "tactor-analyze(1) lists them");
+        refuse_at(0, fmt::format("the column {} is missing", column), "tactor-analyze(1) lists them");
 }
 
 std::optional<std::string_view> text_table::cell(std::size_t row, std::string_view column) const
@@ -243,7 +243,7 @@ std::string_view text_table::need(std::size_t row, std::string_view column) cons
 {
     const auto text = cell(row, column);
     if (!text)
-        refuse(row, fmt::format("{} is missing", column), "n/a is not enough here");
+        refuse(row, fmt::format("{} is missing", column), "n/a is not allowed here");
     return *text;
 }
 
@@ -256,7 +256,7 @@ std::optional<unsigned> text_table::whole(std::size_t row, std::string_view colu
     const auto v = detail::number_in<double>(*text); // pandas makes 3.0 of a 3 where another row has none
     if (!v || *v != std::floor(*v) || *v < least || *v > most)
         refuse(row, fmt::format("{} is \"{}\"", column, *text),
-               fmt::format("a whole number from {} to {}", least, most));
+               fmt::format("give a whole number from {} to {}", least, most));
     return static_cast<unsigned>(*v);
 }
 
@@ -267,7 +267,7 @@ std::optional<double> text_table::number(std::size_t row, std::string_view colum
         return {};
     const auto v = detail::number_in<double>(*text);
     if (!v || !std::isfinite(*v))
-        refuse(row, fmt::format("{} is \"{}\"", column, *text), "a number with a point, or n/a");
+        refuse(row, fmt::format("{} is \"{}\"", column, *text), "give a number with a decimal point, or n/a");
     return v;
 }
 
@@ -276,7 +276,7 @@ bool text_table::truth(std::size_t row, std::string_view column) const
     const std::string_view text = need(row, column);
     const std::string small = in_small_letters(std::string(text));
     if (small != "true" && small != "false")
-        refuse(row, fmt::format("{} is \"{}\"", column, text), "true or false");
+        refuse(row, fmt::format("{} is \"{}\"", column, text), "give true or false");
     return small == "true";
 }
 
@@ -301,7 +301,7 @@ std::optional<std::size_t> text_table::cut_at() const noexcept
 
 void text_table::refuse_cut(std::string_view hint) const
 {
-    refuse(rows(), "the last line is cut off", hint);
+    refuse(rows(), "the last line is incomplete", hint);
 }
 
 std::string text_table::line(const named_cells& cells) const

@@ -52,7 +52,7 @@ struct cell_reader {
     {
         const double frame = table.number(row, column.name).value_or(0.0);
         if (frame < 0.0 || frame > 9e15 || frame != std::floor(frame))
-            table.refuse(row, fmt::format("{} is no frame", column.name), "a whole number");
+            table.refuse(row, fmt::format("{} is not a frame", column.name), "give a whole number");
         v = static_cast<std::uint64_t>(frame);
     }
     template <class T>
@@ -105,31 +105,33 @@ void add_cells(trial_cells& into, const text_table& t, std::size_t row)
 const std::array<trial_column, 23> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
-    {"duration", "From the first frame of the first stimulus to the last of the last, the gap included", "s",
+    {"duration",
+     "From the first frame of the first stimulus to the last frame of the last, including the gap", "s",
      &trial_row::duration_s},
     {"trial", "Place in the sequence, from 1; a trial that comes again keeps it", "", &trial_row::trial,
      column_use::analysis, 1},
-    {"attempt", "How often the trial has been begun", "", &trial_row::attempt, column_use::analysis, 1},
+    {"attempt", "Number of the attempt at the trial", "", &trial_row::attempt, column_use::analysis, 1},
     {"group", "Group of the participant", "", &trial_row::group, column_use::some},
     {"session", "Number of the session, from 1", "", &trial_row::session, column_use::some, 1},
     {"motion", "Target motion; the methods are how it was rendered", "", &trial_row::motion,
      column_use::analysis},
     {"method_1", "Method of the first stimulus", "", &trial_row::method_1, column_use::analysis},
-    {"method_2", "Method of the second stimulus; n/a where there is one only", "", &trial_row::method_2},
+    {"method_2", "Method of the second stimulus; n/a if there is only one", "", &trial_row::method_2},
     {"response", "", "", &trial_row::response, column_use::analysis},
     {"response_time", "From the last stimulus frame at the DAC to the answer", "s",
      &trial_row::response_time_s, column_use::analysis},
     {"early", "Whether the answer came sooner after the stimulus than min_response_s; n/a without an answer",
      "", &trial_row::early, column_use::nobody},
-    {"rating", "The rating; n/a where nothing is rated", "", &trial_row::rating},
-    {"value", "Value of what the run varies, of the comparison; n/a in a trial without a stimulus", "",
+    {"rating", "The rating; n/a in other tasks", "", &trial_row::rating},
+    {"value", "Value that the run varies, for the comparison; n/a in a trial without a stimulus", "",
      &trial_row::value, column_use::values},
     {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::tracks, 1},
     {"intensity_estimate", "The number that the participant gave", "", &trial_row::intensity_estimate,
      column_use::numbers},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void, column_use::analysis},
-    {"xruns", "Gaps in the sound while the stimuli played, as the device tells them", "", &trial_row::xruns},
+    {"xruns", "Gaps in the sound while the stimuli played, as the device reports them", "",
+     &trial_row::xruns},
     {"stream", "Counts openings of the device, from 1", "", &trial_row::stream},
     {"frame_1", "First frame of the first stimulus in that stream", "", &trial_row::frame_1},
     {"frame_2", "First frame of the second stimulus in that stream", "", &trial_row::frame_2},

@@ -64,7 +64,8 @@ stroke read_file_stroke(const toml_table& t, const std::filesystem::path& folder
     std::vector<stroke> all = at_key(
         t, "file", [&] { return load_strokes(folder / *t.text("file"), intensity_max); }); // relative, or not
     if (all.size() != 1)
-        t.fail("file", fmt::format("there are {} strokes in it", all.size()), "a motion is one stroke");
+        t.fail("file", fmt::format("there are {} strokes in it", all.size()),
+               "a motion needs exactly one stroke");
     return std::move(all.front());
 }
 
@@ -86,7 +87,7 @@ std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::pa
 {
     if (!t.has("file") && t.has("intensity_max"))
         t.fail("intensity_max", fmt::format("{} has no file", t.title()),
-               "it is the scale of a recording's intensities");
+               "only a recording has a scale of intensities");
     const std::vector<std::string_view> kinds(stroke_keys.begin(), stroke_keys.begin() + 3);
     if (std::none_of(kinds.begin(), kinds.end(), [&t](std::string_view key) { return t.has(key); }))
         return {};
@@ -150,7 +151,7 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
 {
     const toml::array* list = t.list(key, "names");
     if (list != nullptr && list->empty())
-        t.fail(key, fmt::format("{} is empty", key), "names in quotes, in brackets");
+        t.fail(key, fmt::format("{} is empty", key), "put names in quotes, in brackets");
     std::vector<std::string> known;
     for (const T& one : all)
         known.push_back(one.name);
@@ -158,7 +159,7 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
     for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
         const auto at = std::find(known.begin(), known.end(), list->get(i)->value_exact<std::string>());
         if (at == known.end())
-            detail::fail_at(t.where(*list->get(i)), fmt::format("{} has what is not defined", key),
+            detail::fail_at(t.where(*list->get(i)), fmt::format("{} has an undefined name", key),
                             fmt::format("one of {}", fmt::join(known, ", ")));
         wanted[static_cast<std::size_t>(at - known.begin())] = true;
     }
@@ -226,7 +227,7 @@ rest_range read_rest(const toml_table& t)
         range.push_back(t.to_number(one, "rest_s", possible));
     if (range.size() != 2 || range[0] > range[1])
         t.fail("rest_s", fmt::format("rest_s is {}", detail::shown(*n)),
-               "one time, or the least and the greatest: [2, 4]");
+               "give one time, or the smallest and the largest: [2, 4]");
     return {range[0], range[1]};
 }
 
@@ -239,7 +240,7 @@ std::optional<std::uint64_t> read_seed(const toml_table& t)
     const auto v = n->value_exact<std::int64_t>();
     if (!v || *v < 0 || *v > most)
         t.fail("seed", fmt::format("seed is {}", detail::shown(*n)),
-               fmt::format("a whole number from 0 to {}", most));
+               fmt::format("give a whole number from 0 to {}", most));
     return static_cast<std::uint64_t>(*v);
 }
 
@@ -250,8 +251,8 @@ std::string name_in(const toml_table& t, std::string_view key)
     const bool controls =
         std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
     if (controls || text == "n/a" || text.front() == ' ' || text.back() == ' ')
-        t.fail(key, fmt::format("{} is no such name: {}", detail::shown(*t.node(key)), t.title()),
-               "any but n/a, on one line, without tabs, not in blanks");
+        t.fail(key, fmt::format("{} is not allowed: {}", detail::shown(*t.node(key)), t.title()),
+               "use any name but n/a, on one line, without tabs and without blanks at its ends");
     return text;
 }
 
@@ -259,7 +260,7 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
 {
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
     if (!t)
-        root.fail("there is no [experiment]", "it begins with one");
+        root.fail("there is no [experiment]", "begin with one");
     d.outline.name = name_in(*t, "name");
     d.outline.sessions = t->whole("sessions", 1, 99).value_or(1);
     if (e.outline_only)
@@ -291,9 +292,9 @@ masking_definition read_masking(const toml_table& root)
     const double most = greatest_noise_dbfs(o.color);
     if (noise != "none" && o.level_dbfs > most)
         t->fail("level_dbfs",
-                fmt::format("level_dbfs is {}, and the peaks of {} noise are at full scale from {} on",
+                fmt::format("level_dbfs is {}, but the peaks of {} noise reach full scale at {}",
                             o.level_dbfs, noise, most),
-                "less here, and more at the amplifier of the headphones");
+                "lower it here, and turn up the amplifier of the headphones");
     o.fade_s = t->number("fade_s", {0.0, 10.0}).value_or(o.fade_s);
     m.through_run = t->choice("while", {"stimulus", "run"}).value_or("stimulus") == "run";
     if (noise != "none")
@@ -340,7 +341,7 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
             continue;
         const options::option& o = find_method_option(k);
         if (!keys.emplace(options::index(o), written_key{std::string(k.key), t.where(k.key)}).second)
-            t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
+            t.fail(k.key, fmt::format("{} has {} twice", t.title(), o.name), "keep one of them");
         at_key(t, k.key,
                [&] { give_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder); });
     }
@@ -366,12 +367,12 @@ void check_cells(const toml_table& t, const run_outline& o)
         t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
     if (o.task == task_kind::same_different && o.methods.size() != 2)
         t.fail(fmt::format("{} has {}", o.name, counted(o.methods.size(), "method")),
-               "two are the same or differ");
+               "use two, which are the same or differ");
     for (const auto& [used, name] :
          {std::pair(o.standard.has_value(), standard_name), {o.catches, catch_name}})
         if (used && std::ranges::count(o.methods, name) != 0)
             t.fail(fmt::format("a method of {} is called \"{}\"", o.name, name),
-                   "another name: the tables call a stimulus so that is of no method");
+                   "use another name: in the tables it means a stimulus without a method");
 }
 
 // Reads the number of trials, or that of each value.
@@ -383,8 +384,9 @@ unsigned read_trials(const toml_table& t, const run_outline& o)
     const std::size_t all = *each * o.values.size() * o.motions.size() * o.methods.size();
     if (t.has("trials") || o.task == task_kind::adaptive || o.catches || all > most_trials)
         t.fail("trials_per_value", fmt::format("trials_per_value makes {} trials", all),
-               t.has("trials") || all > most_trials ? fmt::format("trials alone, at most {}", most_trials)
-                                                    : "trials in its place");
+               t.has("trials") || all > most_trials
+                   ? fmt::format("use trials instead, at most {}", most_trials)
+                   : "use trials instead");
     return static_cast<unsigned>(all);
 }
 
@@ -399,13 +401,13 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     o.name = name_in(t, "name");
     o.file_name = make_file_name(o.name);
     if (o.file_name.empty())
-        t.fail("name", "a run's name has no letter or digit", "its files are called by those");
+        t.fail("name", "a run's name has no letter or digit", "use some: they name its files");
     for (const run_definition& other : d.runs)
         if (other.outline.file_name == o.file_name)
             t.fail("name",
-                   fmt::format("the files of the runs \"{}\" and \"{}\" would have one name",
+                   fmt::format("the files of the runs \"{}\" and \"{}\" would have the same name",
                                other.outline.name, o.name),
-                   "their letters and digits must differ");
+                   "make their letters and digits differ");
     std::vector<std::string_view> names;
     for (const task_row& row : tasks)
         names.push_back(row.name);
@@ -432,13 +434,14 @@ std::vector<std::string> read_choices(const toml_table& t, const run_outline& o,
 {
     if (t.has("choices") &&
         (o.task == task_kind::rate || o.task == task_kind::identify || o.task == task_kind::estimate))
-        t.fail("choices", fmt::format("choices is not of runs that {}", to_string(o.task)), "leave it out");
+        t.fail("choices", fmt::format("choices does not apply to runs that {}", to_string(o.task)),
+               "leave it out");
     if (t.has("choices") && o.choices.size() != 2)
         t.fail("choices", fmt::format("choices has {}", counted(o.choices.size(), "text")),
-               "one for each of the two answers");
+               "give one for each of the two answers");
     if (!t.has("choices") && (o.task == task_kind::constant || o.task == task_kind::adaptive) && !o.standard)
-        t.fail("vary", "a run without a standard judges by two words",
-               "choices = [\"one\", \"two\"], or add standard");
+        t.fail("vary", "a run without a standard needs two words",
+               "add choices = [\"one\", \"two\"], or standard");
     if (!t.has("choices") && o.task == task_kind::detect)
         return {page["yes"], page["no"]};
     if (!t.has("choices") && o.task == task_kind::same_different)
@@ -459,12 +462,13 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
         if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))
-            t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
-                               r.outline.name),
-                   "another name: on some disks their files would be one");
+            t.fail(fmt::format("the names of the runs \"{}\" and \"{}\" differ only in capitals",
+                               other.outline.name, r.outline.name),
+                   "use another name: on some disks their files would be the same");
     for (const char* key : {"scale", "labels"})
         if (r.outline.task != task_kind::rate && t.has(key))
-            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
+            t.fail(key, fmt::format("{} only applies to runs that rate", key),
+                   "leave it out, or set task = \"rate\"");
     make_variants(t, r, d.methods, variants);
     if (t.has("attribute") || r.outline.task == task_kind::choose || r.outline.task == task_kind::rate)
         r.attribute = name_in(t, "attribute");
@@ -484,19 +488,19 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     if (r.outline.visual && labels.size() != 2)
         t.fail(t.has("labels") ? "labels" : "scale",
                fmt::format("labels has {} for a visual analogue scale", counted(labels.size(), "text")),
-               "one for each end");
+               "give one for each end");
     if (!labels.empty() && labels.size() != 2 && labels.size() != r.outline.scale)
         t.fail(
             "labels",
             fmt::format("labels has {} for a scale of {}", counted(labels.size(), "text"), r.outline.scale),
-            "one for each end, or one for each step");
+            "give one for each end, or one for each step");
     r.choices = read_choices(t, r.outline, d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
     if (r.blocks == "methods" &&
         (r.outline.task == task_kind::choose || r.outline.task == task_kind::same_different))
         t.fail("blocks", fmt::format("{} has two methods in each trial", r.outline.name),
-               "blocks = \"motions\", or leave it out");
+               "use blocks = \"motions\", or leave it out");
     return r;
 }
 
@@ -538,8 +542,8 @@ std::vector<T> read_all(const toml_table& root, std::string_view key, const Read
     for (const toml_table& t : need_tables(root, key)) {
         T one = read(t);
         if (std::any_of(all.begin(), all.end(), [&](const T& other) { return other.name == one.name; }))
-            t.fail("name", fmt::format("the {} \"{}\" is there twice", key, one.name),
-                   "each has a name of its own");
+            t.fail("name", fmt::format("the {} \"{}\" occurs twice", key, one.name),
+                   "give each its own name");
         all.push_back(std::move(one));
     }
     return all;

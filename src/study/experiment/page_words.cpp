@@ -46,10 +46,10 @@ constexpr std::array english{
     page_word{"trial", "Trial"},
     page_word{"repeated", "again"},
     page_word{"later", "Once more, later."},
-    page_word{"no_answer", "That is no answer"},
+    page_word{"no_answer", "That is not an answer"},
     // On the page of calibrate only.
     page_word{"calibrate_choose",
-              "There are two intervals, one of which vibrates. Which one? Guess where you do not know."},
+              "There are two intervals, one of which vibrates. Which one? Guess if you do not know."},
     page_word{"calibrate_interval", "Interval"},
     page_word{"calibrate_which", "Which one vibrated?"},
     page_word{"calibrate_right", "That was right."},
@@ -110,7 +110,7 @@ page_words load_page_words(const std::string& file)
     const toml::table document = detail::parse_toml(text, file);
     const detail::toml_table root(document, "the file", file);
     if (!root.has("page"))
-        root.fail("there is no [page]", "a definition of an experiment with the participant's words");
+        root.fail("there is no [page]", "name a definition with the participant's words");
     return read_page(root);
 }
 

@@ -27,7 +27,8 @@ std::string plain_name(const toml_table& t)
     std::string name = t.need(t.text("name"), "name");
     const std::string small = in_small_letters(name);
     if (small.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != small.npos)
-        t.fail("name", fmt::format("name is {}", detail::shown(*t.node("name"))), "letters, digits and _");
+        t.fail("name", fmt::format("name is {}", detail::shown(*t.node("name"))),
+               "use letters, digits and _");
     return name;
 }
 
@@ -40,8 +41,8 @@ void read_range(const toml_table& t, questionnaire_item& item)
     const auto low = range.get(0)->value_exact<std::int64_t>();
     const auto high = range.get(1)->value_exact<std::int64_t>();
     if (!low || !high || *low < 0 || *low >= *high || *high > greatest_number)
-        t.fail("range", "range is not the least and the greatest of whole numbers",
-               fmt::format("two of 0 to {}, as [0, 120]", greatest_number));
+        t.fail("range", "range is not the smallest and the largest whole number",
+               fmt::format("give two numbers from 0 to {}, as [0, 120]", greatest_number));
     item.lowest = static_cast<unsigned>(*low);
     item.greatest = static_cast<unsigned>(*high);
 }
@@ -57,8 +58,8 @@ void read_steps(const toml_table& t, questionnaire_item& item)
     const bool fits = item.visual ? labels == 2 : labels == 0 || labels == 2 || labels == item.greatest;
     if (item.greatest < 2 || !fits)
         t.fail(t.has("labels") ? "labels" : "kind", fmt::format("a scale has {}", counted(labels, "label")),
-               item.visual ? "one for each end"
-                           : "one for each step, or scale with one for each end or none");
+               item.visual ? "give one for each end"
+                           : "give one for each step, or scale with one for each end or none");
 }
 
 questionnaire_item read_item(const toml_table& t)
@@ -74,15 +75,15 @@ questionnaire_item read_item(const toml_table& t)
                               std::pair("labels", item_kind::scale), std::pair("scale", item_kind::scale)};
     for (const auto& [key, of] : keys)
         if (item.kind != of && t.has(key))
-            t.fail(key, fmt::format("{} is not of a {}", key, kind),
-                   fmt::format("leave it out, or kind = \"{}\"", kinds[static_cast<std::size_t>(of)]));
+            t.fail(key, fmt::format("{} does not apply to a {}", key, kind),
+                   fmt::format("leave it out, or set kind = \"{}\"", kinds[static_cast<std::size_t>(of)]));
     if (item.kind == item_kind::choice) {
         item.labels = t.texts("choices", most_choices);
         item.greatest = static_cast<unsigned>(item.labels.size());
         if (item.greatest < 2)
             t.fail(t.has("choices") ? "choices" : "kind",
                    fmt::format("a choice has {}", counted(item.greatest, "text")),
-                   "choices with two or more");
+                   "give two choices or more");
     } else if (item.kind == item_kind::number) {
         read_range(t, item);
     } else if (item.kind == item_kind::scale) {
@@ -102,7 +103,7 @@ std::optional<unsigned> read_scale(const toml_table& t, bool& visual)
     const auto most = visual ? std::optional<std::int64_t>(visual_most) : n->value_exact<std::int64_t>();
     if (!most || *most < 2 || *most > most_steps)
         t.fail("scale", fmt::format("scale is {}", detail::shown(*n)),
-               fmt::format("2 to {}, or \"vas\"", most_steps));
+               fmt::format("give 2 to {}, or \"vas\"", most_steps));
     return static_cast<unsigned>(*most);
 }
 
@@ -113,8 +114,8 @@ questionnaire read_questionnaire(const toml_table& run, const std::vector<questi
     q.name = plain_name(run);
     for (const questionnaire& other : others)
         if (in_small_letters(other.name) == in_small_letters(q.name))
-            run.fail("name", fmt::format("the questionnaire \"{}\" is there twice", q.name),
-                     "each has a file of its own");
+            run.fail("name", fmt::format("the questionnaire \"{}\" occurs twice", q.name),
+                     "give each its own name: it names a file");
     const std::string when = run.choice("when", {"before", "between", "after"}).value_or("before");
     q.when = when == "before"    ? questionnaire_time::before
              : when == "between" ? questionnaire_time::between
@@ -127,8 +128,8 @@ questionnaire read_questionnaire(const toml_table& run, const std::vector<questi
         constexpr std::array<std::string_view, 4> taken{"participant_id", "session", "session_id", "after"};
         if (std::ranges::count(taken, item.name) > 0 ||
             std::ranges::count(q.items, item.name, &questionnaire_item::name) > 0)
-            t.fail("name", fmt::format("the column \"{}\" is there twice", item.name),
-                   "each item has a name of its own");
+            t.fail("name", fmt::format("the column \"{}\" occurs twice", item.name),
+                   "give each item its own name");
         q.items.push_back(std::move(item));
     }
     if (q.items.empty())

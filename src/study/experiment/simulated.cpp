@@ -174,7 +174,7 @@ simulation parse_simulation(std::string_view text)
         const std::string_view key = item.substr(0, equals);
         const std::string_view value = equals < item.size() ? item.substr(equals + 1) : std::string_view{};
         if (std::find(seen.begin(), seen.end(), key) != seen.end())
-            refuse_simulation(fmt::format("{} is said twice", key));
+            refuse_simulation(fmt::format("{} occurs twice", key));
         seen.push_back(key);
         if (key == "seed")
             s.seed = simulation_value<std::uint64_t>(key, value, 0, most_seed);
@@ -193,7 +193,7 @@ simulation parse_simulation(std::string_view text)
         else if (key == "exponent")
             s.exponent = simulation_value(key, value, 0.0, 10.0);
         else
-            refuse_simulation(fmt::format("\"{}\" is not known", key));
+            refuse_simulation(fmt::format("\"{}\" is unknown", key));
     }
     return s;
 }
@@ -232,8 +232,8 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
         return;
     if (r.simulate_as.empty())
         throw error(error_kind::bad_input, r.where,
-                    fmt::format("simulate: the observer does not know how to judge \"{}\"", r.attribute),
-                    "simulate_as = \"similarity\" or \"uniformity\"");
+                    fmt::format("simulate: the observer cannot judge \"{}\"", r.attribute),
+                    "add simulate_as = \"similarity\" or \"uniformity\"");
     double sum = 0.0;
     for (const std::size_t motion : r.motions)
         for (const std::size_t method : r.methods)
@@ -247,10 +247,10 @@ double simulated_observer::cost(std::size_t motion, std::size_t method) const
     const std::optional<double> c = run_.simulate_as == "uniformity" ? felt.speed_cv : felt.rms_error_mm;
     if (!c)
         throw error(error_kind::bad_input, definition_.motions[motion].where,
-                    fmt::format("simulate: motion \"{}\" by method \"{}\" is not predicted to {}",
+                    fmt::format("simulate: the prediction for motion \"{}\" with method \"{}\" {}",
                                 definition_.motions[motion].name, definition_.methods[method].name,
-                                run_.simulate_as == "uniformity" ? "be felt to move" : "be felt"),
-                    "people may be asked about it; the simulated observer cannot");
+                                run_.simulate_as == "uniformity" ? "does not move" : "is silent"),
+                    "people can judge it; the simulated observer cannot");
     return std::max(*c, least_cost);
 }
 

@@ -602,7 +602,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         session::place_strokes(one, faces, method.options);
         const stroke& played = one.strokes.front();
         if (played.motion.duration_s() > longest_stimulus_s)
-            throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
+            throw error(error_kind::bad_input, "stroke", "it lasts more than ten minutes", "make it shorter");
         session::plan_stroke(one, 0, array_, faces, method.options);
         stimulus s{motion_at, method_at};
         s.plan = one.plans.front().plan;
@@ -618,7 +618,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         s.felt_path = sample_path(samples);
         for (const std::string& w : s.plan.warnings) {
             const std::string warning =
-                fmt::format("motion \"{}\" by method \"{}\": {}", motion.name, method.name, w);
+                fmt::format("motion \"{}\" with method \"{}\": {}", motion.name, method.name, w);
             if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end())
                 warnings_.push_back(warning);
         }
@@ -632,12 +632,12 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
             if (option == nullptr || option != options::find(vary))
                 make(d, motion_at, *method.made_of, {}, faces); // throws what no value of the run mends
             throw error(e.kind(), method.where,
-                        fmt::format("{} = {} of motion \"{}\" by method \"{}\": {}: {}", vary, *method.value,
-                                    motion.name, d.methods[*method.made_of].name, detail::plain(e.subject()),
-                                    e.why()),
+                        fmt::format("{} = {} of motion \"{}\" with method \"{}\": {}: {}", vary,
+                                    *method.value, motion.name, d.methods[*method.made_of].name,
+                                    detail::plain(e.subject()), e.why()),
                         hint);
         }
-        const std::string of = fmt::format("motion \"{}\" by method \"{}\"", motion.name, method.name);
+        const std::string of = fmt::format("motion \"{}\" with method \"{}\"", motion.name, method.name);
         if (option != nullptr)
             if (const auto at = method.keys.find(options::index(*option)); at != method.keys.end())
                 throw error(

@@ -72,7 +72,7 @@ std::vector<double> read_prior(const toml_table& t, std::string_view key, const 
 {
     std::vector<double> all = t.has(key) ? read_one_or_more(t, key, b) : std::move(usual);
     if (all.empty())
-        t.fail(key, fmt::format("{} is empty", key), "numbers in brackets");
+        t.fail(key, fmt::format("{} is empty", key), "give numbers in brackets");
     if (all.size() != 2)
         return all;
     const double low = all[0];
@@ -106,8 +106,8 @@ void set_steps(const toml_table& t, adaptive_options& a, const std::vector<doubl
     for (const double s : steps) {
         a.steps.push_back(static_cast<std::size_t>(std::llround(s / step)));
         if (std::abs(static_cast<double>(a.steps.back()) * step - s) > 1e-6 * step)
-            t.fail("steps", fmt::format("{} is no multiple of the least step, {}", s, step),
-                   "such as [4, 2, 1]");
+            t.fail("steps", fmt::format("{} is not a multiple of the smallest step, {}", s, step),
+                   "give multiples, such as [4, 2, 1]");
     }
 }
 
@@ -121,11 +121,11 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.down = static_cast<unsigned>(std::ranges::find(names, name) - names.begin());
     for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
         if (t.has(key) && of_quest != (a.down == 0))
-            t.fail(key, fmt::format("{} is not of procedure \"{}\"", key, name), "leave it out");
+            t.fail(key, fmt::format("{} does not apply to procedure \"{}\"", key, name), "leave it out");
     const std::vector<double> range = read_numbers(t, "range", b);
     if (range.size() != 2 || !(range[0] < range[1]))
         t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
-               "range = [LEAST, GREATEST]");
+               "add range = [LEAST, GREATEST]");
     const double width = range[1] - range[0];
     const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
     const double step = !steps.empty() ? *std::ranges::min_element(steps)
@@ -133,8 +133,8 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
                                        : width / range_steps;
     const auto count = static_cast<std::size_t>(std::floor(width / step + 1e-6)) + 1;
     if (count > most_values)
-        t.fail(t.has("steps") ? "steps" : "range", fmt::format("there are {} steps in the range", count),
-               fmt::format("at most {}", most_values));
+        t.fail(t.has("steps") ? "steps" : "range", fmt::format("the range has {} steps", count),
+               fmt::format("use at most {}", most_values));
     for (std::size_t i = 0; i < count; ++i)
         o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
     set_steps(t, a, steps, step);
@@ -144,12 +144,12 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.tracks = t.whole("tracks", 1, most_tracks).value_or(one_sided ? 2 : 1);
     if (one_sided && a.tracks % 2 != 0)
         t.fail("tracks",
-               fmt::format("{} of procedure \"{}\" would ask on one side of the pse more than on the other",
+               fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
                            counted(a.tracks, "track"), name),
-               "an even number: every second track is mirrored");
+               "use an even number: every second track is mirrored");
     const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
     if (start.size() > 1 && start.size() != a.tracks)
-        t.fail("start", fmt::format("start has {} values", start.size()), "one, or one for each track");
+        t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
     for (unsigned i = 0; i < a.tracks; ++i) // from both ends in turn
         a.start.push_back(find_nearest(o.values, start.empty()       ? range[i % 2 == 0 ? 1 : 0]
                                                  : start.size() == 1 ? start[0]
@@ -164,10 +164,10 @@ void read_values(const toml_table& t, run_outline& o, const detail::bounds& b)
     o.values = read_numbers(t, "values", b);
     if (o.values.size() < 2 || o.values.size() > most_values)
         t.fail(t.has("values") ? "values" : "vary", fmt::format("there are {} values", o.values.size()),
-               fmt::format("2 to {}: values = [..]", most_values));
+               fmt::format("give 2 to {}: values = [..]", most_values));
     std::ranges::sort(o.values);
     if (std::ranges::adjacent_find(o.values) != o.values.end())
-        t.fail("values", "a value is there twice", "leave one of them out");
+        t.fail("values", "a value occurs twice", "leave one of them out");
 }
 
 } // namespace
@@ -178,15 +178,16 @@ void read_variation(const toml_table& t, run_definition& r)
     const bool is_adaptive = o.task == task_kind::adaptive;
     for (const char* key : {"procedure", "start", "steps", "range", "tracks", "slope", "lapse"})
         if (!is_adaptive && t.has(key))
-            t.fail(key, fmt::format("{} is of adaptive runs", key), "leave it out, or task = \"adaptive\"");
+            t.fail(key, fmt::format("{} only applies to adaptive runs", key),
+                   "leave it out, or set task = \"adaptive\"");
     if (t.has("catch") && o.task != task_kind::detect)
-        t.fail("catch", "catch is of runs that detect", "leave it out, or task = \"detect\"");
+        t.fail("catch", "catch only applies to runs that detect", "leave it out, or set task = \"detect\"");
     r.catch_share = t.number("catch", {0.0, 0.9}).value_or(0.0);
     o.catches = r.catch_share > 0.0;
     const bool varies = find_task(o.task).varies || (o.task == task_kind::detect && t.has("vary"));
     for (const char* key : {"vary", "values", "standard", "trials_per_value"})
         if (t.has(key) && (!varies || (std::string_view(key) == "standard" && o.task == task_kind::detect)))
-            t.fail(key, fmt::format("{} is not of runs with task \"{}\"", key, to_string(o.task)),
+            t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, to_string(o.task)),
                    "leave it out");
     if (!varies)
         return;
@@ -194,16 +195,15 @@ void read_variation(const toml_table& t, run_definition& r)
     const options::option* option = find_number(o.vary);
     const detail::bounds* parameter = find_parameter(o.vary);
     if (option == nullptr && parameter == nullptr)
-        t.fail(
-            "vary", fmt::format("\"{}\" is no number that a run can vary", o.vary),
-            "an option of [[method]] such as level_dbfs, speed_mm_s or soa_s, or of the strokes x_mm, y_mm, "
-            "length_mm or rotate_deg");
+        t.fail("vary", fmt::format("\"{}\" is not a number that a run can vary", o.vary),
+               "use an option of [[method]] such as level_dbfs, speed_mm_s or soa_s, or x_mm, y_mm, "
+               "length_mm or rotate_deg of the stroke");
     const detail::bounds allowed = option != nullptr ? option->allowed : *parameter;
     o.on_db_axis = option != nullptr && option->unit.starts_with("dB");
     o.standard = t.number("standard", allowed);
     if (is_adaptive) {
         if (t.has("values"))
-            t.fail("values", "an adaptive run chooses its values", "range = [LEAST, GREATEST]");
+            t.fail("values", "an adaptive run chooses its values", "use range = [LEAST, GREATEST]");
         read_procedure(t, r, allowed);
     } else {
         read_values(t, o, allowed);
@@ -269,7 +269,7 @@ stroke vary_stroke(stroke s, const method_definition& m)
     } else if (m.vary == "length_mm") {
         if (!(s.motion.length_mm() > 0.0))
             throw error(error_kind::bad_input, "length_mm", "the stroke is a single place",
-                        "a path with a length");
+                        "use a path with a length");
         const double scale = v / s.motion.length_mm();
         map = {scale, 0.0, 0.0, scale, 0.0, 0.0};
     }

@@ -155,7 +155,7 @@ std::string describe_level(const session_facts& s)
     if (const auto sl = level["sl_db"].number())
         text = fmt::format("{0} dB above each tactor's detection threshold ({0} dB SL)", plain_number(*sl));
     else if (const auto dbfs = level["dbfs"].number())
-        text = fmt::format("{} dBFS, the same for all tactors but for their gains", plain_number(*dbfs));
+        text = fmt::format("{} dBFS, the same for all tactors except for their gains", plain_number(*dbfs));
     if (s.design)
         for (const method_definition& m : s.design->methods)
             if (const render_options& o = m.options.render; m.has_level() && !m.is_variant())
@@ -183,7 +183,7 @@ std::string describe_threshold(const json_value& t)
     for (const json_value& pair : t.list()) {
         const std::vector<double> hz_and_dbfs = pair.need_numbers();
         if (hz_and_dbfs.size() != 2)
-            pair.refuse("is no frequency with a threshold");
+            pair.refuse("is not a frequency with a threshold");
         parts.push_back(
             fmt::format("{} at {} Hz", plain_number(hz_and_dbfs[1]), plain_number(hz_and_dbfs[0])));
     }

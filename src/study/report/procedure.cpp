@@ -52,12 +52,14 @@ std::string describe_task(const run_outline& r)
 {
     const std::string methods = join(r.methods);
     if (r.task == task_kind::choose)
-        return fmt::format("two stimuli of one motion, by {}, one after the other; one was chosen",
-                           has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
+        return fmt::format(
+            "two stimuli of one motion, with {}, one after the other; the participant chose one",
+            has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
     if (r.task == task_kind::rate)
-        return fmt::format("one stimulus ({}), rated from {}", methods, rating_range(r));
+        return fmt::format("one stimulus ({}), which the participant rated from {}", methods,
+                           rating_range(r));
     if (r.task == task_kind::identify)
-        return fmt::format("one stimulus ({}); one of {} was named", methods,
+        return fmt::format("one stimulus ({}); the participant named one of {}", methods,
                            counted(r.motions.size(), "motion"));
     return describe_measure(r);
 }
@@ -77,12 +79,10 @@ std::string describe_procedure(const run_definition& r)
     std::string text = fmt::format("{} in each condition, values from {} in steps of {}; ",
                                    counted(a.tracks, "track"), range_text(values), plain_number(step));
     if (a.down == 0)
-        return text +
-               fmt::format("QUEST+ (Watson 2017): the value whose answer is expected to leave the least "
-                           "entropy; before the first answer all thresholds among the values, slopes "
-                           "(standard deviations of the normal) of {} and lapses of {} are equally "
-                           "likely",
-                           list(a.slopes), list(a.lapses));
+        return text + fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. "
+                                  "Priors were uniform over thresholds at the values, slopes (standard "
+                                  "deviations of the normal) of {} and lapses of {}",
+                                  list(a.slopes), list(a.lapses));
     std::vector<double> steps;
     for (const std::size_t places : a.steps)
         steps.push_back(static_cast<double>(places) * step);
@@ -91,11 +91,11 @@ std::string describe_procedure(const run_definition& r)
         start.push_back(values[place]);
     const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
     const std::string mirrored =
-        fmt::format("; every second track the other way round, up after {} in a row, which leads to {:.1f} %",
+        fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
                     counted(a.down, "negative answer"), 100.0 - led_to);
     return text + fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
-                              "after each other answer, which leads to {:.1f} % positive answers{}; steps of "
-                              "{}, the next from every second reversal on",
+                              "after each other answer, which leads to {:.1f} % positive answers{}; step "
+                              "sizes of {}, the next one after every second reversal",
                               list(start), counted(a.down, "positive answer"), led_to,
                               a.down > 1 ? mirrored : "", list(steps));
 }

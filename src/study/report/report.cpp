@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
 {
     throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, written),
-                "it was changed after the session: put back what it was");
+                "it was changed after the session: restore it");
 }
 
 std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::path& plans)
@@ -56,7 +56,7 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                p.hash == *t.cell(row, plan);
     };
     if (std::none_of(s.stimuli.begin(), s.stimuli.end(), same))
-        t.refuse(row, fmt::format("{} is no plan of its motion by its method in session.json", plan),
+        t.refuse(row, fmt::format("session.json lists no plan {} for its motion and method", plan),
                  changed_file);
 }
 
@@ -233,7 +233,8 @@ void write_report(const fs::path& file, const std::string& text, bool force)
         return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
     };
     const auto note = [](std::string_view digits) {
-        return fmt::format("\n<!-- sha256 {}: by this line tactor knows if the text was changed -->\n",
+        return fmt::format("\n"
+                           "<!-- sha256 {}: from this line tactor knows whether the text was changed -->\n",
                            digits);
     };
     detail::check_replaced(file, force, is_ours, note);

@@ -233,11 +233,11 @@ std::set<std::string> list_notes(const study_facts& f)
             if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
                 notes.insert(fmt::format("{}: {}", p.motion, note));
             if (const auto db = p.facts()["weakened_db"].number(); db && *db < 0.0)
-                notes.insert(fmt::format("{} by {}: {:.2f} dB weaker than the level, so that no tactor "
-                                         "exceeds it",
-                                         p.motion, p.method, -*db));
+                notes.insert(
+                    fmt::format("{} with {}: {:.2f} dB weaker than the level, so that no tactor exceeds it",
+                                p.motion, p.method, -*db));
             for (const json_value& w : p.facts()["warnings"].list())
-                notes.insert(fmt::format("{} by {}: {}", p.motion, p.method, w.need_text()));
+                notes.insert(fmt::format("{} with {}: {}", p.motion, p.method, w.need_text()));
         }
     return notes;
 }

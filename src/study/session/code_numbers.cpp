@@ -167,12 +167,12 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
     const auto last = std::ranges::max_element(numbers_, {}, &decltype(numbers_)::value_type::second);
     if (last->second > most)
         throw error(error_kind::bad_input, c.where,
-                    fmt::format("code: there are {} events, up to number {} ({}), and {} is the greatest",
+                    fmt::format("code: there are {} events, up to number {} ({}), but {} is the largest",
                                 numbers_.size(), last->second, last->first, most),
                     most == greatest_number
-                        ? "join some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] }"
-                        : "more lines, or join some under [sync.codes]: stimulus = { by = [\"motion\", "
-                          "\"method\"] }");
+                        ? "combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] }"
+                        : "use more lines, or combine some under [sync.codes]: stimulus = { by = "
+                          "[\"motion\", \"method\"] }");
 }
 
 unsigned code_numbers::number(const experiment_definition& d, const coded_event& e) const

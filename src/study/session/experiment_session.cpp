@@ -52,8 +52,8 @@ bool assume_thresholds(array& a, bool nobody_feels)
             continue;
         if (!nobody_feels)
             throw error(error_kind::bad_input, "--array",
-                        fmt::format("tactor {} has no threshold, and the level is above the threshold", i),
-                        "--array FILE that tactor calibrate made, or levels in dBFS");
+                        fmt::format("tactor {} has no threshold, but the level is relative to thresholds", i),
+                        "give --array FILE from tactor calibrate, or levels in dBFS");
         t.threshold_dbfs = assumed_threshold_dbfs;
         assumed = true;
     }
@@ -70,8 +70,8 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
     if (r.who == audience::person && !r.hand)
         throw error(
             error_kind::bad_input, "--hand",
-            fmt::format("motion \"{}\" is mirrored for left hands, and the hand is not said", mirrored->name),
-            "--hand left, or --hand right");
+            fmt::format("motion \"{}\" is mirrored for left hands, and the hand is missing", mirrored->name),
+            "add --hand left, or --hand right");
     if (r.hand != hand_kind::left)
         return;
     const auto [least, most] =
@@ -102,9 +102,9 @@ void keep_group(experiment_definition& d, const std::string& name)
         for (const group_outline& g : groups)
             names.push_back(g.name);
         throw error(error_kind::bad_input, "--group",
-                    name.empty() ? "the definition has groups, and none is named"
+                    name.empty() ? "the definition has groups, but none is given"
                                  : fmt::format("there is no group \"{}\"", name),
-                    names.empty() ? "leave it out" : fmt::format("one of {}", fmt::join(names, ", ")));
+                    names.empty() ? "leave it out" : fmt::format("use one of {}", fmt::join(names, ", ")));
     }
     d.group = name;
     if (const auto array = d.group_arrays.find(name); array != d.group_arrays.end())
@@ -129,8 +129,8 @@ void take_session(experiment_definition& d, session_number session)
     if (several != session.has_value() || session.value_or(1) > all)
         throw error(error_kind::bad_input, "--session",
                     session ? fmt::format("there is no session {}", *session)
-                            : fmt::format("the definition has {} sessions, and none is named", all),
-                    several ? fmt::format("1 to {}", all) : "leave it out");
+                            : fmt::format("the definition has {} sessions, but none is given", all),
+                    several ? fmt::format("give 1 to {}", all) : "leave it out");
     d.session = session;
 }
 
@@ -145,14 +145,14 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
     const motion_definition& m = d.motions[t.motion];
     std::string by = fmt::format("method \"{}\"", d.methods[t.method_1].name);
     if (t.method_2)
-        by += fmt::format(" and then by \"{}\"", d.methods[*t.method_2].name);
+        by += fmt::format(" and then with \"{}\"", d.methods[*t.method_2].name);
     throw error(error_kind::bad_input, m.where,
-                fmt::format("motion \"{}\" by {}: {} would change it", m.name, by,
+                fmt::format("motion \"{}\" with {}: {} would change it", m.name, by,
                             too_long ? fmt::format("[limits] max_drive_s, {} s in {} s for one tactor,",
                                                    l.max_drive_s, l.window_s)
                                      : fmt::format("[limits] power_dbfs, {:.4g} dB,", l.power_dbfs)),
-                too_long ? "shorter strokes, or other limits where the actuators bear them"
-                         : "a lower level, or other limits where the actuators bear them");
+                too_long ? "use shorter strokes, or other limits if the actuators bear them"
+                         : "use a lower level, or other limits if the actuators bear them");
 }
 
 // Checks the trials of all runs, practice too.
@@ -180,10 +180,10 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     const calibration_origin& c = *e.config.calibration;
     std::vector<std::string> doubts;
     if (c.simulated)
-        doubts.emplace_back("the thresholds were simulated: nobody was asked");
+        doubts.emplace_back("the thresholds are simulated, not measured");
     if (!participant.empty() && c.participant != participant)
         doubts.push_back(
-            fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
+            fmt::format("the thresholds belong to participant {}, not {}", c.participant, participant));
     std::vector<const plan*> plans;
     for (const stimulus& s : stimuli.all())
         if (s.render.sl_db)
@@ -278,7 +278,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     const std::size_t row = r.row.value_or(default_row(d, code));
     if (row > count_rows(d))
         throw error(error_kind::bad_input, "--order", fmt::format("{} is out of range", row),
-                    fmt::format("1 to {}", count_rows(d)));
+                    fmt::format("give 1 to {}", count_rows(d)));
     auto runs = make_sequence(d, code, seed, row);
     stimulus_set stimuli(d, e.tactors, render);
     if (r.who != audience::observer)
@@ -301,7 +301,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         warnings.push_back(std::move(words));
     if (assumed)
         warnings.push_back(
-            fmt::format("tactors without a threshold: {} dBFS is taken for it", assumed_threshold_dbfs));
+            fmt::format("tactors without a threshold: {} dBFS is assumed", assumed_threshold_dbfs));
     const std::string pcm = r.who == audience::person
                                 ? session::device_options(s, {}, e, render.channels, render.rate).pcm
                                 : "null";
@@ -502,8 +502,8 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
         }
         if (!same)
             throw error(error_kind::bad_input, fmt::format("run {}: line {}", r.outline.name, i + 2),
-                        fmt::format("trial {}, attempt {} is not what comes there", row.trial, row.attempt),
-                        "the table was changed, or is of another session");
+                        fmt::format("trial {}, attempt {} does not belong there", row.trial, row.attempt),
+                        "the table was changed, or belongs to another session");
         queue.take(row.is_void);
         take_line(tracks, r.outline, row);
     }

@@ -156,19 +156,19 @@ keypad::keypad(std::string device)
 {
     if (!descriptor_)
         throw error(error_kind::not_available, device_, std::strerror(errno),
-                    errno == EACCES ? "a udev rule gives it to you: tactor-experiment(1)"
-                                    : "the keypads that are there: ls /dev/input/by-id");
+                    errno == EACCES ? "let a udev rule give it to you: tactor-calibrate(1)"
+                                    : "list the keypads: ls /dev/input/by-id");
     std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
     if (::ioctl(descriptor_.get(), EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0)
-        throw error(error_kind::bad_input, device_, "it is no input device",
-                    "as /dev/input/by-id/...-event-kbd");
+        throw error(error_kind::bad_input, device_, "it is not an input device",
+                    "name one, as /dev/input/by-id/...-event-kbd");
     bool any = false;
     for (std::size_t code = 0; code <= KEY_MAX; ++code)
         any = any ||
               ((keys[code / 8] >> (code % 8) & 1U) != 0 && find_answer(static_cast<std::uint16_t>(code)));
     if (!any)
-        throw error(error_kind::bad_input, device_, "it has no key that answers anything",
-                    "a keypad, a button box, or buttons with the codes of the digits");
+        throw error(error_kind::bad_input, device_, "it has no key for an answer",
+                    "use a keypad, a button box, or buttons with the codes of the digits");
     if (::ioctl(descriptor_.get(), EVIOCGRAB, 1) < 0)
         throw error(error_kind::not_available, device_, std::strerror(errno), "another program holds it");
 }
@@ -183,7 +183,7 @@ std::optional<char> keypad::next()
         if (n < 0 && errno == EAGAIN)
             return {};
         if (n != static_cast<ssize_t>(sizeof e))
-            throw error(error_kind::runtime, device_, n < 0 ? std::strerror(errno) : "it has ended",
+            throw error(error_kind::runtime, device_, n < 0 ? std::strerror(errno) : "it was unplugged",
                         resume_hint);
         // 1: pressed; 0 and 2: let go, and repeated.
         if (e.type == EV_KEY && e.value == 1)
@@ -292,7 +292,7 @@ std::optional<session_key> session_keys::poll(bool repeated)
         if (!is_held || repeated || k.command)
             return k;
         if (!std::exchange(warned_, true))
-            session::say(stderr, "tactor: a key is held down: it answers nothing until it is let go\n");
+            session::say(stderr, "tactor: a key is held down: it does not answer until it is released\n");
     }
     return {};
 }
@@ -320,7 +320,7 @@ session_key session_keys::wait(const std::string& subject, bool repeated)
             return *std::move(k);
         if (ended()) {
             session::show("\n");
-            throw error(error_kind::runtime, subject, "there is no answer any more", resume_hint);
+            throw error(error_kind::runtime, subject, "the answers ended", resume_hint);
         }
         stage_.wait_for(any_ ? any_.get() : STDIN_FILENO);
     }

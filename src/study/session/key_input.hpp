@@ -86,7 +86,7 @@ private:
 };
 
 /// Hint of an error that ends a session with a person.
-inline constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
+inline constexpr const char* resume_hint = "the answers are kept; --resume continues";
 
 /// A keypad, whose keys no other program gets while this lives. One thread.
 class keypad {

@@ -104,7 +104,7 @@ person_session::person_session(const prepared_experiment& p, session_store& stor
 
 void person_session::hold()
 {
-    session::say(stderr, "Keys of the experimenter: r repeats the trial, v makes the one before void, p "
+    session::say(stderr, "Keys of the experimenter: r repeats the trial, v makes the previous one void, p "
                          "pauses, g goes on, q or Ctrl-C stops.\n");
     try {
         do {
@@ -203,7 +203,8 @@ void person_session::introduce(const session_step& s)
              .back = flow_.can_go_back(),
              .where = find_progress(p_, s)});
     if (keys_.come_early()) {
-        session::show(page_ != nullptr ? "The participant begins, or g.\n" : w["any_key_begins"] + "\n");
+        session::show(page_ != nullptr ? "The participant begins, or press g.\n"
+                                       : w["any_key_begins"] + "\n");
         wait_for_any_key();
     }
     // The experimenter may have made the last trial of the run before void meanwhile.
@@ -308,7 +309,7 @@ void person_session::introduce(const questionnaire& q)
              .choices = {p_.definition.page["begin"]},
              .keys = " ",
              .back = flow_.can_go_back()});
-    session::show("The participant begins, or g.\n");
+    session::show("The participant begins, or press g.\n");
     wait_for_any_key();
 }
 
@@ -352,7 +353,7 @@ bool person_session::end()
     session::show(fmt::format("\n{}\n", w["over"]));
     if (!keys_.is_terminal())
         return true;
-    session::show(page_ != nullptr ? "g ends.\n" : w["any_key_ends"] + "\n");
+    session::show(page_ != nullptr ? "g ends it.\n" : w["any_key_ends"] + "\n");
     wait_for_any_key();
     return flow_.next().what == step_kind::over;
 }
@@ -368,7 +369,7 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
         const bool passed = stage_.pass(duration_s, [&](double) { return heed(); });
         if (!passed)
             return gone;
-        return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
+        return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "no page showed the target";
     }
     if (!display_.moves)
         session::show(p_.definition.page["target"] + "\n");
@@ -444,7 +445,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
     if (quit_)
         throw stage::interruption{SIGINT, experimenter};
     if (std::exchange(repeat_, false))
-        g.flaw = "the experimenter repeats it";
+        g.flaw = "the experimenter repeated it";
     else
         g.flaw = g.fault();
     return g;
@@ -469,7 +470,7 @@ void person_session::trial(const session_step& s)
     if (flaw.empty()) {
         const auto a = ask(ask_about_trial(p_, s));
         if (!a) {
-            flaw = "the experimenter repeats it";
+            flaw = "the experimenter repeated it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
             set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a->number - 1]) : a->number,
@@ -543,8 +544,8 @@ void person_session::void_last()
 {
     if (!flow_.void_last()) {
         session::say(stderr, "tactor: {}\n",
-                     flow_.is_asking() ? "within a questionnaire v makes no trial void; b goes one item back"
-                                       : "there is no trial before this one that can be made void");
+                     flow_.is_asking() ? "v does not work within a questionnaire; b goes one item back"
+                                       : "there is no earlier trial that v can make void");
         return;
     }
     const run_definition& r = p_.run_at(flow_.void_run());
@@ -552,7 +553,7 @@ void person_session::void_last()
     const trial_row row = store_.rows(r).back();
     tables_.emplace(store_, r);
     voided_ = {{step_kind::trial, 0, flow_.void_run(), false, {row.trial, row.attempt}}};
-    session::say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name,
+    session::say(stderr, "tactor: {}: trial {} is void: the experimenter made it void\n", r.outline.name,
                  row.trial);
 }
 
@@ -569,8 +570,7 @@ void person_session::ask_consent()
     const bool agrees = wait_for_one_of("yn") == 'y';
     session::show(agrees ? w["yes"] + "\n\n" : w["no"] + "\n");
     if (!agrees)
-        throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
-                    "there are no data of the session");
+        throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree", "the session has no data");
     agreed_at_ = acq_time_text(rt::unix_ns());
     flow_.agree();
 }
@@ -603,7 +603,7 @@ void person_session::walk(unsigned tactor)
     } else if (key == 'n' && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
         // On a page a finger slips: the first No drives the tactor once more.
         throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
-                    "tactor check --walk finds out why; then begin again");
+                    "find out why with tactor check --walk; then begin again");
     }
 }
 

@@ -85,7 +85,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
 {
     given_stimulus g;
     if (!fade_in()) {
-        g.flaw = fmt::format("the masking noise does not sound ({})", to_string(masker_->ended()));
+        g.flaw = fmt::format("the masking noise does not play ({})", to_string(masker_->ended()));
         return g;
     }
     const unsigned breaks = masker_ ? masker_->breaks() : 0;
@@ -120,7 +120,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     else if (g.xruns > 0)
         g.flaw = "an xrun";
     else if (masker_ && (masker_->breaks() != breaks || noise_ended() != io_kind::ok))
-        g.flaw = "the masking noise stood still";
+        g.flaw = "the masking noise stopped";
     return g;
 }
 

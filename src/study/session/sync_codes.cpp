@@ -63,21 +63,20 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
     const std::uint64_t lead = c != nullptr ? code_frames(*c, rate) : 0;
     if (are_pairs && d.gap_s * rate < static_cast<double>(lead))
         throw error(error_kind::bad_input, c->where,
-                    fmt::format("code: it takes {:.4g} s, and the gap between two stimuli is {} s",
+                    fmt::format("code: it takes {:.4g} s, but the gap between two stimuli is {} s",
                                 static_cast<double>(lead) / rate, d.gap_s),
-                    "a longer gap_s in the definition, or a shorter bit_ms");
+                    "use a longer gap_s in the definition, or a shorter bit_ms");
     const stimulus& shortest = *std::ranges::min_element(all.all(), {}, &stimulus::frames);
     const double shortest_s = static_cast<double>(shortest.frames) / rate;
     const auto check = [&](double pulse_s, double most_s, std::string_view next, const auto& where,
                            std::string_view what) {
         if (pulse_s > most_s)
-            throw error(
-                error_kind::bad_input, where,
-                fmt::format("{}pulse_ms is {:.4g}, and {} may come {:.4g} ms after the stimulus of motion "
-                            "\"{}\" by method \"{}\" begins",
-                            what, pulse_s * 1e3, next, most_s * 1e3, d.motions[shortest.motion].name,
-                            d.methods[shortest.method].name),
-                "a shorter pulse_ms, or longer stimuli");
+            throw error(error_kind::bad_input, where,
+                        fmt::format("{}pulse_ms is {:.4g}, but {} may come {:.4g} ms after the stimulus of "
+                                    "motion \"{}\" with method \"{}\" begins",
+                                    what, pulse_s * 1e3, next, most_s * 1e3, d.motions[shortest.motion].name,
+                                    d.methods[shortest.method].name),
+                        "use a shorter pulse_ms, or longer stimuli");
     };
     const bool has_lines = c != nullptr && !c->offsets.empty();
     if (has_lines)
@@ -110,9 +109,8 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
     if (c == nullptr)
         return j;
     const auto column = [&](const char* name, const char* text) { j[name]["Description"] = text; };
-    column("onset",
-           "Time of the event since the run's first sample at the DAC; of an answer, when the program "
-           "took it");
+    column("onset", "Time of the event since the run's first sample at the DAC; for an answer, the time when "
+                    "the program received it");
     j["onset"]["Units"] = j["duration"]["Units"] = "s";
     column("duration", "Duration of the stimulus; 0 for other events");
     column("trial", "Trial of the run's table");
@@ -187,7 +185,7 @@ lsl_markers::lsl_markers(const std::string& source_id)
     if (outlet_ == nullptr)
         throw error(
             error_kind::not_available, "[sync] code lsl",
-            cause != nullptr ? cause : file + " makes no stream",
+            cause != nullptr ? cause : file + " cannot make a stream",
             "install liblsl from the Lab Streaming Layer's releases, or leave out lsl in [sync] code");
 }
 
@@ -271,7 +269,7 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
     if (sends && g.first_frame)
         note_stimuli(s, t, *g.first_frame, g.frames, rt::unix_ns() - (rt::monotonic_ns() - g.started_ns));
     if (lines_ != nullptr && there_->stats().sync_missed != missed)
-        session::say(stderr, "tactor: {}: trial {}: the lines came too late for a code and did not send it\n",
+        session::say(stderr, "tactor: {}: trial {}: the lines were too late for a code and did not send it\n",
                      p_.run_at(s.run).outline.name, s.which.trial);
     return g;
 }
@@ -289,7 +287,7 @@ void sync_codes::send(code_event e, const session_step& s, const planned_trial& 
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                std::chrono::duration<double>(code_->pulse_s));
     if (lines_ != nullptr && !lines_->show(n))
-        session::say(stderr, "tactor: the lines did not take a code\n");
+        session::say(stderr, "tactor: the lines did not accept a code\n");
     if (code_->channel) {
         sending_->code.frame += there_->setup().buffer_frames;
         sending_->refused = there_->submit(make(n), start_at::frame(sending_->code.frame));

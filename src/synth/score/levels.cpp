@@ -52,9 +52,8 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     if (!(level <= 1e-9)) {
         refuse_tactor(
             a, i, o,
-            fmt::format(
-                "would be driven at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS", level,
-                t.gain_db, o.level_dbfs),
+            fmt::format("would play at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS",
+                        level, t.gain_db, o.level_dbfs),
             fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db));
     }
     return level;
@@ -65,7 +64,7 @@ double level_db(const array& a, std::size_t i, const render_options& o)
 void refuse_unmeasured(const array& a, std::size_t i, const render_options& o)
 {
     refuse_tactor(a, i, o,
-                  fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for",
+                  fmt::format("has no threshold_dbfs, but the level is a sensation level of {} dB",
                               o.sl_db.value_or(0.0)),
                   "run {command:calibrate}, or use {level_dbfs}");
 }
@@ -96,12 +95,12 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 {
     if (o.sl_db && !std::isfinite(*o.sl_db)) {
         throw detail::bad_field("sl_db", fmt::format("{} is not a level", *o.sl_db),
-                                "the paper uses 7 dB SL");
+                                "give a finite level; the paper uses 7 dB SL");
     }
     if (!o.sl_db && !(std::isfinite(o.level_dbfs) && o.level_dbfs <= 0.0)) {
         throw detail::bad_field("level_dbfs",
                                 fmt::format("{} dBFS is not a level of 0 dBFS or less", o.level_dbfs),
-                                "the default is -12");
+                                "give a level of 0 dBFS or less; the default is -12");
     }
     std::vector<tactor_level> levels;
     levels.reserve(a.tactors.size());
@@ -266,11 +265,11 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
     const bool limited = limit_db < 0.0;
     const std::string limit =
         limited ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
-    const std::string driven = fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit);
+    const std::string driven = fmt::format("would play at {:.4g} dBFS, above {}", in_db(peak), limit);
     const char* raise = limited ? ", or raise max_dbfs" : "";
     if (o.sl_db)
         refuse_tactor(a, i, o,
-                      fmt::format("{}: with its threshold of {:.4g} dBFS {:.2f} dB are missing", driven,
+                      fmt::format("{}: its threshold of {:.4g} dBFS is {:.2f} dB too high", driven,
                                   threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
                                   excess_db),
                       fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise));

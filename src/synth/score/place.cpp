@@ -34,7 +34,7 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
         refuse(
             number,
             fmt::format("it starts at {} and lasts {}", seconds_text(b.onset_s), seconds_text(b.duration_s)),
-            fmt::format("between 0 and {:.0f} s can be rendered", longest_plan_s));
+            fmt::format("use 0 to {:.0f} s", longest_plan_s));
     }
     if (!std::isfinite(b.intensity))
         refuse(number, fmt::format("its intensity is {}", b.intensity), finite);
@@ -255,7 +255,7 @@ std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, 
     const auto check_length = [](const char* field, double s) {
         if (!(s >= 0.0 && s <= longest_plan_s))
             throw error(error_kind::bad_input, "plan", "it lasts " + seconds_text(s),
-                        fmt::format("between 0 and {:.0f} s can be rendered", longest_plan_s))
+                        fmt::format("use 0 to {:.0f} s", longest_plan_s))
                 .with_field(field);
     };
     check_length("total_s", p.total_s);

@@ -40,11 +40,11 @@ unsigned settle_channels(const array& a, const render_options& o)
         throw detail::bad_field(
             "channels",
             fmt::format("{} are too few: the array has a tactor on channel {}", channels, needed - 1),
-            fmt::format("ask for {} or more", needed));
+            fmt::format("use {} or more", needed));
     }
     if (channels > detail::max_channels) {
         throw detail::bad_field("channels", fmt::format("{} are too many", channels),
-                                fmt::format("at most {} can be rendered", detail::max_channels));
+                                fmt::format("use at most {}", detail::max_channels));
     }
     return channels;
 }
@@ -53,15 +53,15 @@ void check_options(const render_options& o)
 {
     if (o.rate < 8000 || o.rate > 768000) {
         throw detail::bad_field("rate", fmt::format("{} Hz cannot be rendered", o.rate),
-                                "use 8000 to 768000, e.g. 48000");
+                                "use 8000 to 768000, such as 48000");
     }
     if (o.ramp_s && !(*o.ramp_s >= 0.0 && *o.ramp_s <= latest_start_s)) {
         throw detail::bad_field("ramp_s", fmt::format("{} s is not a ramp", *o.ramp_s),
-                                "use 0 or more, e.g. 0.002");
+                                "use 0 or more, such as 0.002");
     }
     const auto check_ramp = [](const char* what, std::optional<double> s) {
         if (s && !(*s >= 0.0 && *s <= 10.0))
-            throw detail::bad_field(what, fmt::format("{} s is not a ramp", *s), "use 0 to 10, e.g. 0.01");
+            throw detail::bad_field(what, fmt::format("{} s is not a ramp", *s), "use 0 to 10, such as 0.01");
     };
     check_ramp("attack_s", o.envelope.attack_s);
     check_ramp("release_s", o.envelope.release_s);
@@ -80,7 +80,7 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
     if (*o.marker_channel >= channels) {
         throw error(error_kind::bad_input, what,
                     fmt::format("there {} {}", channels == 1 ? "is" : "are", counted(channels, "channel")),
-                    fmt::format("ask for {} or more", counted(*o.marker_channel + 1, "channel")))
+                    fmt::format("use {} or more", counted(*o.marker_channel + 1, "channel")))
             .with_field("marker_channel");
     }
     for (std::size_t i = 0; i < a.tactors.size(); ++i) {
@@ -91,8 +91,8 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
         }
     }
     if (!(o.marker_s > 0.0 && o.marker_s <= 10.0)) {
-        throw detail::bad_field("marker_s", fmt::format("{} s is not its length", o.marker_s),
-                                "use above 0 to 10 s, e.g. 0.005");
+        throw detail::bad_field("marker_s", fmt::format("{} s is not a length for it", o.marker_s),
+                                "use above 0 to 10 s, such as 0.005");
     }
 }
 

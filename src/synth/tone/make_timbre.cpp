@@ -76,7 +76,7 @@ void require_left(double peak, const recording& r)
 {
     if (!(peak >= least_peak)) {
         throw error(error_kind::bad_input, recording_name(r),
-                    "nothing of it is left below half its own rate and the stream's",
+                    "it has no frequencies below half its own rate and the stream's",
                     "give a slower vibration, a lower {carrier_hz} or a higher rate");
     }
 }
@@ -422,17 +422,15 @@ void refuse_displacement(const timbre& t, const plan& p)
             continue;
         const auto n = static_cast<double>(k);
         const std::string what = k == 1 ? "the carrier" : fmt::format("harmonic {} of the carrier", k);
-        throw detail::bad_field(
-            "am",
-            p.course.empty()
-                ? fmt::format(
-                      "{} Hz is within {} Hz of {}, {} Hz: their product is a displacement that hardly "
-                      "moves, not a vibration",
-                      p.am.hz, least_beat_hz, what, n * p.carrier_hz)
-                : fmt::format("{} passes {} Hz on its way from {} to {} Hz: their product is there a "
-                              "displacement that hardly moves, not a vibration",
-                              what, p.am.hz, n * low_hz, n * high_hz),
-            "choose a rate farther from the carrier, such as 30 Hz");
+        throw detail::bad_field("am",
+                                p.course.empty()
+                                    ? fmt::format("{} Hz is within {} Hz of {}, {} Hz: their product is a "
+                                                  "slow displacement, not a vibration",
+                                                  p.am.hz, least_beat_hz, what, n * p.carrier_hz)
+                                    : fmt::format("{} passes {} Hz on its way from {} to {} Hz: there, their "
+                                                  "product is a slow displacement, not a vibration",
+                                                  what, p.am.hz, n * low_hz, n * high_hz),
+                                "choose a rate farther from the carrier, such as 30 Hz");
     }
 }
 

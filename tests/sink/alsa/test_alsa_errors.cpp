@@ -113,7 +113,8 @@ TEST_CASE("a missing plugin of ALSA's is named with its package")
         "sudo apt install libasound2-plugins");
     has(missing("pipewire"), "sudo apt install pipewire-alsa;");
     const std::string unknown = missing("pulze");
-    has(unknown, "is the type pulze in its definition misspelt? Else install what has that file");
+    has(unknown,
+        "check the spelling of the type pulze in its definition, or install the package with that file");
     CHECK(unknown.find("apt") == std::string::npos);
     s.two_cards();
     has(missing("pulse"), "device = hw:CARD=Headphones");
@@ -127,7 +128,7 @@ TEST_CASE("JACK without its server is named, whose plugin only says that there i
 {
     const fake_system s;
     const std::string text = s.leads({"plug", "jack"}, -ENOENT);
-    has(text, "it leads to JACK, whose server does not run");
+    has(text, "it leads to JACK, but no JACK server is running");
     has(text, "jackd");
     has(text, "device = hw:CARD=NAME");
     CHECK(text.find("there is no sound card") == std::string::npos);
@@ -193,7 +194,7 @@ TEST_CASE("a PCM whose definition refers to a missing one is not reported as mis
     const fake_system s;
     s.two_cards();
     const std::string text = s.says("soft", -ENOENT, {"default", "null", "soft"});
-    has(text, "PCM \"soft\": ALSA's configuration defines it, but not all that it refers to");
+    has(text, "PCM \"soft\": ALSA's configuration defines it, but not everything that it refers to");
     CHECK(text.find("did you mean") == std::string::npos);
     const std::string said = caught_message([] {
         return open_alsa(

@@ -428,10 +428,10 @@ TEST_CASE("a device whose number of periods cannot be set gets a buffer of as ma
 TEST_CASE("the log has the requested values where the device changed them")
 {
     CHECK_FALSE(within(agreed({}).log, "wished"));
-    has(agreed({}, {.least_period_bytes = 4096}).log, "of 128 frames; 3 of 96 were wished");
+    has(agreed({}, {.least_period_bytes = 4096}).log, "of 128 frames; 3 of 96 were requested");
     // The requested period, in another buffer.
-    has(agreed({.buffer_frames = 384}).log, "4 of 96 frames; 3 of 96 were wished");
-    has(agreed({.period_frames = 144}).log, "2 of 144 frames; 3 of 96 were wished");
+    has(agreed({.buffer_frames = 384}).log, "4 of 96 frames; 3 of 96 were requested");
+    has(agreed({.period_frames = 144}).log, "2 of 144 frames; 3 of 96 were requested");
 }
 
 TEST_CASE("a stream starts on request, ends with its last frame, and is silent beyond")

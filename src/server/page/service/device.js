@@ -37,10 +37,10 @@ function warn() {
   if (unanswered_s()) return [`Stop is ${stop_words()[1]}. Switch the amplifier off.`, "bad", ""];
   if (state.link === "token") return [state.asks_token, "warn",
     "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
-  if (state.link === "lost") return ["No connection to tactor. It is tried again; nothing is lost.", "bad", state.lost_reason
+  if (state.link === "lost") return ["No connection to tactor. The page tries again; nothing is lost.", "bad", state.lost_reason
     || "The WebSocket to the service is closed."];
   if (state.unkept.size) return [`Takes are not kept: ${state.storage_fault}.`, "warn",
-    "It is tried again with each change. Save what you need as a file; the page asks before it closes."];
+    "The page tries again with each change. Save what you need as a file; the page asks before it closes."];
   if (state.link === "connected" && state.slow) return null;
   if (s.state === "lost" && !is_cardless()) return ["The sound card is gone. Drawings are kept; plug it in again.", "bad", s.reason];
   if (s.state === "muted") return ["Muted: the sound broke up. It comes back when it is steady.", "warn", s.reason];

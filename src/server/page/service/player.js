@@ -109,7 +109,7 @@ async function ask_to_play() {
   changed("playing");
 }
 function say_refusal(e) {
-  if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
+  if (state.plan_fault) say("It cannot play: see the warning at its settings");
   else if (e.code !== 0) { state.fault = fault_sentence(e); changed("link"); }
 }
 
@@ -282,7 +282,7 @@ let lift_fingers = null;
 export function on_stop(f) { lift_fingers = f; }
 
 export function test_tactor(i) {
-  if (!is_connected()) return say("No connection: nothing is driven");
+  if (!is_connected()) return say("No connection: nothing plays");
   if (is_simulated()) tap_tactor(i);
   if (is_cardless()) return;
   tell_level();

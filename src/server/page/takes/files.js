@@ -17,7 +17,7 @@ const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv"
 
 // A figure of this page has its stroke, as TOML in base64, in one part or two, in a comment at its end.
 const STROKE_OF_FIGURE = /<!-- stroke of this figure: ([\w+/= ]+) -->\s*$/;
-const FIGURE = "it is a figure; open the stroke from which it was drawn (.toml)";
+const FIGURE = "it is a figure; open the stroke that it shows (.toml)";
 
 async function open_files(files) {
   const faults = [];
@@ -134,8 +134,8 @@ listen("p-share", "beforetoggle", async e => {
   const own = is_own_host(location.hostname);
   show_only_if(by_id("qr"), !own);
   set_text("link", own ? `tactor serve --http 0.0.0.0:${location.port} --config FILE` : page_link());
-  set_text("share-text", own ? "Only this computer opens this address. For a phone, start the service so, with a token_file under [serve] in FILE."
-    : page_link().includes("#token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.");
+  set_text("share-text", own ? "Only this computer opens this address. For a phone, start the service like this, with a token_file under [serve] in FILE."
+    : page_link().includes("#token=") ? "The link contains the token: anybody with the link can draw." : "Open it on a phone in the same network.");
   if (own) return;
   try {
     const {size, path} = await call("qr", {text: page_link()});

@@ -19,7 +19,7 @@ export async function open_storage(name, on_gone = () => {}) {
     const transaction = database.transaction(["takes", "values"], mode);
     const asked = ask(transaction.objectStore("takes"), transaction.objectStore("values"));
     transaction.oncomplete = () => done(asked);
-    transaction.onabort = () => failed(transaction.error ?? new Error("the browser's storage gave up"));
+    transaction.onabort = () => failed(transaction.error ?? new Error("the browser's storage failed"));
     transaction.commit();
   });
   return {

@@ -36,7 +36,7 @@ export function copy_clip(from_s, same) {
 }
 export function toggle_append() {
   state.append = !state.append;
-  say(state.append ? "Draw: it follows the last stroke" : "Drawings are takes of their own");
+  say(state.append ? "Draw: it follows the last stroke" : "Each drawing is a new take");
   changed("curves");
 }
 const clip_button = i => make("button", {onclick: () => choose_clip(i), onblur: end_edit, onkeydown: e => {

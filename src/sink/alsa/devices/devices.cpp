@@ -355,7 +355,7 @@ std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
     if (writes(route))
         return "not tried: opening a PCM of type file empties its file or starts its command";
     if (contains(route, endless))
-        return "not tried: its definition leads to itself, or to too many others";
+        return "not tried: its definition refers to itself, or to too many others";
     const std::string lasting = wanted ? "" : lasting_type(route);
     return lasting.empty()
                ? ""

@@ -30,8 +30,8 @@ std::string all_of(std::string_view text, bool (*may)(char))
     if (bad == text.end())
         return {};
     const auto c = static_cast<unsigned char>(*bad);
-    return c > 0x20 && c < 0x7f ? fmt::format("{} may not stand in it", *bad)
-                                : fmt::format("the byte 0x{:02x} may not stand in it", c);
+    return c > 0x20 && c < 0x7f ? fmt::format("it must not contain {}", *bad)
+                                : fmt::format("it must not contain the byte 0x{:02x}", c);
 }
 
 std::string argument(std::string_view text)

@@ -114,7 +114,7 @@ std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
     std::string fault;
     const auto below = [&](std::optional<unsigned> channel, unsigned most) {
         if (channel && *channel >= most && fault.empty())
-            fault = fmt::format("type {} has a channel beyond the {} that there can be", type, most);
+            fault = fmt::format("type {} has a channel beyond the largest possible, {}", type, most);
     };
     for (const char* table : {"ttable", "bindings"})
         each_member(member(definition, table), [&](const std::string& client, snd_config_t* row) {
@@ -130,7 +130,7 @@ std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
     while (bound.contains(next))
         ++next;
     if (type == "multi" && fault.empty() && next < bound.size())
-        fault = fmt::format("type multi leaves a hole in its bindings: it binds no channel {}", next);
+        fault = fmt::format("type multi leaves a gap in its bindings: it has no channel {}", next);
     return fault;
 }
 
@@ -153,7 +153,7 @@ public:
     types found() && { return std::move(found_); }
     std::string fault() const
     {
-        return contains(found_, endless) ? "its definition leads to itself, or to too many others" : fault_;
+        return contains(found_, endless) ? "its definition refers to itself, or to too many others" : fault_;
     }
 
 private:
@@ -370,7 +370,7 @@ private:
     outputs at(snd_config_t* definition, unsigned channels, int depth)
     {
         if (depth > deepest || ++definitions_ > most_definitions)
-            throw hidden{"more definitions than anyone has"};
+            throw hidden{"too many definitions"};
         if (const char* other = string_value(definition))
             return named(other, channels, depth + 1);
         const std::string type = value_text(member(definition, "type"));
@@ -426,7 +426,7 @@ private:
         if (!to || *to >= inner.size())
             return;
         if ((links_ += inner[*to].size()) > most_links)
-            throw hidden{"a larger table than anyone has"};
+            throw hidden{"too large a table"};
         for (const auto& [output, further] : inner[*to])
             from[output] += gain * further;
     }
