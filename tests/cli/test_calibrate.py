@@ -75,7 +75,7 @@ class Simulated(CalibrateTest):
         thresholds = [t["threshold_dbfs"] for t in self.toml("both.toml")["tactor"]]
         self.assertEqual([[p[0] for p in t] for t in thresholds], [[100, 250]] + [[250]] * 8)
         self.simulated("at100.toml", "--carrier", 100, *SHORT)
-        told = "thresholds were measured at 100 Hz, and a carrier is 250 Hz"
+        told = "thresholds were measured at 100 Hz, but a carrier is 250 Hz"
         at = ("--array", "at100.toml", "--sl", 7)
         for command in (("plan", "park2016-1"), ("play", "park2016-1", "park2016-1", "-D", "null")):
             self.assertEqual(self.ok(*command, *at).stderr.count(told), 1)

@@ -184,7 +184,7 @@ TEST_CASE("missing thresholds, and levels that are not above them, are findings"
     CHECK(unfelt.how == level::warning);
     CHECK(has(unfelt.found, "not above the threshold of tactors 2"));
     a.tactors[2].threshold_dbfs.reset();
-    CHECK(has(array_finding(a, "levels").found, "no threshold of tactors 2"));
+    CHECK(has(array_finding(a, "levels").found, "tactors 2 have no threshold"));
 }
 
 TEST_CASE("check lists the limits that hold")
@@ -316,12 +316,12 @@ TEST_CASE("findings have this form")
 {
     const std::vector<finding> all{
         fine("array", "palm-3x3: 9 tactors"),
-        warning("sound servers", "pipewire (process 812): may take card Tactor at any time",
+        warning("sound servers", "pipewire (process 812): may use card Tactor at any time",
                 "call the card Tactor"),
         failure("device", error(error_kind::not_available, "PCM \"x\"", "no such PCM", "try y"))};
     CHECK(check_text(all, false) ==
           "ok       array          palm-3x3: 9 tactors\n"
-          "warning  sound servers  pipewire (process 812): may take card Tactor at any\n"
+          "warning  sound servers  pipewire (process 812): may use card Tactor at any\n"
           "                        time\n"
           "                        -> call the card Tactor\n"
           "error    device         PCM \"x\": no such PCM\n"
@@ -443,7 +443,7 @@ TEST_CASE("a server that may take the card, or has it, is a warning")
     CHECK(judged(f, "sound servers", n).how == level::ok);
     f.servers.push_back({812, "pipewire"});
     CHECK(judged(f, "sound servers", n).how == level::warning);
-    CHECK(has(judged(f, "sound servers", n).found, "pipewire (process 812): may take card Tactor"));
+    CHECK(has(judged(f, "sound servers", n).found, "pipewire (process 812): may use card Tactor"));
     CHECK(has(judged(f, "sound servers", n).cure, "70-tactor.rules"));
     n.ignored = true;
     CHECK(judged(f, "sound servers", n).how == level::ok);

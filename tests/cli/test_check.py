@@ -248,7 +248,7 @@ class Walk(ToolTest):
 
     def test_answers_without_a_map_make_no_file(self):
         for answers, says in (([1, 1], ["tactor 0 (channel 0) and tactor 1 (channel 1)", "at one place, 1"]),
-                              ([0, "n"], ["tactor 1 (channel 1) was not felt"]), ([0, "q"], ["left after 1 of 2"]),
+                              ([0, "n"], ["tactor 1 (channel 1) was not felt"]), ([0, "q"], ["stopped after 1 of 2"]),
                               ([0], ["no answer for tactor 1"]), ([], ["no answer for tactor 0"])):
             r = self.walk(answers, "-o", "felt.toml", status=1)
             self.assertTrue(all(text in r.stderr for text in says), r.stderr)

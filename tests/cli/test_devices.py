@@ -136,7 +136,7 @@ class Channels(DevicesTest):
         self.assertEqual((self.dir / "o.wav").read_bytes()[22:24], (16).to_bytes(2, "little"))
 
     def test_a_card_with_fewer_channels_names_an_array_that_fits_or_the_marker(self):
-        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "it can do channels 8", self.FITS])
+        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "it supports channels 8", self.FITS])
         self.refused(3, "serve", "--socket", f"{self.dir}/s", "-D", "eight")  # it does not wait for that
         self.assertIn(self.FITS, self.check_device("eight", status=3)["cure"])
         pcms = self.devices()[1]

@@ -110,7 +110,7 @@ class DryRun(ExperimentTest):
         weaker = {(s["motion"], s["method"]): s["weakened_db"] for s in self.dry(small)[0]["stimuli"]}
         self.assertEqual([weaker["to the right", "brush"], weaker["to the right", "park"], weaker["down", "park"]], [0, 0, 0])
         self.assertAlmostEqual(weaker["down", "brush"], -20 * math.log10(2 ** 0.5), 2)
-        self.assertIn("motion down by method brush: weakened by 3.01 dB", self.ok("experiment", small, "--dry-run").stdout)
+        self.assertIn("motion down with method brush: weakened by 3.01 dB", self.ok("experiment", small, "--dry-run").stdout)
         self.simulate(definition=small)
         self.assertEqual({(s["motion"], s["method"]): s["weakened_db"] for s in self.session()["stimuli"]}, weaker)
         self.assertIn("down with brush: 3.01 dB weaker than the level, so that no tactor exceeds it", self.ok("report", "study").stdout)
@@ -337,7 +337,7 @@ class Simulated(ExperimentTest):
         self.assertEqual((run["bradley_terry"]["reference"], list(run["bradley_terry"]["se"])), ("brush", ["brush", "park", "third"]))
         self.assertAlmostEqual(sum(m["all"]["mean"] for m in run["chosen"].values()), 150)
         text = self.ok("report", "study").stdout
-        self.assertIn("two stimuli of one motion, by two of brush, park, third,", text)
+        self.assertIn("two stimuli of one motion, with two of brush, park, third,", text)
         self.assertEqual(re.findall(r"Per cent of the trials with (\w+) in which it was chosen", text), ["brush", "park", "third"])
         self.assertRegex(text, r"relative to brush, which has 0:\n\n\| method .*\n\| --- .*\n\| brush \| 0 \| 0 \|\n\| park \| \S+ \| \S+ \|\n")
         told = json.loads(self.ok("experiment", small, "--power", "3", "--studies", "4", "--simulate", "sigma=1", "--format", "json").stdout)
@@ -559,7 +559,7 @@ class Orders(ExperimentTest):
         self.assertEqual((self.session("05")["order"], self.session("05")["order_row"]), (order, 2))
         self.assertIn("finished", self.simulate("05", "--resume", "--order", "2").stdout)
         self.simulate("05", "--resume", status=2, says=('begun with order ["how good"',))
-        self.simulate("05", "--resume", "--order", "3", status=2, says=("begun with order_row 2, and now it is 3",))
+        self.simulate("05", "--resume", "--order", "3", status=2, says=("began with order_row 2, but now it is 3",))
         self.simulate("02", "--resume", "--order", "3", status=2, says=("begun with order_row none",))
         report = self.ok("report", "study").stdout
         for text in (f"| {', '.join(order)} (row 2) |", f"| {', '.join(order)} |", "is a row of a Williams square (Williams 1949), chosen by"):

@@ -94,8 +94,8 @@ class Codes(PersonTest):
     def test_what_cannot_be_sent_is_refused_with_file_and_line(self):
         for old, new, says in (("channel = 15", "channel = 4", "array.toml:4:8: code: channel 4 drives a tactor"),
                                ("[sync]", "[output]\nchannels = 12\n[sync]", "array.toml:6:8: the code's channel is 15, but there are 12 channels"),
-                               ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'up to number 265 (void), and 255 is the greatest'),
-                               ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8]', 'up to number 24 (void), and 15 is the greatest (more lines, or'),
+                               ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'up to number 265 (void), but 255 is the largest'),
+                               ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8]', 'up to number 24 (void), but 15 is the largest (use more lines, or'),
                                ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8, 9], pulse_ms = 800',
                                 "array.toml:4:8: code: pulse_ms is 800, and the answer's number may come 7"),
                                ('code = { channel = 15 }', 'out = { chip = "c", offset = 5, pulse_ms = 2000 }', "[sync] out: pulse_ms is 2000"),

@@ -108,7 +108,7 @@ class AtEveryWrite(ExperimentTest):
         for call in ("ftruncate", "fsync"):
             run = self.strace(call, "error=EIO", 1, "-P", table, resume=["--resume"])
             self.assertEqual(run.returncode, 1, f"{call}: {run.stderr}")
-            self.assertIn(f"{table.name}: Input/output error (what was answered before is kept", run.stderr)
+            self.assertIn(f"{table.name}: Input/output error (earlier answers are kept", run.stderr)
             self.assertEqual(table.with_name(table.name + ".cut-1").read_bytes(), text.rpartition(b"\n")[2])
             if call == "ftruncate":
                 self.assertEqual(table.read_bytes(), text)

@@ -175,7 +175,7 @@ class AtTheTerminal(PersonTest):
             if n:
                 t.answer(("Practice 1/1", "Trial 1/2: ", "A break")[n - 1], "\x03")
             self.assertEqual(t.end(), 130, n)
-            self.assertIn("--resume goes on", t.said())
+            self.assertIn("--resume continues", t.said())
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["1", "2"])
         # The break was over with the interruption, and the stream is another.
         result = self.ok(*self.args("--resume"), stdin="y\ny\n1\n2\n")

@@ -92,7 +92,7 @@ class Held(SessionTest):
             self.refused(2, "experiment", "many.toml", "--dry-run", "--session", "1")
         self.hold("01", 1)
         self.simulate("02", definition="small.toml", status=2, says=("sub-01_ses-1 had another experiment: sessions: 2, then 1",))
-        self.assertIn("study: sub-02_ses-1 is not here", self.hold("02", 2).stderr)
+        self.assertIn("study: the folder has no sub-02_ses-1", self.hold("02", 2).stderr)
         self.assertNotIn("not here", self.hold("01", 2).stderr)
 
     def test_a_participant_stays_in_one_group(self):

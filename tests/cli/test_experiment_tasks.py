@@ -240,7 +240,7 @@ class Tasks(ExperimentTest):
         for text in ("chosen by the answers from -40 to -8; standard -24", "Trials without a stimulus, called none, with silence that is as long: 20 %",
                      "slopes (standard deviations of the normal) of 0.8, 1.692, 3.578, 7.566, 16 and lapses of 0, 0.02, 0.04",
                      "staircases (Levitt 1971) from 200, 40: a step down after 2 positive answers in a row",
-                     "every second track the other way round, up after 2 negative answers in a row, which leads to 29.3 %", "steps of 40, 20, the next",
+                     "every second track mirrored, up after 2 negative answers in a row, which leads to 29.3 %", "step sizes of 40, 20, the next one",
                      "| east | park | level\\_dbfs -60 to -8 (35 values) |", "| 35 plans | all |", "| east | park | length\\_mm 20, speed\\_mm\\_s 100 |",
                      "Stimulus called standard: by the same method, with level\\_dbfs of -24", "- Watson, A. B.", "- Levitt, H.", "- Stevens, S. S."):
             self.assertIn(text, report)

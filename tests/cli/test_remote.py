@@ -293,7 +293,7 @@ class Remote(ServeTest):
         warning = "tactor: warning: standard input:1: an intensity of 80 plays as 1: the requested level is the ceiling "
         for where in (("-D", "null"), ("--socket", self.serve().where["socket"])):
             r = self.ok("play", "--live", "-", *where, "--format", "json", stdin=lines)
-            self.assertEqual(r.stderr.count("sounds as 1"), 1, r.stderr)
+            self.assertEqual(r.stderr.count("plays as 1"), 1, r.stderr)
             self.assertIn(warning, r.stderr)
             self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 2)
         r = self.ok("play", "--live", "-", "-D", "null", "--verbose", stdin=lines)

@@ -167,7 +167,7 @@ class Numbers(ReportTest):
             self.assertIn(told, self.text)
 
     def test_simulated_data_are_marked_at_the_top_and_at_each_result(self):
-        self.assertIn("**SIMULATED: nobody was asked.**", "\n".join(self.text.splitlines()[:4]))
+        self.assertIn("**SIMULATED: no person answered.**", "\n".join(self.text.splitlines()[:4]))
         results = section(self.text, "## Results (SIMULATED)")
         runs = results.partition("### ")[2]
         for line in runs.splitlines():
@@ -326,7 +326,7 @@ class Differences(ReportTest):
         self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--carrier", 100, "--simulate", "threshold=-45,spread=2")
         self.write("P1.toml", (self.dir / "P1.toml").read_text().replace("simulated = true", "simulated = false"))
         said = self.simulate("P2", "--array", "P1.toml", folder="others")
-        for told in ("of participant P1, not P2", "measured at 100 Hz, and a carrier is 250 Hz"):
+        for told in ("of participant P1, not P2", "measured at 100 Hz, but a carrier is 250 Hz"):
             self.assertIn(f"tactor: warning: the thresholds {'were ' if told[0] == 'm' else 'are '}{told}", said.stderr)
             self.assertIn(told, self.report("others"))
         row, = tables(section(self.report("others"), "### Levels and thresholds"))[1]
@@ -425,9 +425,9 @@ class Refusals(ReportTest):
         good = (self.dir / "study/sourcedata/sub-01/session.json").read_text()
         for change, why in (
                 (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
-                (lambda t: t["array"].update(tactors=7), "array.tactors: is no list"),
+                (lambda t: t["array"].update(tactors=7), "array.tactors: is not a list"),
                 (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: is no frequency"),
-                (lambda t: t.update(level=[7]), "level: is no object"),
+                (lambda t: t.update(level=[7]), "level: is not an object"),
                 (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed: is neither true nor false"),
                 (lambda t: t["stimuli"][0].update(sha256="../../../passwd"), "passwd.json"),
                 (lambda t: t["stimuli"].pop(0), "plan_1 is no plan of its motion by its method")):

@@ -98,7 +98,7 @@ class Sockets(ServeTest):
                 s.listen()
             for mode, sockets, why in ((0o666, [given], "every user of this machine may write to it"),
                                        (0o660, [given, given], "two have this name"),
-                                       (0o660, [nameless], "it is no file")):
+                                       (0o660, [nameless], "it is not a file")):
                 os.chmod(path, mode)
                 self.refuses_to_start(2, inherits=[("socket", s) for s in sockets], says=why)
             s = self.serve(inherits=[("socket", given)])
@@ -139,7 +139,7 @@ class Sockets(ServeTest):
         hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         for most, is_few in ((60, True), (hard, False)):
             s = self.serve(preexec_fn=lambda most=most: resource.setrlimit(resource.RLIMIT_NOFILE, (60, most)))
-            self.assertEqual("too few descriptors: 60 may be open, and 64 clients need 160" in s.terminate()[2], is_few)
+            self.assertEqual("too few descriptors: 60 may be open, but 64 clients need 160" in s.terminate()[2], is_few)
 
     # Permissions.
 

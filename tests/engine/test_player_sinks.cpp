@@ -442,7 +442,7 @@ TEST_CASE("a score that drives a channel without a tactor is refused, others pla
           "stroke: it drives tactor 4 on channel 4, but the player's array has no tactor there (plan it for "
           "the array that the player was opened with)");
     CHECK(complaint(few, tone(0.01, 4, on_nine_channels(), 0.0)).empty());
-    has(complaint(few, random_score(1, 20, 9)), "where the player's array has none");
+    has(complaint(few, random_score(1, 20, 9)), "but the player's array has no tactor there");
 }
 
 TEST_CASE("a continuous stroke counts every tactor of its array as driven")

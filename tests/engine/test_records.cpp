@@ -163,7 +163,7 @@ TEST_CASE("limits that act are logged once a second at most")
     logged<rig> r(o, {.power_dbfs = -60.0});
     r.submit(tone(2.5));
     r.play(120'000);
-    CHECK(r.told.count("warning the power of all tactors was held at -60 dBFS") == 3);
+    CHECK(r.told.count("warning the limit reduced the power of all tactors to -60 dBFS") == 3);
 }
 
 TEST_CASE("a player logs its start and its end, and survives a log that throws")
@@ -206,7 +206,7 @@ TEST_CASE("a live stroke above its level is logged once, at its end")
         CHECK(p.wait(live.id())->held_points == live.counts().held);
     }
     p.stop();
-    CHECK(told.count("warning live stroke 1: 2 points above intensity 1 sounded as 1") == 1);
+    CHECK(told.count("warning live stroke 1: 2 points above intensity 1 played as 1") == 1);
     CHECK(told.count("live stroke") == 1);
 }
 

@@ -199,7 +199,7 @@ TEST_CASE("a group is fitted together")
     CHECK(asked[0].fit->margin_mm == 5.0);
     CHECK(asked[3].fit->margin_mm == 0.0);
     CHECK_FALSE(parse_all("[[stroke]]\n" + two)[0].fit);
-    has(complaint("[[stroke]]\nfit = true\n" + two + "fit = true\n"), "is fitted already");
+    has(complaint("[[stroke]]\nfit = true\n" + two + "fit = true\n"), "is in a group that is fitted");
     CHECK(complaint("[[stroke]]\nfit_margin_mm = 1\n" + two).find("nothing is fitted") != std::string::npos);
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("an element that may be hidden does not play")
         CAPTURE(unknown);
         const auto all = left("style='" + std::string(unknown) + "'");
         CHECK(all.size() == 1);
-        CHECK(has(all.front().warnings.at(0), "of <line> 'a' is not understood ("));
+        CHECK(has(all.front().warnings.at(0), "of <line> 'a' is unknown ("));
         CHECK(has(all.front().warnings.at(0), "): the element counts as hidden"));
     }
     for (const char* shown : {"style='display:Inline-Block'", "display='inherit'", "visibility='Visible'"}) {

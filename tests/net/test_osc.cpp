@@ -137,7 +137,7 @@ TEST_CASE("a broken packet gives the reason, and so do values that cannot be rea
              {padded("/a") + padded(",?") + "abcd", "value"},
              {"#bundle\0"s, "without its time"},
              {"#bundle\0"s + big_endian(1, 4), "without its time"},
-             {bundle(1, {stop}) + "\0\0\0\4"s, "4 bytes where 0 are left"},
+             {bundle(1, {stop}) + "\0\0\0\4"s, "an element has 4 bytes, but 0 are left"},
              {bundle(1, {}) + big_endian(0, 4), "0 bytes"},
              {bundle(1, {}) + big_endian(0xfffffffc, 4) + stop, "4294967292 bytes"},
              {bundle(1, {}) + big_endian(6, 4) + "/a\0\0\0\0\0\0"s, "6 bytes"},

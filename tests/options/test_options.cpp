@@ -154,7 +154,7 @@ TEST_CASE("two exclusive options are refused in any order")
         wishes w;
         give(w, *find(o.rival), find(o.rival)->allowed.low);
         CHECK(caught_message([&] { give(w, o, o.allowed.low); }) ==
-              fmt::format("{}: there is also {{{}}} (give one of them)", o.name, o.rival));
+              fmt::format("{}: it cannot be combined with {{{}}} (give one of them)", o.name, o.rival));
     }
 }
 
@@ -325,7 +325,7 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
     CHECK(complaint("snap = 1") == "t.toml:2:8: snap: 1 is neither true nor false");
     CHECK(complaint("envelope = \"linear:0.3\"") ==
           "t.toml:2:12: envelope: \"linear:0.3\" is unknown (only tukey has a part, 0 to 1, as tukey:0.5)");
-    CHECK(complaint("waveform = 3") == "t.toml:2:12: waveform: 3 is no text (put it in quotes)");
+    CHECK(complaint("waveform = 3") == "t.toml:2:12: waveform: 3 is not a text (put it in quotes)");
     CHECK(complaint("am = 30") == "");
     CHECK(complaint("waveform = \"nowhere.wav\"") == ""); // looked for where it is used
     CHECK(caught_message([&] {

@@ -69,7 +69,7 @@ TEST_CASE("a burst with a given duration keeps the SOA, up to the SOA, and warns
         CHECK(p.conflicts.empty());
         REQUIRE(p.warnings.size() == (e.law ? 0 : 1));
         if (!e.law)
-            has(p.warnings[0], "leave the timing law, SOA = 0.32 duration + 0.0473 s");
+            has(p.warnings[0], "break the timing law, SOA = 0.32 duration + 0.0473 s");
     }
 }
 

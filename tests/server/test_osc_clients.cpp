@@ -241,7 +241,7 @@ TEST_CASE("a live stroke in one packet, before its own number is known to anybod
     rig.say(me, "/tactor/to", {5_i, 1e9, 0.0});
     CHECK(has(rig.next(me), "/tactor/error /tactor/to stroke 5: x_mm: 1000000000 is out of range"));
     rig.say(me, "/tactor/to", {5_i, 20.0, 20.0, 80.0});
-    CHECK(has(rig.next(me), "/tactor/error /tactor/to stroke 5: an intensity of 80 sounds as 1"));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/to stroke 5: an intensity of 80 plays as 1"));
     rig.say(me, "/tactor/to", {5_i, 20.0, 20.0, 2.0}); // said once
     rig.say(me, "/tactor/end", {5_i});
     CHECK(rig.next(me) == "/tactor/stroke 5 finished");

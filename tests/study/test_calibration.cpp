@@ -250,7 +250,7 @@ TEST_CASE("a log of another session is refused with the line")
     f.write("a.tsv", whole.log);
     calibration_settings other = settings();
     other.carrier_hz = 200.0;
-    has(refusal(f / "a.tsv", true, other), "begun with carrier_hz 250.0, and 200.0 is asked for");
+    has(refusal(f / "a.tsv", true, other), "began with carrier_hz 250.0, but now it is 200.0");
     f.write("a.json", "[]");
     has(refusal(f / "a.tsv", true), "does not say how");
     fs::remove(f / "a.json");
@@ -474,7 +474,7 @@ TEST_CASE("the tables of a calibration are checked where they are read")
     has(changed("threshold_dbfs = -30", "threshold_dbfs = 3"), "threshold_dbfs is 3");
     has(changed("trials", "trails"), "trails");
     has(changed("participant = \"P07\"\n", ""), "participant");
-    has(complaint(good + "\n[[calibration.tactor]]\ntactor = 8\ntrials = 1\n"), "has an entry already");
+    has(complaint(good + "\n[[calibration.tactor]]\ntactor = 8\ntrials = 1\n"), "has another entry");
     CHECK_THROWS_AS(parse_setup(good, "me.toml"), error);
 }
 

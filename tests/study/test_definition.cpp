@@ -406,7 +406,7 @@ TEST_CASE("faults have their line")
         CHECK(with(std::string("name = \"r\"\ntask = \"rate\"\n") + beyond + "\n").find("e.toml:16:") == 0);
     has(with("name = \"r\"\ntask = \"identify\"\nmotions = [\"a\"]\n"), "one motion to identify");
     has(with("name = \"r 1\"\ntask = \"rate\"\n[[run]]\nname = \"r-1\"\ntask = \"rate\"\n"),
-        "\"r 1\" and \"r-1\" would have one name");
+        "\"r 1\" and \"r-1\" would have the same name");
     has(outline_refusal(outline_head + "[[method]]\nname = \"old\"\n"), "the method \"old\" occurs twice");
 }
 

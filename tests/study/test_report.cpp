@@ -68,12 +68,12 @@ TEST_CASE("a wrong value is reported with its place")
     CHECK(f["none"].list().empty());
     const json_value first = f["array"]["tactors"].list().at(0);
     CHECK(has(caught_message([&] { static_cast<void>(first["x_mm"].number()); }),
-              "s.json: array.tactors[0].x_mm: is no number"));
+              "s.json: array.tactors[0].x_mm: is not a number"));
     CHECK(has(caught_message([&] { static_cast<void>(first["y_mm"].need_number()); }),
               "array.tactors[0].y_mm: is missing"));
-    CHECK(has(caught_message([&] { static_cast<void>(f["date"].text()); }), "date: is no text"));
-    CHECK(has(caught_message([&] { static_cast<void>(f["date"]["deeper"]); }), "date: is no object"));
-    CHECK(has(caught_message([&] { static_cast<void>(f["date"].list()); }), "date: is no list"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].text()); }), "date: is not a text"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"]["deeper"]); }), "date: is not an object"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].list()); }), "date: is not a list"));
     CHECK(has(caught_message([&] { static_cast<void>(f["date"].truth()); }),
               "date: is neither true nor false"));
 }

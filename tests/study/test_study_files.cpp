@@ -345,8 +345,8 @@ TEST_CASE("anything other than a file is refused at once")
 {
     const folder f;
     REQUIRE(::mkfifo((f / "pipe").c_str(), 0600) == 0);
-    has(caught_message([&] { read_file(f / "pipe"); }), "it is no file");
-    has(caught_message([&] { read_file(f.path()); }), "it is no file");
+    has(caught_message([&] { read_file(f / "pipe"); }), "it is not a file");
+    has(caught_message([&] { read_file(f.path()); }), "it is not a file");
     has(caught_message([&] { read_file(f / "none"); }), "No such file");
     f.write("some", "text");
     CHECK(read_file(f / "some") == "text");

@@ -325,7 +325,7 @@ TEST_CASE("no sample of random mixes is above the record, nor above the tactor's
             const std::string why = e.what();
             CAPTURE(why);
             // Too loud, or, in one mix of 10,000, a modulation near its carrier.
-            REQUIRE((why.find("would be driven at") != why.npos || why.find("hardly moves") != why.npos));
+            REQUIRE((why.find("would play at") != why.npos || why.find("a slow displacement") != why.npos));
             ++refused;
             continue;
         }
@@ -478,7 +478,7 @@ TEST_CASE("every control point of a program's plan is evaluated")
     for (const double at : {0.0, 0.001, 1048.577, 1499.999, 1500.0}) {
         CAPTURE(at);
         spike_s = at;
-        has(refusal({{p, {}}}, -40.0), "tactor 3: would be driven at 20 dBFS");
+        has(refusal({{p, {}}}, -40.0), "tactor 3: would play at 20 dBFS");
     }
 }
 
@@ -497,7 +497,7 @@ TEST_CASE("strokes that are harmless alone are added up where they overlap, even
             return refusal({{late, 0.0}, {p, at}}, 0.0);
         };
         CHECK(with(0.29, rest).empty());
-        has(with(0.31, rest), "tactor 4: would be driven at 0.08");
+        has(with(0.31, rest), "tactor 4: would play at 0.08");
         CHECK(has(with(0.31, 0.1), "tactor 4")); // both last on at once: taken together
         CHECK(with(0.99, rest + 1.0).empty());
     }

@@ -54,7 +54,7 @@ std::string describe_task(const run_outline& r)
     if (r.task == task_kind::choose)
         return fmt::format(
             "two stimuli of one motion, with {}, one after the other; the participant chose one",
-            has_worths(r) ? "two of " + methods : join(r.methods, " and by "));
+            has_worths(r) ? "two of " + methods : join(r.methods, " and with "));
     if (r.task == task_kind::rate)
         return fmt::format("one stimulus ({}), which the participant rated from {}", methods,
                            rating_range(r));

@@ -121,7 +121,7 @@ TEST_CASE("a missing plugin of ALSA's is named with its package")
     const std::string said = caught_message(
         [] { return open_alsa({.pcm = "t", .channels = 1, .config_text = "pcm.t { type nobodys }"}); });
     has(said, "a plugin of ALSA's is missing: ");
-    has(said, "is the type nobodys in its definition misspelt?");
+    has(said, "check the spelling of the type nobodys in its definition");
 }
 
 TEST_CASE("JACK without its server is named, whose plugin only says that there is nothing")

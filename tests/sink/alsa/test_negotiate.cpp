@@ -270,7 +270,7 @@ TEST_CASE("a missing format is refused by name")
     CHECK(e.kind == error_kind::not_available);
     CHECK(e.says("9 channels at 48000 Hz in float"));
     CHECK(e.says("refused: format"));
-    CHECK(e.says("it can do channels any, rates any Hz, formats s32"));
+    CHECK(e.says("it supports channels any, rates any Hz, formats s32"));
 }
 
 TEST_CASE("plug neither resamples nor mixes channels behind the user's back")
