@@ -136,7 +136,7 @@ class Read(SessionTest):
 
     def test_the_report_states_sessions_and_the_time_between_them(self):
         text = self.ok("report", "study").stdout
-        self.assertIn("Sessions of each participant: 2; from the begin of one to that of the next: not recorded.", text)
+        self.assertIn("Sessions of each participant: 2; from the start of one to the start of the next: not recorded.", text)
         self.assertIn('SHA-256 of "seed/experiment/code/ses-N/run"', text)
         for name in ("01_ses-1", "01_ses-2", "03_ses-2"):
             self.assertIn(f"| sub-{name} | 4 / 0 / 0 | 4 / 0 / 0 | 3 / 0 / 0 |".replace("_", r"\_"), text)
