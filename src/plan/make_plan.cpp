@@ -195,9 +195,9 @@ void check_profile(const timing_profile& p)
     if (!(p.slope > 0.0 && p.slope < 1.0))
         refuse("a slope of", p.slope, "give 0 to 1; 0.32 on palm and forearm");
     if (!(p.intercept_s >= 0.0 && std::isfinite(p.intercept_s)))
-        refuse("an intercept in seconds of", p.intercept_s, "give 0 or more; 0.0473 on palm and forearm");
+        refuse("an intercept (s) of", p.intercept_s, "give 0 or more; 0.0473 on palm and forearm");
     if (!(p.max_soa_s > p.intercept_s && std::isfinite(p.max_soa_s)))
-        refuse("a longest SOA in seconds of", p.max_soa_s,
+        refuse("a longest SOA (s) of", p.max_soa_s,
                fmt::format("give more than the intercept, {}", p.intercept_s));
 }
 

@@ -204,7 +204,7 @@ void read_subscribe(value_list& v, osc_request& r)
     while (v.left()) {
         const std::string& name = v.text("events");
         if (name != "levels" && name != "stream")
-            bad_param("events", fmt::format("there are no \"{}\"", name),
+            bad_param("events", fmt::format("\"{}\" is unknown", name),
                       "give levels or stream; a sender always gets the messages of its own strokes");
         events.push_back(name);
     }

@@ -264,7 +264,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     for (const json& e : *events) {
         const std::string name = text(e, "events");
         if (std::find(event_names.begin(), event_names.end(), name) == event_names.end())
-            bad_param("events", fmt::format("there are no \"{}\"", name),
+            bad_param("events", fmt::format("\"{}\" is unknown", name),
                       detail::choice_hint(name, event_names));
         wanted.insert(name);
     }

@@ -137,7 +137,7 @@ TEST_CASE("wrong values are refused by their names")
         {"/tactor/drive", {1_i}, "intensity: it is missing"},
         {"/tactor/subscribe", {0_i, "levels"}, "port: 0 is not a whole number"},
         {"/tactor/subscribe", {65536_i, "levels"}, "port: 65536 is not a whole number"},
-        {"/tactor/subscribe", {"strokes"}, "there are no \"strokes\""},
+        {"/tactor/subscribe", {"strokes"}, "\"strokes\" is unknown"},
         {"/tactor", {}, "address: it is unknown"},
         {"/tactor/", {}, "address: it is unknown"},
         {"/tactor/st*p", {}, "address: it is unknown"},

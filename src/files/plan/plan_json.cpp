@@ -226,18 +226,18 @@ nlohmann::ordered_json plan_schema()
 template <class Io, either<detail::observer_choice> Observer>
 void members(Io& io, Observer& o)
 {
-    constexpr about parameters{"its parameters, of low-speed", detail::above_0};
+    constexpr about parameters{"its parameters, for low-speed", detail::above_0};
     const bool taps = o.kind == observer_kind::low_speed;
     io("name", o.kind, {"centroid or low-speed"});
     io("sigma_mm", where(taps, o.low_speed.sigma_mm), parameters);
     io("sigma_v_mm_s", where(taps, o.low_speed.sigma_v_mm_s), parameters);
-    io("built_for", where(taps, std::string("taps")), {"taps of low-speed; null of centroid"});
+    io("built_for", where(taps, std::string("taps")), {"taps for low-speed; null for centroid"});
 }
 
 template <class Io, either<drawn_people> People>
 void members(Io& io, People& p)
 {
-    constexpr about differ{"how far they differ; the first is null with the observer centroid",
+    constexpr about differ{"how much they differ; the first is null with the observer centroid",
                            detail::from_0};
     io("people", p.choice.people, {"number of people"});
     io("seed", p.choice.seed, {"seed of the draw"});

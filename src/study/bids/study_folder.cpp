@@ -119,7 +119,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
 {
     ordered j;
     j["participant_id"] =
-        column_json(simulated ? simulated_note : "A code, which says nothing about who it is");
+        column_json(simulated ? simulated_note : "Code, which does not identify the person");
     j["age"] = column_json("Age", "years");
     j["sex"] = column_json("Sex, as the participant stated it");
     j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
