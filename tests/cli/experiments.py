@@ -34,6 +34,8 @@ SHORT = (WITH_CONSENT + toml("run", "pairs", task="choose", attribute="similarit
          + toml("run", "marks", task="rate", attribute="uniformity", question="How even?", trials=2, scale=3, labels=["not", "half", "all"]))
 # Ratings on a line, without numbers.
 LINE = WITH_CONSENT + toml("run", "marks", task="rate", attribute="uniformity", question="How even?", trials=4, scale="vas", labels=["not", "all"])
+# Estimates of any positive number.
+ESTIMATES = BARE + toml("run", "size", task="estimate", question="How strong?", methods=["Birch"], motions=["east"], vary="level_dbfs", values=[-30, -20], trials=4)
 IDENTIFY = toml("run", "what", task="identify", trials=2, methods=["Birch"])
 
 

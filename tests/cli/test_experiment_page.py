@@ -7,7 +7,7 @@ import signal
 import socket
 import urllib.request
 
-from experiments import IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
+from experiments import ESTIMATES, IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
 from harness import main
 from pages import PageTest, Session
 from studies import toml
@@ -71,6 +71,19 @@ class Sessions(PageTest):
         for m in marks:
             del m["progress"], m["ask"]
         self.assertEqual(marks[:len(marks) // 2], marks[len(marks) // 2:])
+
+    def test_an_estimate_is_any_positive_number(self):
+        self.write("sizes.toml", ESTIMATES)
+        s, p = self.start_both(definition="sizes.toml")
+        p.begin(agrees=False)
+        for refused, number in (("12,5", "0.5"), ("0", "12.50"), ("-1", "1500"), ("1" * 40, ".25")):
+            asked = p.until("question")
+            self.assertEqual(asked["entry"], {"lowest": 1e-9, "greatest": 1e9, "longest": 12})
+            p.say(ask=asked["ask"], text=refused)
+            self.assertEqual(p.until("question")["ask"], asked["ask"])
+            p.say(ask=asked["ask"], text=number)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([r["intensity_estimate"] for r in self.rows("01", "size")], ["0.5", "12.5", "1500", "0.25"])
 
     def test_motions_to_name_have_pictures_and_words_are_in_the_participant_s_language(self):
         words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'

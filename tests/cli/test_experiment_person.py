@@ -3,13 +3,14 @@
 tests/study has the order of questions, and what a key answers."""
 import datetime
 import json
+import math
 import os
 import re
 import shutil
 import time
 import unittest
 
-from experiments import BARE, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
+from experiments import BARE, ESTIMATES, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
 from harness import PATIENCE_S, main
 from studies import toml
 
@@ -58,7 +59,7 @@ class AtTheTerminal(PersonTest):
 
     def test_the_terminal_has_the_words_of_the_definition(self):
         keys = ("agree yes no walk felt again back begin practice part target rest pause over or to any_key_begins any_key_ends trial "
-                "repeated later no_answer").split()
+                "repeated later no_answer any_number").split()
         words = "[page]\n" + "".join(f'{k} = "<{k}>"\n' for k in keys)
         text = SHORT.replace("labels = [\"not\", \"half\", \"all\"]", "labels = [\"nada\", \"todo\"]").replace("How even?", "?2").replace("Which one?", "?1")
         self.write("short.toml", text.replace("[[motion]]", words + "[[motion]]", 1).replace("Be at ease.", "Be at ease. " * 20))
@@ -105,6 +106,30 @@ class AtTheTerminal(PersonTest):
         self.assertEqual([row[3] for row in self.answers("marks", "rating")], ["0", "55", "11", "100"])
         self.assertIn("57\b \b5", t.all)
         self.assertNotIn("held down", t.said())
+
+    def test_any_positive_number_is_an_estimate(self):
+        self.write("short.toml", ESTIMATES)
+        t = self.start()
+        t.begin(agrees=False)
+        possible = "a number above 0, with a point: 0\\.5, 12, 1500: "
+        asked = f"How strong\\? {possible}"
+        t.answer(asked, "12,5\n")
+        for typed, after in (("12,5", "0"), ("0", "-3"), ("-3", "1e400"), ("1e400", "1" * 40), ("1{16}", "0.5")):
+            t.answer(f"{typed}\\s+That is no answer: {possible}", after + "\n")
+        t.answer(f"Trial 2/4: [^?]*{asked}", "12.50\n")
+        t.answer(asked, "q")
+        self.assertEqual(t.end(), 130, t.said())
+        lines = self.ok(*self.args("--resume"), stdin="y\ny\nnan\n-1\n 1500 \n1000000000\n").stdout
+        self.assertEqual(lines.count("That is no answer: a number above 0"), 2)
+        rows = self.rows("01", "size")
+        self.assertEqual([(r["response"], r["intensity_estimate"]) for r in rows], [(n, n) for n in ("0.5", "12.5", "1500", "1000000000")])
+        told = json.loads((self.dir / "study/task-size_beh.json").read_text())
+        self.assertEqual([told[c]["Description"] for c in ("response", "intensity_estimate")],
+                         ["The number above 0 that was given", "The number above 0 that the participant gave"])
+        # The exponent by hand, from the table alone.
+        logs = {level: [math.log(float(r["response"])) for r in rows if float(r["value"]) == level] for level in (-30, -20)}
+        found = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["size"]["exponent"]["participants"]["01"]
+        self.assertAlmostEqual(found, (sum(logs[-20]) / 2 - sum(logs[-30]) / 2) / (0.5 * math.log(10)), 9)
 
     def test_the_experimenter_s_keys_work(self):
         t = self.start()

@@ -111,7 +111,8 @@ class Tasks(ExperimentTest):
         self.hold(TASKS)
         for run, changes in {"values": ({"value": "-30"}, {"value": "n/a"}, {"response": "3"}, {"trial": "141"}, {"response_time": "-0.1"}),
                              "bayes": ({"value": "-8.5"}, {"response": "5000"}), "words": ({"value": "5"},), "same": ({"response": "0"},),
-                             "felt": ({"value": "-45"}, {"value": "n/a"}), "size": ({"response": "5000"}, {"intensity_estimate": "5000"}, {"value": "-25"}),
+                             "felt": ({"value": "-45"}, {"value": "n/a"}), "size": (*({c: n} for c in ("response", "intensity_estimate") for n in ("5000", "0", "12,5")),
+                                      *({"response": n, "intensity_estimate": n} for n in ("-1", "nan", "1e400", "1" * 40)), {"value": "-25"}),
                              "there": ({"response": "yes"},)}.items():
             table = self.dir / f"study/sub-01/beh/sub-01_task-{run}_beh.tsv"
             text = table.read_text(encoding="utf-8")
@@ -128,6 +129,15 @@ class Tasks(ExperimentTest):
                     for command in ("analyze", "report"):
                         self.refused(2, command, "study", says=(f"{table.relative_to(self.dir)}:{line + 1}: ",))
             table.write_text(text, encoding="utf-8")
+        # R writes 100000 so.
+        table = self.dir / "study/sub-01/beh/sub-01_task-size_beh.tsv"
+        text = table.read_text(encoding="utf-8")
+        number = self.rows("size")[0]["response"]
+        for other in ("1e+05", "0.5", "1234.5"):
+            table.write_text(text.replace(f"\t{number}\t", f"\t{other}\t"), encoding="utf-8")
+            self.assertEqual(self.rows("size")[0]["intensity_estimate"], other)
+            self.ok("analyze", "study")
+        table.write_text(text, encoding="utf-8")
         # A trial without a stimulus has no value; other programs round.
         table = self.dir / "study/sub-01/beh/sub-01_task-felt_beh.tsv"
         text = table.read_text(encoding="utf-8")

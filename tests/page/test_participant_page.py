@@ -8,7 +8,7 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import BARE, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
+from experiments import BARE, ESTIMATES, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
 from harness import main  # noqa: E402
 from pages import PageTest, Session  # noqa: E402
 from studies import toml  # noqa: E402
@@ -270,6 +270,26 @@ class ParticipantPage(BrowserTest, PageTest):
         p.until("!document.querySelector('#answers button').disabled")
         return ask
 
+    def test_an_estimate_is_any_positive_number(self):
+        self.write("sizes.toml", ESTIMATES)
+        s = self.start(definition="sizes.toml")
+        p = self.open(s)
+        ask = self.asked(p, "introduce", self.walk(p))
+        self.key(p, "introduce", " ")
+        for refused, number in (("12,5", "0.5"), ("0", "12.5"), ("1e5", "1500"), ("1" * 40, "0.25")):
+            ask = p.until(f"state.ask > {ask} && document.activeElement === document.querySelector('#answers input:enabled') && state.ask")
+            self.assertEqual(p.value("document.querySelector('#range').textContent"), "a number above 0, with a point: 0.5, 12, 1500")
+            for text in (refused, number):
+                p.value("document.activeElement.select()")
+                p.call("Input.insertText", text=text)
+                self.assertEqual(p.value("[document.activeElement.value, document.activeElement.ariaInvalid, document.querySelector('#answers button').disabled]"),
+                                 [text, str(text == refused).lower(), text == refused])
+            if refused == "1e5":
+                self.picture(p, "estimate")
+            p.key("Enter")
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([r["response"] for r in self.rows("01", "size")], ["0.5", "12.5", "1500", "0.25"])
+
     def test_numbers_and_texts_are_typed(self):
         self.write("form.toml", BARE + toml("run", "form", task="questionnaire", title="About you", text="Some questions, which nobody but us will read.") + """item = [
   { name = "age", question = "How old are you?", kind = "number", range = [18, 99] },
@@ -294,8 +314,8 @@ class ParticipantPage(BrowserTest, PageTest):
         self.assertEqual(p.value("document.querySelector('#range').textContent"), "18–99")
         self.assertTrue(is_disabled())
         p.key("Enter")  # nothing is typed
-        for text, refused in (("a1", True), ("7", True), ("2.", True), ("18", False)):
-            if text in ("2.", "18"):
+        for text, refused in (("a1", True), ("7", True), ("2.", True), ("-18", True), ("18", False)):
+            if text in ("7", "2.", "-18", "18"):
                 p.value("document.activeElement.select()")
             p.call("Input.insertText", text=text)
             self.assertEqual(is_disabled(), refused, text)

@@ -176,8 +176,7 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
         const auto simulate = [&](trial& t, random_numbers& r) {
             const double apart = t.signal ? dprime : 0.0;
             if (task == task_kind::estimate)
-                t.response = static_cast<unsigned>(
-                    std::lround(10.0 * std::pow(t.value, exponent) * std::exp(0.2 * r.normal())));
+                t.estimate = 10.0 * std::pow(t.value, exponent) * std::exp(0.2 * r.normal());
             else if (task == task_kind::detect)
                 t.positive = apart + r.normal() > 0.5 * dprime;
             else

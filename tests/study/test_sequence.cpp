@@ -723,11 +723,12 @@ TEST_CASE("choices among three methods have the worths that their costs imply")
             const double p = boost::math::cdf(noise, std::log(cost(*t.method_2) / cost(t.method_1)));
             expected[t.method_1][*t.method_2] += p;
             expected[*t.method_2][t.method_1] += 1.0 - p;
-            data.trials.push_back({.place = place,
-                                   .motion = t.motion,
-                                   .method_1 = t.method_1,
-                                   .method_2 = *t.method_2,
-                                   .response = who.answer(t, place, 1, false).response});
+            data.trials.push_back(
+                {.place = place,
+                 .motion = t.motion,
+                 .method_1 = t.method_1,
+                 .method_2 = *t.method_2,
+                 .response = static_cast<unsigned>(who.answer(t, place, 1, false).response)});
         }
         all.data.push_back({data});
     }

@@ -13,6 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "rounds.hpp"
+#include "study/data/dataset.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/session/key_input.hpp"
@@ -586,18 +587,60 @@ TEST_CASE("a number is typed up to Enter, and a keypad has 0 and Enter, too")
 {
     const auto typed = [](const std::string& keys) {
         typed_number number;
-        std::vector<unsigned> all;
+        std::vector<std::string> all;
         for (const char key : keys)
             if (const auto n = number.take(key))
                 all.push_back(*n);
-        CHECK_MESSAGE(number.digits().empty(), keys);
+        CHECK_MESSAGE(number.text().empty(), keys);
         return all;
     };
-    CHECK(typed("57\n0\n100\r11\n") == std::vector<unsigned>{57, 0, 100, 11});
+    using texts = std::vector<std::string>;
+    CHECK(typed("57\n0\n100\r11\n") == texts{"57", "0", "100", "11"});
     CHECK(typed("57\b5\n\x7f"
-                "8\x7f\n9\n") == std::vector<unsigned>{55, 9});
-    CHECK(typed("1234\n x-3\n\n") == std::vector<unsigned>{123, 3});
-    CHECK(typed("1na0\n") == std::vector<unsigned>{10});
+                "8\x7f\n9\n") == texts{"55", "9"});
+    CHECK(typed("1na0\n\n") == texts{"10"});
+    CHECK(typed("1234\n x-3\n1.5\n12,5\n1e400\n") == texts{"1234", "-3", "1.5", "12,5", "1e400"});
+    CHECK(typed(std::string(40, '1') + "\n").at(0).size() > most_estimate_characters);
+}
+
+TEST_CASE("an estimate is a number above 0 as people type it")
+{
+    for (const auto& [text, number] : std::map<std::string, double>{{"0.5", 0.5},
+                                                                    {"12.5", 12.5},
+                                                                    {".25", 0.25},
+                                                                    {"7.", 7.0},
+                                                                    {"007", 7.0},
+                                                                    {"1500", 1500.0},
+                                                                    {"1000000000", 1e9},
+                                                                    {"0.000000001", 1e-9}})
+        CHECK_MESSAGE(read_estimate(text) == number, text);
+    for (const std::string& text :
+         {std::string("0"), std::string("0.0"), std::string("-1"), std::string("+1"), std::string("1e5"),
+          std::string("1e400"), std::string("nan"), std::string("inf"), std::string("12,5"),
+          std::string("1.2.3"), std::string("."), std::string(""), std::string("1 000"),
+          std::string("1000000001"), std::string("0.0000000001"), std::string(40, '1'),
+          "1." + std::string(38, '0')})
+        CHECK_MESSAGE(!read_estimate(text), text);
+}
+
+TEST_CASE("the page sends an estimate as it was typed")
+{
+    page_dialogue d(json::object());
+    static_cast<void>(d.hear(1, hello, 0));
+    const page_screen s{.name = "question", .entry = entry_kind::estimate};
+    CHECK(only(d.show(s, 0), 1)["entry"] == json{{"lowest", 1e-9}, {"greatest", 1e9}, {"longest", 12}});
+    CHECK_FALSE(d.press('1', 0).answer);
+    for (const char* refused :
+         {R"({"ask":1,"text":"12,5"})", R"({"ask":1,"text":"0"})", R"({"ask":1,"text":"-1"})",
+          R"({"ask":1,"text":"nan"})", R"({"ask":1,"text":" 12"})", R"({"ask":1,"answer":12})"}) {
+        const auto h = d.hear(1, refused, 0);
+        CHECK(h.understood);
+        CHECK_FALSE(h.answer);
+        CHECK(only(h.replies, 1)["ask"] == 1);
+    }
+    const auto h = d.hear(1, R"({"ask":1,"text":"12.50"})", 0);
+    CHECK(h.answer.has_value());
+    CHECK(h.text == "12.50");
 }
 
 TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
@@ -606,7 +649,8 @@ TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
     for (unsigned code = 0; code <= 0xFFFF; ++code)
         if (const auto c = find_answer(static_cast<std::uint16_t>(code)))
             ++of[*c];
-    std::map<char, unsigned> expected{{'+', 2}, {'-', 3}, {'>', 1}, {'<', 1}, {'a', 3}, {'n', 3}, {'b', 3}};
+    std::map<char, unsigned> expected{{'+', 2}, {'-', 3}, {'>', 1}, {'<', 1},
+                                      {'a', 3}, {'n', 3}, {'b', 2}, {'.', 1}};
     for (char digit = '1'; digit <= '9'; ++digit)
         expected[digit] = 4;
     CHECK(of == expected);

@@ -448,7 +448,9 @@ constexpr trial_column trial_columns[] = {
      }},
     {"response",
      [](const auto& t, const auto& r) {
-         return r.task == task_kind::identify ? r.motions[t.response] : fmt::format("{}", t.response);
+         return r.task == task_kind::identify   ? r.motions[t.response]
+                : r.task == task_kind::estimate ? fmt::format("{}", t.estimate)
+                                                : fmt::format("{}", t.response);
      }},
     {"chosen",
      [](const auto& t, const auto& r) -> std::string {
@@ -479,7 +481,7 @@ constexpr trial_column trial_columns[] = {
      is_measured},
     {"estimate",
      [](const auto& t, const auto& r) {
-         return r.task == task_kind::estimate ? fmt::format("{}", t.response) : "n/a";
+         return r.task == task_kind::estimate ? fmt::format("{}", t.estimate) : "n/a";
      },
      [](const study::run_outline& r) noexcept { return r.task == task_kind::estimate; }},
     {"response_time",

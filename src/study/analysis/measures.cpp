@@ -32,7 +32,7 @@ std::optional<double> estimate_exponent(const run_outline& run, const std::vecto
     std::vector<double> numbers;
     for (const trial& t : trials) {
         ratios.push_back(size_ratio(run, t.value, run.values.back()));
-        numbers.push_back(t.response);
+        numbers.push_back(t.estimate);
     }
     return stevens_exponent(ratios, numbers);
 }
@@ -41,7 +41,7 @@ std::vector<value_estimate> normalise_estimates(const std::vector<trial>& trials
 {
     std::map<double, std::vector<double>> logs;
     for (const trial& t : trials)
-        logs[t.value].push_back(std::log(t.response));
+        logs[t.value].push_back(std::log(t.estimate));
     double all = 0.0;
     for (const auto& [value, own] : logs)
         all += mean(own) / static_cast<double>(logs.size());

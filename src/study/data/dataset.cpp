@@ -132,12 +132,12 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
     return static_cast<std::size_t>(at - known.begin());
 }
 
-// Reads an answer that stands in two columns.
-unsigned read_twice(const text_table& t, std::size_t row, std::string_view column, unsigned least,
-                    unsigned most)
+// Reads an answer that stands in two columns, each by `read`.
+template <class Read>
+auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)
 {
-    const auto response = t.whole(row, "response", least, most);
-    const auto own = t.whole(row, column, least, most);
+    const auto response = read("response");
+    const auto own = read(column);
     if (!response && !own)
         t.refuse(row, fmt::format("the {} is missing", column), "a trial that counts needs one");
     if (response && own && *response != *own)
@@ -188,7 +188,13 @@ void read_measure(trial& r, const text_table& t, std::size_t row, const run_outl
     else if (!run.vary.empty() && t.cell(row, "value"))
         t.refuse(row, "a trial without a stimulus has a value", "n/a");
     if (run.task == task_kind::estimate) {
-        r.response = read_twice(t, row, "intensity_estimate", 1, most_estimate);
+        r.estimate = read_twice(t, row, "intensity_estimate", [&](std::string_view column) {
+            const auto number = t.number(row, column); // R writes 100000 as 1e+05
+            if (number && !(*number >= least_estimate && *number <= most_estimate))
+                t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),
+                         "a number above 0, from 1e-9 to 1e9");
+            return number;
+        });
         return;
     }
     r.response = read_one_of_two(t, row);
@@ -208,7 +214,9 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     }
     r.method_1 = find_place(t, row, "method_1", run.methods);
     if (run.task == task_kind::rate) {
-        r.response = read_twice(t, row, "rating", run.lowest_rating(), run.scale);
+        r.response = read_twice(t, row, "rating", [&](std::string_view column) {
+            return t.whole(row, column, run.lowest_rating(), run.scale);
+        });
     } else if (run.task == task_kind::identify) {
         r.response = static_cast<unsigned>(find_place(t, row, "response", run.motions));
     } else {
@@ -450,6 +458,14 @@ bool are_alike(std::string_view a, std::string_view b)
         return false;
     const bool one_is_bare = !number.empty() && (a.empty() || b.empty());
     return one_is_bare || in_small_letters(std::string(a)) == in_small_letters(std::string(b));
+}
+
+std::optional<double> read_estimate(std::string_view text) noexcept
+{
+    if (text.size() > most_estimate_characters || text.find_first_not_of("0123456789.") != text.npos)
+        return {};
+    const auto number = detail::number_in<double>(text);
+    return number >= least_estimate && number <= most_estimate ? number : std::nullopt;
 }
 
 bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept

@@ -69,7 +69,7 @@ inline constexpr std::array<task_row, 8> tasks{{
      true},
     {"estimate",
      "One stimulus, or a standard and then a stimulus, which the participant gives a number",
-     "The number that the participant gave",
+     "The number above 0 that the participant gave",
      {},
      true,
      true},
@@ -124,8 +124,15 @@ inline bool has_pairs(const run_outline& run) noexcept
     return run.task == task_kind::choose || run.task == task_kind::same_different || run.standard;
 }
 
-/// Greatest number that a participant may give in a run that estimates.
-inline constexpr unsigned most_estimate = 999;
+// Bounds of the numbers that a participant may give in a run that estimates, and their greatest length as
+// typed.
+inline constexpr double least_estimate = 1e-9;
+inline constexpr double most_estimate = 1e9;
+inline constexpr std::size_t most_estimate_characters = 12;
+
+/// Returns the estimate that a text is, as people type it: digits, with a point or without. Returns nothing
+/// for other texts.
+std::optional<double> read_estimate(std::string_view text) noexcept;
 
 // Names in the columns of methods for stimuli by no method of the definition.
 inline constexpr std::string_view standard_name = "standard"; ///< the stimulus with the standard's value
@@ -213,7 +220,7 @@ struct trial_row {
     std::optional<unsigned> rating = {};
     std::optional<double> value = {};   ///< of what the run varies; none: it varies nothing, or a catch trial
     std::optional<unsigned> track = {}; ///< adaptive: from 1
-    std::optional<unsigned> intensity_estimate = {};
+    std::optional<double> intensity_estimate = {};
     bool is_void = false;
     unsigned xruns = 0;
     unsigned stream = 0; ///< counts openings of the device, from 1
@@ -278,7 +285,8 @@ struct trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
     std::size_t method_2 = 0; ///< of choose only
-    unsigned response = 0;    ///< as in its table; identify: the motion answered; estimate: the number
+    unsigned response = 0;    ///< as in its table, not of a run that estimates; identify: the motion answered
+    double estimate = 0.0;    ///< of a run that estimates: the number that was given
     double value = 0.0;       ///< of what the run varies
     bool positive = false;    ///< felt, different, or more: the comparison was chosen, or the second word
     bool signal = true;       ///< detect: there was a stimulus; same-different: they differed

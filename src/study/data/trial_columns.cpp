@@ -126,7 +126,7 @@ const std::array<trial_column, 23> trial_columns{{
     {"value", "Value that the run varies, for the comparison; n/a in a trial without a stimulus", "",
      &trial_row::value, column_use::values},
     {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::tracks, 1},
-    {"intensity_estimate", "The number that the participant gave", "", &trial_row::intensity_estimate,
+    {"intensity_estimate", "The number above 0 that the participant gave", "", &trial_row::intensity_estimate,
      column_use::numbers},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void, column_use::analysis},
@@ -158,6 +158,8 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
     named_cells cells;
     for (const trial_column& c : trial_columns) {
         std::string text = std::visit([&](auto member) { return written(r.*member); }, c.member);
+        if (c.use == column_use::numbers && r.intensity_estimate)
+            text = r.response; // the same number, whose digits are no microseconds
         if (c.use == column_use::some ? text != "n/a" : std::ranges::any_of(runs, [&](auto* run) {
                 return has_column(*run, c.use);
             }))

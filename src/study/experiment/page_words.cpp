@@ -37,6 +37,7 @@ constexpr std::array english{
     page_word{"elsewhere", "This session goes on in another window."},
     page_word{"offline", "There is no connection. Please tell the experimenter."},
     page_word{"confirm", "Confirm"},
+    page_word{"any_number", "a number above 0, with a point: 0.5, 12, 1500"},
     page_word{"full_screen", "Full screen"},
     // On a terminal only.
     page_word{"or", "or"},

@@ -103,12 +103,14 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
             a = who.answer(t, p.trials[i].place, ++attempt, false);
         while (a.is_void);
         p.trials[i].value = find_value(d, t).value_or(0.0);
-        p.trials[i].positive = is_positive(r.outline, d.methods[t.method_1].name, a.response);
+        const auto answer = static_cast<unsigned>(a.response);
+        p.trials[i].positive = is_positive(r.outline, d.methods[t.method_1].name, answer);
         if (t.track > 0)
             tracks.answer(t.track, p.trials[i].positive);
         p.trials[i].response = r.outline.task == task_kind::identify
-                                   ? static_cast<unsigned>(place_in(r.motions, a.response))
-                                   : a.response;
+                                   ? static_cast<unsigned>(place_in(r.motions, answer))
+                                   : answer;
+        p.trials[i].estimate = a.response;
     }
 }
 
@@ -263,7 +265,7 @@ bool simulated_observer::feels_more(double value, random_numbers& r) const
     return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
 }
 
-unsigned simulated_observer::measure(const planned_trial& t, random_numbers& r) const
+double simulated_observer::measure(const planned_trial& t, random_numbers& r) const
 {
     const run_outline& o = run_.outline;
     const std::optional<double> value = find_value(definition_, t);
@@ -273,7 +275,8 @@ unsigned simulated_observer::measure(const planned_trial& t, random_numbers& r) 
         const double ratio = size_ratio(o, *value, middle);
         const double number =
             modulus * std::pow(ratio, simulation_.exponent) * std::exp(simulation_.sigma * r.normal());
-        return static_cast<unsigned>(std::clamp(std::round(number), 1.0, double{most_estimate}));
+        const auto rounded = detail::number_in<double>(fmt::format("{:.3g}", number));
+        return std::clamp(rounded.value_or(number), least_estimate, most_estimate);
     }
     if (simulation_.lapse > 0.0 && r.unit() < simulation_.lapse)
         return 1 + r.below(2);
@@ -316,7 +319,7 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
         const double lowest = run_.outline.lowest_rating();
         const double highest = run_.outline.scale;
         const double rating = std::round((highest + lowest) / 2.0 + utility(t.method_1) - mean_);
-        a.response = static_cast<unsigned>(std::clamp(rating, lowest, highest));
+        a.response = std::clamp(rating, lowest, highest);
     } else { // identify
         std::vector<point> felt = stimuli_.at(t.motion, t.method_1).felt_path;
         for (point& p : felt) {
@@ -327,7 +330,7 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
         for (const std::vector<point>& target : targets_)
             distances.push_back(mean_distance(target, felt));
         const auto nearest = std::ranges::min_element(distances) - distances.begin();
-        a.response = static_cast<unsigned>(run_.motions[static_cast<std::size_t>(nearest)]);
+        a.response = static_cast<double>(run_.motions[static_cast<std::size_t>(nearest)]);
     }
     return a;
 }

@@ -39,7 +39,7 @@ std::string to_text(const simulation& s);
 
 struct simulated_answer {
     bool is_void = false;
-    unsigned response = 0;         ///< as a person's; identify: a place in the definition's motions
+    double response = 0.0;         ///< as a person's; identify: a place in the definition's motions
     unsigned response_time_ms = 0; ///< drawn to fill the column: no model of people
 };
 
@@ -57,7 +57,7 @@ public:
 private:
     double cost(std::size_t motion, std::size_t method) const;
     /// Answers a task that measures.
-    unsigned measure(const planned_trial& t, random_numbers& r) const;
+    double measure(const planned_trial& t, random_numbers& r) const;
     bool feels_more(double value, random_numbers& r) const;
 
     simulation simulation_;

@@ -470,13 +470,14 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     return row;
 }
 
-void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, unsigned response,
+void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, double response,
                   double time_s)
 {
     const bool named = r.outline.task == task_kind::identify;
-    row.response = named ? p.definition.motions.at(response).name : fmt::format("{}", response);
+    const auto answer = static_cast<unsigned>(response);
+    row.response = named ? p.definition.motions.at(answer).name : fmt::format("{}", response);
     if (r.outline.task == task_kind::rate)
-        row.rating = response;
+        row.rating = answer;
     if (r.outline.task == task_kind::estimate)
         row.intensity_estimate = response;
     row.response_time_s = time_s;

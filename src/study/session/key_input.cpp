@@ -57,7 +57,7 @@ constexpr key others[] = {
     {KEY_KP6, '6'},     {KEY_KP7, '7'},   {KEY_KP8, '8'},   {KEY_KP9, '9'},       {KEY_KPPLUS, '+'},
     {KEY_KPMINUS, '-'}, {KEY_MINUS, '-'}, {KEY_UP, '+'},    {KEY_DOWN, '-'},      {KEY_RIGHT, '>'},
     {KEY_LEFT, '<'},    {KEY_A, 'a'},     {KEY_ENTER, 'a'}, {KEY_KPENTER, 'a'},   {KEY_N, 'n'},
-    {KEY_0, 'n'},       {KEY_KP0, 'n'},   {KEY_B, 'b'},     {KEY_BACKSPACE, 'b'}, {KEY_KPDOT, 'b'}};
+    {KEY_0, 'n'},       {KEY_KP0, 'n'},   {KEY_B, 'b'},     {KEY_BACKSPACE, 'b'}, {KEY_KPDOT, '.'}};
 
 constexpr std::uint16_t digit_keys = 9;
 
@@ -108,15 +108,17 @@ std::optional<char> find_answer(std::uint16_t code) noexcept
     return {};
 }
 
-std::optional<unsigned> typed_number::take(char key)
+std::optional<std::string> typed_number::take(char key)
 {
+    constexpr std::string_view takes = "0123456789.,+-eE";
+    constexpr std::size_t most = 16; // more than an answer has: the rest does not matter
     constexpr char backspace = '\x7f';
-    if (key >= '0' && key <= '9' && digits_.size() < most_digits_)
-        digits_ += key;
-    else if ((key == backspace || key == '\b') && !digits_.empty())
-        digits_.pop_back();
-    else if (key == '\n' || key == '\r')
-        return detail::number_in<unsigned>(std::exchange(digits_, {}));
+    if (takes.find(key) != takes.npos && text_.size() < most)
+        text_ += key;
+    else if ((key == backspace || key == '\b') && !text_.empty())
+        text_.pop_back();
+    else if ((key == '\n' || key == '\r') && !text_.empty())
+        return std::exchange(text_, {});
     return {};
 }
 
@@ -276,8 +278,9 @@ std::optional<session_key> session_keys::poll(bool repeated)
     if (page_ != nullptr)
         return poll_page();
     if (const auto key = pressed()) {
-        session_key k = make_key(std::string(1, *key), true);
+        session_key k = make_key(std::string(1, *key == '.' ? 'b' : *key), true);
         k.from_keypad = true;
+        k.is_dot = *key == '.';
         k.since_ns = guard_.since_ns(*key, k.at_ns);
         guard_.is_repeated(*key, k.at_ns, false);
         return k;
@@ -300,14 +303,17 @@ std::optional<session_key> session_keys::poll(bool repeated)
 std::optional<session_key> session_keys::poll_page()
 {
     while (const auto key = pressed())
-        page_->press(*key);
+        page_->press(*key == '.' ? 'b' : *key);
     while (auto line = typed())
         if (const session_key k = make_key(*std::move(line), terminal_); k.command)
             return session_key{.command = k.command, .at_ns = k.at_ns};
     const auto a = page_->poll();
     if (!a)
         return {};
-    session_key k{.text = std::string(1, a->key), .answer = a->number, .entered = a->text, .at_ns = a->at_ns};
+    session_key k{.text = a->text.value_or(std::string(1, a->key)),
+                  .answer = a->number,
+                  .entered = a->text,
+                  .at_ns = a->at_ns};
     if (a->key == 'b')
         k.command = operator_key::back;
     return k;
@@ -326,28 +332,33 @@ session_key session_keys::wait(const std::string& subject, bool repeated)
     }
 }
 
-session_key session_keys::wait_for_number(typed_number& number)
+session_key session_keys::wait_for_number(typed_number& number, bool estimate)
 {
-    const std::string& digits = number.digits();
+    const std::string& shown = number.text();
     for (;;) {
         session_key k = wait("the session", true);
-        const bool erases = k.from_keypad && k.command && !digits.empty(); // its one command is b
-        if (!k.is_key || (k.command && !erases))
+        const bool is_point = k.is_dot && estimate;
+        const bool erases = k.from_keypad && k.command && !is_point && !shown.empty(); // its one command is b
+        if (!k.is_key || (k.command && !erases && !is_point))
             return k;
-        if (digits.empty() && k.since_ns < first_key_ns)
+        if (shown.empty() && k.since_ns < first_key_ns)
             continue;
-        const std::size_t before = digits.size();
+        const std::size_t before = shown.size();
         const char key = k.text.front();
         // A keypad's Enter is a, and its 0 is n, as in an adjustment.
-        k.answer = number.take(!k.from_keypad ? key
-                               : key == 'a'   ? '\n'
-                               : key == 'n'   ? '0'
-                               : erases       ? '\b'
-                                              : key);
+        auto typed = number.take(!k.from_keypad ? key
+                                 : key == 'a'   ? '\n'
+                                 : key == 'n'   ? '0'
+                                 : is_point     ? '.'
+                                 : erases       ? '\b'
+                                                : key);
         k.command.reset();
-        if (k.answer)
+        if (typed) {
+            k.answer = detail::number_in<unsigned>(*typed);
+            k.text = *std::move(typed);
             return k;
-        echo(digits, before);
+        }
+        echo(shown, before);
     }
 }
 

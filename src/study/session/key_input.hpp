@@ -22,7 +22,7 @@ namespace tactor::study {
 
 /// Returns the answer of an input device's key (a code of linux/input-event-codes.h) as a terminal's key: 1
 /// to 9 for digits, a keypad, a button box or a joystick; + - > < or the arrows; a or Enter, n or 0, b or
-/// Backspace or a keypad's dot. Returns nothing for other keys.
+/// Backspace, a keypad's dot. Returns nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
 /// Greatest number of answers that have a key each.
@@ -31,15 +31,14 @@ inline constexpr unsigned most_keys = 9;
 /// A number that somebody types. A value without a terminal.
 class typed_number {
 public:
-    explicit typed_number(std::size_t most_digits = 3) : most_digits_(most_digits) {}
-    /// Takes a key: a digit, backspace or Enter; ignores others. Returns the number at Enter, and then begins
+    /// Takes a key: a digit, a sign, a point, a comma or an e, so that 1.5 and 1e5 do not become 15;
+    /// backspace or Enter; ignores others. Returns what was typed, if anything, at Enter, and then begins
     /// anew.
-    std::optional<unsigned> take(char key);
-    const std::string& digits() const noexcept { return digits_; }
+    std::optional<std::string> take(char key);
+    const std::string& text() const noexcept { return text_; }
 
 private:
-    std::size_t most_digits_;
-    std::string digits_ = {};
+    std::string text_ = {};
 };
 
 /// A line that somebody types at a terminal, in UTF-8.
@@ -121,7 +120,9 @@ enum class operator_key {
 
 /// A key, or a line of standard input that is no terminal.
 struct session_key {
-    std::string text = {}; ///< without blanks; empty for a command from a terminal beside a page
+    /// Without blanks; a number that was typed, a text from the page; empty for a command from a terminal
+    /// beside a page.
+    std::string text = {};
     std::optional<operator_key> command = {};
     std::optional<unsigned> answer = {};     ///< the number that this is, or that of the page's answer
     std::optional<std::string> entered = {}; ///< a line with its blanks; a text from the page
@@ -129,6 +130,7 @@ struct session_key {
     bool is_held = false;                    ///< a terminal repeats it
     std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< see repeat_guard
     bool from_keypad = false;
+    bool is_dot = false;    ///< the dot of a keypad, which is b unless an estimate is typed
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };
 
@@ -161,8 +163,9 @@ public:
     /// can come; `subject` names what then has no answer.
     session_key wait(const std::string& subject = "the session", bool repeated = false);
     /// Waits for a number, or for a command. Shows the digits as keys type them; lines and the page give the
-    /// whole number. The key that was pressed for the question before types no first digit. Throws as wait().
-    session_key wait_for_number(typed_number& number);
+    /// whole number. The key that was pressed for the question before types no first digit. `estimate`: the
+    /// number may have a point. Throws as wait().
+    session_key wait_for_number(typed_number& number, bool estimate);
     /// Waits for `entered`, a tidy text; if the key has none, the participant's text was refused. Waits for
     /// the experimenter's commands, too, if there is a page: else what somebody types is text, and Backspace
     /// before it is the command `back`. Shows the text as keys type it. The key that was pressed for the

@@ -7,6 +7,7 @@
 
 #include "net/rpc.hpp"
 #include "rt/clock.hpp"
+#include "study/data/dataset.hpp"
 
 namespace tactor::study {
 namespace {
@@ -82,6 +83,9 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["visual"] = true;
     if (screen_.entry == entry_kind::text)
         j["entry"] = {{"most", most_text_characters}};
+    if (screen_.entry == entry_kind::estimate)
+        j["entry"] = {
+            {"lowest", least_estimate}, {"greatest", most_estimate}, {"longest", most_estimate_characters}};
     if (screen_.entry == entry_kind::number)
         j["entry"] = {{"lowest", screen_.lowest}, {"greatest", screen_.greatest}};
     if (screen_.back)
@@ -166,6 +170,9 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
                                *number <= screen_.greatest;
         if (screen_.entry == entry_kind::text && is_text)
             h.text = tidy_text(text_entered->get_ref<const std::string&>());
+        if (screen_.entry == entry_kind::estimate && is_text &&
+            read_estimate(text_entered->get_ref<const std::string&>()))
+            h.text = text_entered->get<std::string>();
         if (is_number || h.text) {
             open_ = false;
             h.answer = '\0';

@@ -27,8 +27,9 @@ namespace tactor::study {
 /// Kind of answer that a participant enters in place of a choice.
 enum class entry_kind {
     none,
-    number, ///< a whole number
-    text,   ///< one or several lines
+    number,   ///< a whole number
+    estimate, ///< a number above 0, sent as a text
+    text,     ///< one or several lines
 };
 
 /// Length of a text that a participant enters, in characters, at most.
@@ -91,7 +92,7 @@ public:
         std::vector<message> replies = {};
         std::optional<char> answer = {}; ///< its key, or 0; each question has one at most
         unsigned number = 0; ///< of the answer: its place from 1, or from 0 if visual; or the one entered
-        std::optional<std::string> text = {}; ///< that was entered, tidy
+        std::optional<std::string> text = {}; ///< that was entered, tidy; an estimate
     };
     /// Takes a message. A page that says {"hello":true} is the participant's from then on;
     /// {"ask":N,"answer":CHOICE or number} and {"ask":N,"text":TEXT} answer, {"ask":N,"back":true} goes back.

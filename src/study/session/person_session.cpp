@@ -473,7 +473,9 @@ void person_session::trial(const session_step& s)
             flaw = "the experimenter repeated it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
-            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a->number - 1]) : a->number,
+            set_response(row, p_, r,
+                         named ? static_cast<double>(r.motions[static_cast<std::size_t>(a->number) - 1])
+                               : a->number,
                          std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
             codes_.send(code_event::answer, s, t, row.response);
         }
@@ -499,15 +501,17 @@ std::optional<person_session::given_answer> person_session::ask(const question& 
     const std::string possible = q.possible.empty() ? "" : q.possible + ": ";
     session::show(fmt::format("{} {}", q.screen.question, possible));
     typed_text text;
-    typed_number number(fmt::formatted_size("{}", q.screen.greatest));
+    typed_number number;
     for (;;) {
         const session_key k = q.is_text()    ? keys_.wait_for_text(text)
-                              : q.is_typed() ? keys_.wait_for_number(number)
+                              : q.is_typed() ? keys_.wait_for_number(number, q.is_estimate())
                                              : keys_.wait();
         const bool is_shown = q.is_typed() && k.is_key;
+        const std::optional<double> estimate = q.is_estimate() ? read_estimate(k.text) : std::nullopt;
         const bool is_answer =
-            q.is_text() ? k.entered.has_value()
-                        : k.answer && *k.answer >= q.screen.lowest && *k.answer <= q.screen.greatest;
+            q.is_text()       ? k.entered.has_value()
+            : q.is_estimate() ? estimate.has_value()
+                              : k.answer && *k.answer >= q.screen.lowest && *k.answer <= q.screen.greatest;
         if (k.command) {
             if (*k.command == operator_key::repeat && now.what == step_kind::trial)
                 return {};
@@ -520,10 +524,10 @@ std::optional<person_session::given_answer> person_session::ask(const question& 
             on_page(q.screen); // which the press has answered
         } else if (is_answer) {
             answered_ = k;
-            if (q.is_text())
+            if (q.is_text() || q.is_estimate())
                 answered_.answer.reset();
-            given_answer a{k.answer.value_or(0), q.is_text() ? *k.entered : fmt::format("{}", *k.answer),
-                           k.at_ns};
+            given_answer a{estimate.value_or(k.answer.value_or(0)), {}, k.at_ns};
+            a.text = q.is_text() ? *k.entered : fmt::format("{}", a.number);
             session::show(is_shown ? "\n" : a.text + "\n");
             return a;
         } else if (q.is_typed() || !keys_.come_early()) {

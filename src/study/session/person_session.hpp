@@ -71,7 +71,7 @@ private:
     bool end();
 
     struct given_answer {
-        unsigned number = 0; ///< not of a text
+        double number = 0.0; ///< not of a text
         std::string text;
         std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
     };

@@ -46,21 +46,21 @@ std::string answers_text(const questionnaire_item& item, const page_words& w)
 
 bool question::is_typed() const noexcept
 {
-    return is_text() || screen.lowest == 0 || screen.greatest > most_keys;
+    return is_text() || is_estimate() || screen.lowest == 0 || screen.greatest > most_keys;
 }
 
 unsigned choices_in(const run_definition& r)
 {
     return r.outline.task == task_kind::rate       ? r.outline.scale - r.outline.lowest_rating() + 1
            : r.outline.task == task_kind::identify ? static_cast<unsigned>(r.motions.size())
-           : r.outline.task == task_kind::estimate ? most_estimate
                                                    : 2;
 }
 
 std::string choices_text(const experiment_definition& d, const run_definition& r)
 {
-    const bool is_range = r.outline.task == task_kind::rate || r.outline.task == task_kind::estimate;
-    const std::string between = d.page[is_range ? "to" : "or"];
+    if (r.outline.task == task_kind::estimate)
+        return d.page["any_number"];
+    const std::string between = d.page[r.outline.task == task_kind::rate ? "to" : "or"];
     const bool named = r.outline.task == task_kind::identify;
     const std::vector<std::string> labels = label_choices(r);
     const bool each = named || r.outline.labels.size() == labels.size();
@@ -97,12 +97,12 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
 {
     const run_definition& r = p.run_at(s.run);
     page_screen shown{.name = "question", .question = r.outline.question, .where = find_progress(p, s)};
-    shown.lowest = r.outline.lowest_rating();
-    shown.greatest = shown.lowest + choices_in(r) - 1;
     if (r.outline.task == task_kind::estimate) {
-        shown.entry = entry_kind::number;
+        shown.entry = entry_kind::estimate;
         return {std::move(shown), choices_text(p.definition, r)};
     }
+    shown.lowest = r.outline.lowest_rating();
+    shown.greatest = shown.lowest + choices_in(r) - 1;
     shown.choices = label_choices(r);
     shown.keys = number_keys(shown.choices.size());
     shown.visual = r.outline.visual;

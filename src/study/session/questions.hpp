@@ -18,17 +18,18 @@
 
 namespace tactor::study {
 
-/// A question with its answers: numbers from the screen's lowest to its greatest, or a text.
+/// A question with its answers: numbers from the screen's lowest to its greatest, an estimate, or a text.
 struct question {
     page_screen screen;   ///< the terminal shows its `question`
     std::string possible; ///< the answers, for the terminal: "1 or 2"; may be empty
 
     bool is_text() const noexcept { return screen.entry == entry_kind::text; }
+    bool is_estimate() const noexcept { return screen.entry == entry_kind::estimate; }
     /// Returns true if an answer takes several keys, and Enter.
     bool is_typed() const noexcept;
 };
 
-/// Returns how many answers there are in a run.
+/// Returns how many answers there are in a run that does not estimate.
 unsigned choices_in(const run_definition& r);
 
 /// Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5

@@ -2,6 +2,7 @@
 // Answers are buttons with numbers, which are keys, too, or many of them a line with a mark.
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {draw_picture} from "./motion.js";
+import {fits_entry} from "./entry.js";
 
 const MOST_BUTTONS = 11; // of a scale
 
@@ -50,25 +51,28 @@ function make_line({choices, visual}, word, answer) {
 }
 
 // Makes a place for a number, with its range, or for a text, and a button that answers.
-function make_entry({greatest, lowest, most}, word, answer) {
-  const confirm = make("button", {type: "button", onclick: () => answer(most ? place.value : Number(place.value))}, word);
-  const look = () => {
-    if (!most) place.value = place.value.replace(/[^\d.,]/g, ""); // 1.5 must not become 15
-    const fits = most || /^\d+$/.test(place.value) && place.value >= lowest && place.value <= greatest;
+function make_entry(entry, words, answer) {
+  const {greatest, lowest, longest, most} = entry;
+  const confirm = make("button", {type: "button", onclick: () => answer(most || longest ? place.value : Number(place.value))}, words.confirm);
+  const look = () => { // leaves all as it is typed: 1.5 and 1e5 must not become 15
+    const fits = fits_entry(place.value, entry);
     by_id("answers").classList.toggle("unset", !fits);
+    place.setAttribute("aria-invalid", place.value !== "" && !fits);
     confirm.disabled = place.disabled || !fits;
   };
+  // Where people write a comma, the keyboard of numbers has no point.
+  const keyboard = !longest ? "numeric" : (0.5).toLocaleString().includes(".") ? "decimal" : "text";
   const place = most ? make("textarea", {rows: 5, maxlength: most, "aria-labelledby": "question"})
-    : make("input", {inputmode: "numeric", maxlength: String(greatest).length, autocomplete: "off", "aria-labelledby": "question range", oninput: look,
+    : make("input", {inputmode: keyboard, autocomplete: "off", "aria-labelledby": "question range", oninput: look,
       onkeydown: e => { if (e.key === "Enter" && !e.repeat) confirm.click(); }});
-  return [place, ...most ? [] : [make("span", {id: "range"}, `${lowest}–${greatest}`)], confirm];
+  return [place, ...most ? [] : [make("span", {id: "range"}, longest ? words.any_number : `${lowest}–${greatest}`)], confirm];
 }
 
 let kept = ""; // what the buttons show
 let focused = -1;
 
 // Shows the buttons of a screen. Those of the same question stay, with the keyboard's focus.
-export function show_answers(s, tactors, word, answer) {
+export function show_answers(s, tactors, words, answer) {
   const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen, s.entry, s.question,
     s.screen === "questionnaire" && s.progress]); // the next item may look the same
   const kind = choices.length ? find_kind(s) : s.entry ? "entry" : "", on_line = kind === "line";
@@ -84,7 +88,7 @@ export function show_answers(s, tactors, word, answer) {
     set("--across-phone", on_phone);
     all.classList.toggle("long", n > 7);
     all.classList.toggle("slim", on_phone > 2);
-    all.replaceChildren(...on_line ? make_line(s, word, answer) : s.entry ? make_entry(s.entry, word, answer) : choices.map((label, i) => {
+    all.replaceChildren(...on_line ? make_line(s, words.confirm, answer) : s.entry ? make_entry(s.entry, words, answer) : choices.map((label, i) => {
       const b = make_button(s, label, i, tactors);
       b.addEventListener("click", () => answer(i + 1));
       return b;

@@ -50,7 +50,7 @@ function show(s) {
   for (const mark of by_id("mark").children) show_only_if(mark, !s.stimuli && mark.dataset.on.split(" ").includes(s.screen));
   if (s.progress || !BETWEEN.includes(s.screen)) show_progress(s.progress, s.screen === "rest");
   show_stimuli(s.stimuli ?? 0, s.playing ?? 0, s.names);
-  show_answers(s, tactors, words.confirm, answer);
+  show_answers(s, tactors, words, answer);
   enable_answers(state.ask > 0);
   show_only_if(by_id("back"), s.back);
   show_only_if(by_id("field"), s.path);
