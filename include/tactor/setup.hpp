@@ -42,8 +42,10 @@ struct code_settings {
     double bit_s = 0.002;                 ///< length of a bit there
     std::string chip = {};                ///< GPIO chip; empty: no lines
     std::vector<unsigned> offsets = {};   ///< its lines, least significant bit first; eight at most
-    double pulse_s = 0.005;               ///< time for which the lines show a number
+    double pulse_s = 0.005;               ///< time for which the lines and the box show a number
     bool lsl = false;                     ///< markers to the Lab Streaming Layer
+    std::string serial = {};              ///< port of a serial trigger box; empty: none
+    unsigned baud = 115200;               ///< its rate, bits in a second
     code_numbering stimulus = {};
     code_numbering standard = {}; ///< stimuli with the standard's value
     code_numbering caught = {};   ///< trials without a stimulus

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/baud_rates.hpp"
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
 #include "core/suggest.hpp"
@@ -381,10 +382,12 @@ void read_amplifier(const toml_table& t, located_setup& out)
     out.contents.amplifier = a;
 }
 
+constexpr const char* code_hint = "code = { channel = 15 }, { chip, offsets } or { serial, baud }";
+
 // Reads where numbers go.
 void read_code(const toml_table& t, code_settings& c)
 {
-    t.only({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl"});
+    t.only({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl", "serial", "baud"});
     c.where = t.where();
     c.channel = t.whole("channel", bounds_of::marker_channel);
     c.bit_s = seconds(t.number("bit_ms", {0.1, 20.0})).value_or(c.bit_s);
@@ -401,9 +404,20 @@ void read_code(const toml_table& t, code_settings& c)
                 fail_at(t.where(n), fmt::format("an offset is {}", shown(n)), "give a whole number");
             c.offsets.push_back(static_cast<unsigned>(t.to_number(n, "an offset", {0.0, 65535.0})));
         }
-    } else if (!c.channel && !c.lsl) {
-        t.fail("code has neither channel nor chip", "code = { channel = 15 }, or { chip, offsets }");
     }
+    if (t.has("serial") || t.has("baud")) {
+        c.serial = t.need(t.text("serial"), "serial");
+        c.baud = t.whole("baud", 0, std::numeric_limits<int>::max()).value_or(c.baud);
+        if (std::ranges::count(detail::baud_rates, c.baud, &detail::baud_rate::baud) == 0) {
+            std::vector<unsigned> rates;
+            for (const detail::baud_rate& one : detail::baud_rates)
+                rates.push_back(one.baud);
+            t.fail("baud", fmt::format("baud is {}", c.baud),
+                   fmt::format("use one of {}", fmt::join(rates, ", ")));
+        }
+    }
+    if (!c.channel && !c.lsl && c.chip.empty() && c.serial.empty())
+        t.fail("code has neither channel nor chip nor serial", code_hint);
 }
 
 // Reads the numbers of one kind of event: the first, or a table.
@@ -448,12 +462,12 @@ void read_sync(const toml_table& t, located_setup& out)
         s.pull = edge->kind<pull_kind>("pull").value_or(s.pull);
     }
     s.channel = t.whole("channel", bounds_of::marker_channel);
-    if (const auto code = t.table("code", "code", "code = { channel } or { chip, offsets }"))
+    if (const auto code = t.table("code", "code", code_hint))
         read_code(*code, s.code.emplace());
     if (const auto numbers = t.table("codes", "[sync.codes]", "[sync.codes] stimulus = 10")) {
         numbers->only({"stimulus", "standard", "catch", "answer", "void"});
         if (!s.code)
-            t.fail("codes", "nothing sends these numbers", "code = { channel }, or { chip, offsets }");
+            t.fail("codes", "nothing sends these numbers", code_hint);
         s.code->stimulus = read_numbering(*numbers, "stimulus");
         s.code->standard = read_numbering(*numbers, "standard");
         s.code->caught = read_numbering(*numbers, "catch");

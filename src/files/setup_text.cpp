@@ -124,6 +124,8 @@ void add_lines(lines& out, const setup& u)
         code += fmt::format(", channel = {}", *c.channel);
     if (!c.chip.empty())
         code += fmt::format(", chip = {}, offsets = [{}]", toml_string(c.chip), fmt::join(c.offsets, ", "));
+    if (!c.serial.empty())
+        code += fmt::format(", serial = {}, baud = {}", toml_string(c.serial), c.baud);
     out.add_value("code", "{ " + code + " }");
     out.begin_table("[sync.codes]");
     for (const auto& [key, n] : {std::pair("stimulus", &c.stimulus),

@@ -3,8 +3,10 @@
 samples, tests/vm from a card and lines."""
 import json
 import os
+import re
 import signal
 import subprocess
+import time
 
 from experiments import DESK, SHORT, SMALL, PersonTest, contents, read_table
 from harness import ROOT, main
@@ -129,6 +131,50 @@ class Codes(PersonTest):
         self.assertEqual([code for _, _, code in marks], [e["code"] for e in events + self.events("marks")])
         # The time of a marker is that of its event; the markers of both stimuli are sent after them.
         self.assertAlmostEqual(float(marks[1][0]) - float(marks[0][0]), float(events[1]["onset"]) - float(events[0]["onset"]), 2)
+
+    def box(self):
+        """Returns both ends of a terminal that stands for a trigger box, and its path. The tool's end stays open."""
+        box, port = os.openpty()
+        for end in (box, port):
+            self.addCleanup(os.close, end)
+        os.set_blocking(box, False)
+        return box, os.ttyname(port)
+
+    def test_a_serial_trigger_box_gets_each_number_and_then_0(self):
+        box, path = self.box()
+        self.write("desk.toml", DESK + f'[sync]\ncode = {{ serial = "{path}", baud = 57600 }}\n')
+        listed = self.ok("experiment", "short.toml", "--dry-run").stdout
+        self.assertIn('code 1: stimulus, motion "east", method "Alder"', listed)
+        said = self.ok(*self.args(), stdin="y\n" * 3 + "1\n" * 5).stderr
+        sent = b""
+        while not sent.endswith(b"\0") or len(sent) < 2:  # the kernel hands them over a while later
+            try:
+                sent += os.read(box, 4096)
+            except BlockingIOError:
+                time.sleep(0.01)
+        events = self.events("pairs") + self.events("marks")
+        codes = [int(e["code"]) for e in events]
+        # A busy machine may miss the time of a stimulus, and says so; each answer has its byte.
+        numbers = [n for n in sent if n]
+        missed = int(re.search(r"serial port of codes: \d+ pulses .*, (\d+) missed, late by ", said)[1])
+        self.assertEqual((sent[0], sent[-1], len(codes) - len(numbers) <= missed), (0, 0, True), (sent, said))
+        rest = iter(codes)
+        self.assertTrue(all(n in rest for n in numbers), (codes, numbers))
+        answers = [c for c, e in zip(codes, events) if e["event"] == "answer"]
+        self.assertEqual([n for n in numbers if n in answers], answers)
+        self.assertEqual({k: v for k, v in self.session()["codes"].items() if k != "numbers"}, {"serial": {"baud": 57600}})
+        self.assertIn("for a recorder: a serial port (57600 baud).", self.ok("report", "study").stdout)
+
+    def test_what_is_no_serial_port_is_refused_before_the_first_trial(self):
+        self.write("as-it-was", "as it was")
+        for path, status, says in (("/dev/ttyNONE", 3, "No such file or directory"), ("/dev/null", 2, "it is no serial port"),
+                                   (f"{self.dir}/as-it-was", 2, "it is no serial port")):
+            self.write("desk.toml", DESK + f'[sync]\ncode = {{ serial = "{path}" }}\n')
+            self.refused(status, *self.args(), stdin="", says=(f"desk.toml:5:8: serial: {path}: {says}",))
+        self.assertEqual((self.dir / "as-it-was").read_text(), "as it was")
+        self.write("desk.toml", DESK + '[sync]\ncode = { serial = "/dev/ttyS0", baud = 1 }\n')
+        self.refused(2, "experiment", "short.toml", "--dry-run", says=("desk.toml:5:40: baud is 1 (one of 4800, 9600, ",))
+        self.assertFalse((self.dir / "study").exists())
 
     def test_an_answer_is_kept_though_the_session_ends_while_its_code_is_sent(self):
         self.write("desk.toml", DESK + "[sync]\ncode = { channel = 2, bit_ms = 20 }\n")  # a code takes 180 ms

@@ -170,7 +170,8 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
 {
     const setup s =
         read("[sync]\nout = { chip = \"a\", offset = 4 }\ncode = { channel = 15, bit_ms = 1, chip = \"a\", "
-             "offsets = [5, 6], pulse_ms = 7, lsl = true }\n[sync.codes]\nstimulus = 1\nvoid = 3\n"
+             "offsets = [5, 6], pulse_ms = 7, lsl = true, serial = \"/dev/ttyS0\", baud = 9600 "
+             "}\n[sync.codes]\nstimulus = 1\nvoid = 3\n"
              "standard = { first = 4, by = [\"motion\", \"interval\"] }\ncatch = { by = [] }\n");
     REQUIRE(s.sync->code.has_value());
     const code_settings& c = *s.sync->code;
@@ -180,6 +181,8 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(c.offsets == std::vector<unsigned>{5, 6});
     CHECK(c.pulse_s == 0.007);
     CHECK(c.lsl);
+    CHECK(c.serial == "/dev/ttyS0");
+    CHECK(c.baud == 9600);
     CHECK(c.stimulus.first == 1u);
     CHECK(!c.stimulus.by);
     CHECK(!c.answer.first);
@@ -192,8 +195,15 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(detail::besides_text(read(again)) == again);
 
     const auto code = [](const std::string& in) { return complaint("[sync]\ncode = " + in + "\n"); };
-    CHECK(code("{ bit_ms = 2 }") ==
-          "t.toml:2:8: code has neither channel nor chip (code = { channel = 15 }, or { chip, offsets })");
+    CHECK(code("{ bit_ms = 2 }") == "t.toml:2:8: code has neither channel nor chip nor serial (code = { "
+                                    "channel = 15 }, { chip, offsets } "
+                                    "or { serial, baud })");
+    CHECK(code("{ baud = 9600 }") == "t.toml:2:8: code has no serial (add serial = ...)");
+    CHECK(code("{ serial = \"/dev/ttyS0\", baud = 9601 }") ==
+          "t.toml:2:40: baud is 9601 (use one of 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, "
+          "500000, "
+          "576000, 921600, 1000000, 1152000, 1500000, 2000000)");
+    CHECK(read("[sync]\ncode = { serial = \"/dev/ttyS0\" }\n").sync->code->baud == 115200);
     CHECK(code("{ chip = \"a\" }") ==
           "t.toml:2:8: there are 0 offsets (give one to eight lines, the least significant bit first)");
     CHECK(code("{ offsets = [1] }") == "t.toml:2:8: code has no chip (add chip = ...)");
@@ -204,7 +214,8 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = { by = [\"motions\"] }") ==
           "t.toml:4:19: by has 'motions' (some of run, motion, method, value, interval, answer)");
     CHECK(complaint("[sync.codes]\nstimulus = 1\n") ==
-          "t.toml:1:1: nothing sends these numbers (code = { channel }, or { chip, offsets })");
+          "t.toml:1:1: nothing sends these numbers (code = { channel = 15 }, { chip, offsets } or { serial, "
+          "baud })");
     CHECK(
         complaint("[sync]\nchannel = 4\ncode = { channel = 4 }\n") ==
         "t.toml:2:11: channel 4 is also that of the code (give the marker and the code different channels)");

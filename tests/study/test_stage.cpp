@@ -14,9 +14,16 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include "caught.hpp"
 #include "clock_runner.hpp"
+#include "core/owned.hpp"
 #include "fake_dac.hpp"
 #include "folder.hpp"
 #include "player_support.hpp"
@@ -28,6 +35,7 @@
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
+#include "study/session/serial_port.hpp"
 #include "study/session/sync_codes.hpp"
 #include "synth/score/joined.hpp"
 
@@ -513,7 +521,9 @@ TEST_CASE("lines show the number of each pulse, another line along with it")
         std::vector<int>& shown;
     };
     {
-        study::coded_pulse pulse(std::make_unique<fake_lines>(shown), std::make_unique<fake_out>(shown));
+        std::vector<std::unique_ptr<amplifier::code_lines>> lines;
+        lines.push_back(std::make_unique<fake_lines>(shown));
+        study::coded_pulse pulse(std::move(lines), std::make_unique<fake_out>(shown));
         CHECK(pulse.set(true));
         pulse.expect(7, 9, std::numeric_limits<std::int64_t>::max());
         CHECK(pulse.set(true));
@@ -522,6 +532,111 @@ TEST_CASE("lines show the number of each pulse, another line along with it")
         CHECK(pulse.set(true));
     }
     CHECK(shown == std::vector<int>{0, -1, 7, -1, 0, -2, 9, -1, 0, -2});
+}
+
+// A terminal that stands for a trigger box. The kernel hands its bytes over a while after they were written.
+struct fake_box {
+    tactor::detail::owned_fd box{::posix_openpt(O_RDWR | O_NOCTTY)};
+    std::string path;
+
+    fake_box()
+    {
+        REQUIRE((::grantpt(box.get()) == 0 && ::unlockpt(box.get()) == 0));
+        path = ::ptsname(box.get());
+    }
+    // Waits for so many bytes. There must be no more.
+    std::vector<unsigned> read(std::size_t count)
+    {
+        std::vector<unsigned> all;
+        constexpr int patience_ms = 120'000;
+        pollfd p{box.get(), POLLIN, 0};
+        unsigned char byte = 0;
+        while (all.size() < count && ::poll(&p, 1, patience_ms) == 1 && ::read(box.get(), &byte, 1) == 1)
+            all.push_back(byte);
+        CHECK(::poll(&p, 1, 0) == 0);
+        return all;
+    }
+};
+
+TEST_CASE("a serial box gets each number as a byte, and a 0 when its time is over")
+{
+    fake_box b;
+    std::vector<std::unique_ptr<amplifier::code_lines>> port;
+    port.push_back(study::open_serial_port(b.path, 9600, {}));
+    termios t{};
+    REQUIRE(::tcgetattr(b.box.get(), &t) == 0); // those of the other end
+    CHECK(::cfgetospeed(&t) == B9600);
+    CHECK((t.c_cflag & (CSIZE | PARENB | CSTOPB | CRTSCTS)) == CS8);
+    CHECK((t.c_lflag & (ICANON | ECHO | ISIG)) == 0);
+    {
+        study::coded_pulse pulse(std::move(port), nullptr);
+        CHECK(pulse.set(true)); // has no number: of the walk, of practice
+        CHECK(pulse.set(false));
+        pulse.expect(7, 9, std::numeric_limits<std::int64_t>::max());
+        CHECK(pulse.set(true));
+        CHECK(pulse.set(false));
+        pulse.expect(7, 9, 0);
+        CHECK(pulse.set(true));
+        CHECK(b.read(4) == std::vector<unsigned>{0, 7, 0, 9});
+        // The bytes that a terminal changes or takes for itself, and all others.
+        std::vector<unsigned> all;
+        for (unsigned n = 1; n < 256; ++n) {
+            CHECK(pulse.show(n));
+            all.push_back(n);
+        }
+        CHECK(b.read(255) == all);
+        // No byte is kept for a port that has gone.
+        b.box.close();
+        CHECK_FALSE(pulse.show(1));
+        CHECK_FALSE(pulse.set(true));
+    }
+}
+
+TEST_CASE("an answer's number goes to a serial box until its time is over, and is recorded")
+{
+    fake_box b;
+    const std::string on_channel = "channel = 8, bit_ms = 1.5";
+    std::string array_text = coded_array;
+    array_text.replace(array_text.find(on_channel), on_channel.size(),
+                       "pulse_ms = 2, serial = \"" + b.path + "\"");
+    coded_session c(array_text);
+    fake_dac dac;
+    study::coded_pulse* lines = nullptr;
+    const session::stream_options how;
+    study::stage there(nine(), {}, c.p.where, [&](session::stream_parts& p) {
+        set_up::source(dac)(p);
+        study::with_codes(how, c.p.where, lines)(p);
+    });
+    const running_clock clock(dac, running_clock::capture_kind::kept);
+    REQUIRE(lines != nullptr);
+    study::sync_codes codes(c.p, c.store, &there, lines);
+    const study::planned_trial t{0, 1, 0};
+    const study::session_step step{study::step_kind::trial, 0, 0, false, {1, 1}};
+    codes.send(study::code_event::answer, step, t, "2");
+    codes.send(study::code_event::made_void, step, t);
+    codes.finish();
+    CHECK(b.read(5) == std::vector<unsigned>{0, 46, 0, 47, 0}); // from 41: four stimuli, two answers, void
+    CHECK(study::code_facts(*study::find_codes(c.p.where), c.p.codes)["serial"]["baud"] == 115200);
+    there.finish();
+}
+
+TEST_CASE("nothing but a terminal is opened as a serial port")
+{
+    const folder files;
+    const std::string fifo = (files / "fifo").string();
+    const std::string file = files.write("file", "as it was").string();
+    REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+    const auto refusal = [](const std::string& path) {
+        return caught_message([&] { study::open_serial_port(path, 9600, {"a.toml", 3}); });
+    };
+    for (const std::string& path :
+         {std::string("/dev/null"), std::string("/dev/zero"), fifo, file, std::string("/dev")})
+        CHECK(refusal(path) ==
+              "a.toml:3: serial: " + path +
+                  ": it is no serial port (the ports that are there: ls /dev/serial/by-id /dev/ttyS*)");
+    CHECK(files.bytes("file") == "as it was");
+    CHECK(refusal("/dev/ttyNONE") == "a.toml:3: serial: /dev/ttyNONE: No such file or directory (the ports "
+                                     "that are there: ls /dev/serial/by-id /dev/ttyS*)");
 }
 
 TEST_CASE("codes that cannot be sent are refused by name before the session")
@@ -536,6 +651,13 @@ TEST_CASE("codes that cannot be sent are refused by name before the session")
         refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5, 6], pulse_ms = 250") ==
         "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after the stimulus "
         "of motion \"east\" with method \"a\" begins (use a shorter pulse_ms, or longer stimuli)");
+    CHECK(refusal("channel = 8, bit_ms = 1.5", "serial = \"/dev/ttyS0\", pulse_ms = 250")
+              .starts_with(
+                  "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after"));
+    CHECK(
+        refusal("channel = 8, bit_ms = 1.5", "serial = \"/dev/ttyS0\", baud = 4800, pulse_ms = 2") ==
+        "array.toml:6:8: code: pulse_ms is 2, but a byte takes 2.083 ms at 4800 baud (use a longer pulse_ms, "
+        "or a greater baud)");
     CHECK(refusal("bit_ms = 1.5", "bit_ms = 4") ==
           "array.toml:6:8: code: it takes 0.036 s, but the gap between two stimuli is 0.0321 s (use a longer "
           "gap_s in the definition, or a shorter bit_ms)");

@@ -154,9 +154,10 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
     });
     if (const player_stats now = there->stats(); lines != nullptr)
         say(stderr,
-            "tactor: lines of codes: {} pulses (walk and practice too), {} missed, late by {:.3f} ms, at "
+            "tactor: {} of codes: {} pulses (walk and practice too), {} missed, late by {:.3f} ms, at "
             "worst {:.3f} ms\n",
-            now.sync_pulses, now.sync_missed, now.sync_mean_late_s * 1e3, now.sync_worst_late_s * 1e3);
+            study::name_outputs(*study::find_codes(p.where)), now.sync_pulses, now.sync_missed,
+            now.sync_mean_late_s * 1e3, now.sync_worst_late_s * 1e3);
     return why;
 }
 

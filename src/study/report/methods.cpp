@@ -142,6 +142,8 @@ std::string codes_text(const session_facts& s)
                                      codes["channel"].words(), codes["bit_ms"].words()));
     if (codes["lines"].there())
         places.push_back("GPIO lines " + codes["lines"].words());
+    if (codes["serial"].there())
+        places.push_back(fmt::format("a serial port ({} baud)", codes["serial"]["baud"].words()));
     if (codes["lsl"].there())
         places.emplace_back("markers of LSL");
     return join(places);

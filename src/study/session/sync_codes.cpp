@@ -17,6 +17,7 @@
 #include "rt/clock.hpp"
 #include "rt/system_files.hpp"
 #include "session/say.hpp"
+#include "study/session/serial_port.hpp"
 #include "synth/score/joined.hpp"
 
 namespace tactor::study {
@@ -41,6 +42,13 @@ std::uint64_t code_frames(const code_settings& c, unsigned rate)
 const code_settings* find_codes(const session::environment& e)
 {
     return e.config.sync && e.config.sync->code ? &*e.config.sync->code : nullptr;
+}
+
+std::string_view name_outputs(const code_settings& c) noexcept
+{
+    if (c.offsets.empty())
+        return c.serial.empty() ? "" : "serial port";
+    return c.serial.empty() ? "lines" : "lines and serial port";
 }
 
 std::string find_shared_number(const code_numbers& all)
@@ -78,11 +86,17 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
                                     d.methods[shortest.method].name),
                         "use a shorter pulse_ms, or longer stimuli");
     };
-    const bool has_lines = c != nullptr && !c->offsets.empty();
-    if (has_lines)
+    const bool has_outputs = c != nullptr && !name_outputs(*c).empty();
+    if (has_outputs)
         check(c->pulse_s, shortest_s, "the answer's number", c->where, "code: ");
+    constexpr double bits = 10.0; // of a byte, with start and stop
+    if (has_outputs && !c->serial.empty() && c->pulse_s < bits / c->baud)
+        throw error(error_kind::bad_input, c->where,
+                    fmt::format("code: pulse_ms is {:.4g}, but a byte takes {:.4g} ms at {} baud",
+                                c->pulse_s * 1e3, bits / c->baud * 1e3, c->baud),
+                    "use a longer pulse_ms, or a greater baud");
     const double rest_s = are_pairs ? std::min(d.gap_s, stimulus_lead_s) : stimulus_lead_s;
-    if (sync.channel || (sync.out && !has_lines))
+    if (sync.channel || (sync.out && !has_outputs))
         check(sync.pulse_s, shortest_s + rest_s, "the next pulse", "[sync] out", "");
 }
 
@@ -95,6 +109,8 @@ nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& al
     }
     if (!c.offsets.empty())
         j["lines"] = c.offsets;
+    if (!c.serial.empty())
+        j["serial"] = {{"baud", c.baud}};
     if (c.lsl)
         j["lsl"] = true;
     for (const auto& [number, meanings] : all.meanings())
@@ -127,7 +143,7 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
         j["code"]["Levels"][fmt::format("{}", number)] = fmt::format("{}", fmt::join(meanings, "; "));
     column("frame", c->channel ? "Frame of the stream at which the start bit begins; the code ends where the "
                                  "stimulus begins, frame_1 or frame_2 of the run's table"
-                               : "Frame of the stream at which the lines switch");
+                               : "Frame of the stream at which the lines switch, or the byte is sent");
     return j;
 }
 
@@ -141,8 +157,16 @@ void coded_pulse::expect(unsigned first, unsigned second, std::int64_t second_fr
 bool coded_pulse::set(bool on) noexcept
 {
     const unsigned due = rt::monotonic_ns() < second_from_ns_ ? first_ : second_;
-    const bool done = lines_->set(on ? due : 0);
+    const bool done = show(on ? due : 0);
     return (!out_ || out_->set(on)) && done;
+}
+
+bool coded_pulse::show(unsigned number) noexcept
+{
+    bool done = true;
+    for (const auto& one : outputs_)
+        done = one->set(number) && done;
+    return done;
 }
 
 session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
@@ -150,9 +174,13 @@ session::stream_source with_codes(const session::stream_options& o, const sessio
 {
     return [&o, &e, &lines](session::stream_parts& p) {
         const code_settings* const c = find_codes(e);
-        if (c == nullptr || c->offsets.empty() || o.no_gpio)
+        std::vector<std::unique_ptr<amplifier::code_lines>> own;
+        if (c != nullptr && !c->offsets.empty() && !o.no_gpio)
+            own.push_back(amplifier::open_code_lines(c->chip, c->offsets, c->where));
+        if (c != nullptr && !c->serial.empty())
+            own.push_back(open_serial_port(c->serial, c->baud, c->where));
+        if (own.empty())
             return;
-        auto own = amplifier::open_code_lines(c->chip, c->offsets, c->where);
         p.lines.change_sync(
             [&](std::unique_ptr<enable_line> out) {
                 auto pulse = std::make_unique<coded_pulse>(std::move(own), std::move(out));
@@ -269,8 +297,8 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
     if (sends && g.first_frame)
         note_stimuli(s, t, *g.first_frame, g.frames, rt::unix_ns() - (rt::monotonic_ns() - g.started_ns));
     if (lines_ != nullptr && there_->stats().sync_missed != missed)
-        session::say(stderr, "tactor: {}: trial {}: the lines were too late for a code and did not send it\n",
-                     p_.run_at(s.run).outline.name, s.which.trial);
+        session::say(stderr, "tactor: {}: trial {}: the {} failed or were too late for a code\n",
+                     p_.run_at(s.run).outline.name, s.which.trial, name_outputs(*code_));
     return g;
 }
 
@@ -287,7 +315,7 @@ void sync_codes::send(code_event e, const session_step& s, const planned_trial& 
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                std::chrono::duration<double>(code_->pulse_s));
     if (lines_ != nullptr && !lines_->show(n))
-        session::say(stderr, "tactor: the lines did not accept a code\n");
+        session::say(stderr, "tactor: the {} did not accept a code\n", name_outputs(*code_));
     if (code_->channel) {
         sending_->code.frame += there_->setup().buffer_frames;
         sending_->refused = there_->submit(make(n), start_at::frame(sending_->code.frame));

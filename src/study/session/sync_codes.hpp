@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Numbers that mark the stimuli, answers and void trials of a session for an EEG amplifier: as pulse codes
-/// on a spare channel, on GPIO lines, in the Lab Streaming Layer; and as lines of the events of a run.
+/// on a spare channel, on GPIO lines, as bytes to a serial trigger box, in the Lab Streaming Layer; and as
+/// lines of the events of a run.
 #pragma once
 
 #include <atomic>
@@ -35,10 +36,14 @@ const code_settings* find_codes(const session::environment& e);
 /// empty.
 std::string find_shared_number(const code_numbers& all);
 
+/// Returns the name, in messages, of the outputs that show numbers: "lines", "serial port" or both; empty if
+/// there are none.
+std::string_view name_outputs(const code_settings& c) noexcept;
+
 /// Checks before a session that each code and each pulse is over before the next may come: a code on the
-/// channel in the gap between two stimuli, a number on the lines within the shortest stimulus, at whose end
-/// somebody may answer, and a pulse or marker of [sync] before the next stimulus.
-/// \throws error (bad_input).
+/// channel in the gap between two stimuli, a number on the lines or at a serial box within the shortest
+/// stimulus, at whose end somebody may answer, a byte within its pulse, and a pulse or marker of [sync]
+/// before the next stimulus. \throws error (bad_input).
 void check_pulses(const session::environment& e, const experiment_definition& d, const stimulus_set& all,
                   unsigned rate);
 
@@ -47,12 +52,12 @@ nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& al
 /// Returns the description of the tables of events, with each number and its meaning; null without codes.
 nlohmann::ordered_json describe_events(const prepared_experiment& p);
 
-/// The lines of the codes as a line of sync pulses: each pulse shows the number that is due, and switches
-/// another line along, if any.
+/// The outputs of the codes, GPIO lines and a serial box, as a line of sync pulses: each pulse shows the
+/// number that is due, and switches another line along, if any.
 class coded_pulse final : public enable_line {
 public:
-    coded_pulse(std::unique_ptr<amplifier::code_lines> lines, std::unique_ptr<enable_line> out)
-        : lines_(std::move(lines)), out_(std::move(out))
+    coded_pulse(std::vector<std::unique_ptr<amplifier::code_lines>> outputs, std::unique_ptr<enable_line> out)
+        : outputs_(std::move(outputs)), out_(std::move(out))
     {
     }
     ~coded_pulse() override { static_cast<void>(coded_pulse::set(false)); }
@@ -61,17 +66,17 @@ public:
     void expect(unsigned first, unsigned second, std::int64_t second_from_ns) noexcept;
     bool set(bool on) noexcept override;
     /// Shows a number at once, or none.
-    bool show(unsigned number) noexcept { return lines_->set(number); }
+    bool show(unsigned number) noexcept;
 
 private:
-    std::unique_ptr<amplifier::code_lines> lines_;
+    std::vector<std::unique_ptr<amplifier::code_lines>> outputs_;
     std::unique_ptr<enable_line> out_;
     std::atomic<unsigned> first_{0};
     std::atomic<unsigned> second_{0};
     std::atomic<std::int64_t> second_from_ns_{0};
 };
 
-/// Returns a source that opens the lines of the codes beside those of the stream, and sets `lines` to them;
+/// Returns a source that opens the outputs of the codes beside those of the stream, and sets `lines` to them;
 /// they live as long as the stream. `o` and `e` must live until it is called.
 session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
                                   coded_pulse*& lines);
