@@ -167,8 +167,8 @@ class Codes(PersonTest):
 
     def test_what_is_no_serial_port_is_refused_before_the_first_trial(self):
         self.write("as-it-was", "as it was")
-        for path, status, says in (("/dev/ttyNONE", 3, "No such file or directory"), ("/dev/null", 2, "it is no serial port"),
-                                   (f"{self.dir}/as-it-was", 2, "it is no serial port")):
+        for path, status, says in (("/dev/ttyNONE", 3, "No such file or directory"), ("/dev/null", 2, "it is not a serial port"),
+                                   (f"{self.dir}/as-it-was", 2, "it is not a serial port")):
             self.write("desk.toml", DESK + f'[sync]\ncode = {{ serial = "{path}" }}\n')
             self.refused(status, *self.args(), stdin="", says=(f"desk.toml:5:8: serial: {path}: {says}",))
         self.assertEqual((self.dir / "as-it-was").read_text(), "as it was")

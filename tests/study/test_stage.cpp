@@ -633,7 +633,7 @@ TEST_CASE("nothing but a terminal is opened as a serial port")
          {std::string("/dev/null"), std::string("/dev/zero"), fifo, file, std::string("/dev")})
         CHECK(refusal(path) ==
               "a.toml:3: serial: " + path +
-                  ": it is no serial port (the ports that are there: ls /dev/serial/by-id /dev/ttyS*)");
+                  ": it is not a serial port (list the ports by ls /dev/serial/by-id /dev/ttyS*)");
     CHECK(files.bytes("file") == "as it was");
     CHECK(refusal("/dev/ttyNONE") == "a.toml:3: serial: /dev/ttyNONE: No such file or directory (the ports "
                                      "that are there: ls /dev/serial/by-id /dev/ttyS*)");
