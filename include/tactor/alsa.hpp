@@ -25,8 +25,8 @@ inline constexpr unsigned max_pcm_channels = 1024;
 struct alsa_options {
     std::string pcm = "null"; ///< any ALSA name
     unsigned channels = 0;    ///< channels of the stream, up to max_pcm_channels
-    /// Opens the PCM with the fewest channels that it can do and that hold `channels`; the others are silent.
-    /// Off: opens it with `channels`, or fails.
+    /// Wider stream. On: opens the PCM with its smallest channel count that is at least `channels`; the extra
+    /// channels are silent. Off: opens it with exactly `channels`, or fails.
     bool wider = false;
     unsigned rate = 48000; ///< exact, Hz; the library never resamples
     /// Format; none: the first of s32, float, s24_3, s24_4, s16 that the PCM can do.
@@ -65,7 +65,7 @@ struct count_range {
     unsigned most = 0;
 };
 
-/// Abilities of a PCM. Each holds alone: some devices cannot do every combination.
+/// Abilities of a PCM, each by itself: some devices cannot do every combination.
 struct pcm_abilities {
     /// Channel counts, ascending, as ranges without gaps. A range that ends at 1024 may continue beyond.
     std::vector<count_range> channels = {};
@@ -86,7 +86,7 @@ struct process_info {
 /// A PCM for playback, by the name that alsa_options::pcm takes.
 struct pcm_info {
     std::string name = {};        ///< a card's own device is hw:CARD=ID,DEV=N, whatever its number
-    std::string description = {}; ///< of the card and device, or ALSA's own; one line; may be empty
+    std::string description = {}; ///< one line, from the card and device or from ALSA; may be empty
     bool hardware = false;        ///< a card's own device, without conversion
     bool wanted = false;          ///< the PCM that the caller of list_pcms() wants
     bool opened = false;
@@ -97,7 +97,7 @@ struct pcm_info {
     bool tried = true;                      ///< false: see error
     std::vector<process_info> holders = {}; ///< processes that have a card's own device open
     std::optional<pcm_abilities> can = {};  ///< none if it was not opened
-    std::string misfit = {}; ///< reason why it cannot play what is wanted; empty: it can, or not known
+    std::string misfit = {}; ///< reason why it cannot play the wanted stream; empty: it can, or unknown
 };
 
 /// Lists the PCMs for playback: each device of each card, then those that ALSA's configuration names. Opens
@@ -107,9 +107,9 @@ struct pcm_info {
 /// With `wanted` the list also says which PCMs can do exactly its channels, rate and format, as open_alsa()
 /// would request. The wanted PCM is in the list even if ALSA does not list it. Blocks for some milliseconds.
 /// Any thread, but one at a time.
-/// \throws error: bad_input for numbers in `wanted` that no PCM can have; runtime, as all functions below,
-///         when the process has no descriptors left. For PCMs that cannot be opened, the list holds the
-///         reason, also if ALSA cannot read its configuration.
+/// \throws error: bad_input for numbers in `wanted` that no PCM can have; runtime, here and in all functions
+///         below, when the process has no descriptors left. For PCMs that cannot be opened, the list holds
+///         the reason, also if ALSA cannot read its configuration.
 [[nodiscard]] TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
 
 /// Plugins between a PCM and its device, from ALSA's configuration.

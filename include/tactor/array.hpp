@@ -60,9 +60,9 @@ struct array {
     source_place where = {};
     std::string site = {}; ///< place on the body, such as "left palm"; empty: not known
     std::string up = {};   ///< direction of its upper edge on the body, such as "fingers"; empty: not known
-    std::optional<point> place = {}; ///< of its middle, from the site's landmark, mm; for pictures, as ...
-    std::optional<double> turn_deg = {}; ///< ... the turn of the body part under it, clockwise ...
-    std::optional<double> body_mm = {};  ///< ... and the length of the body part, such as the hand's
+    std::optional<point> place = {};     ///< pictures only: its middle, from the site's landmark, mm
+    std::optional<double> turn_deg = {}; ///< pictures only: clockwise turn of the body part under it
+    std::optional<double> body_mm = {};  ///< pictures only: length of the body part, such as the hand
 
     /// Returns the number of channels that the array needs: the highest channel + 1.
     TACTOR_API unsigned channels() const noexcept;

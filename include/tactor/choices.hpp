@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Closed sets from which a plan, its sound and its observer are chosen, and the choices that one stroke
-/// makes for itself: how it is planned and when it starts.
+/// Options with a closed set of values, for plans, sound and observers, and the options that a stroke may set
+/// for itself: how it is planned and when it starts.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ TACTOR_KIND(phantom_kind);
 
 /// The three tactors that phantom_kind::inverse_distance uses.
 enum class faces_kind {
-    delaunay, ///< three of the Delaunay face at the point, whose triangle holds it
+    delaunay, ///< three corners of the Delaunay face at the point; their triangle holds it
     nearest,  ///< the three nearest of the whole array, as in Park et al. 2016; their triangle may miss the
               ///< point
 };
@@ -62,10 +62,10 @@ TACTOR_KIND(scale_kind);
 enum class phase_kind { stroke, burst };
 TACTOR_KIND(phase_kind);
 
-/// Treatment of a score whose strokes, or bursts, together exceed the level asked for on a tactor.
+/// Treatment of a score whose strokes or bursts together exceed the requested level on a tactor.
 enum class together_kind {
-    weaken, ///< the whole score is weakened by the one factor that brings its loudest tactor to that level
-    sum,    ///< they add up, to the tactor's max_dbfs and full scale
+    weaken, ///< weakens the whole score by one factor, so that its loudest tactor just reaches that level
+    sum,    ///< adds them up, limited by the tactor's max_dbfs and full scale
 };
 TACTOR_KIND(together_kind);
 
@@ -83,7 +83,7 @@ struct stroke_choices {
     std::optional<phantom_kind> phantom = {};
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
-    double level_db = 0.0; ///< of its amplitudes, dB, 0 or less, after plan_options::scale
+    double level_db = 0.0; ///< added to its amplitudes after plan_options::scale, dB, 0 or less
     std::optional<faces_kind> faces = {};
 
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;

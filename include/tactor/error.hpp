@@ -62,11 +62,11 @@ public:
     [[nodiscard]] std::string_view why() const noexcept;     ///< WHY
     [[nodiscard]] std::string_view hint() const noexcept; ///< HINT, options as marks, "{soa_s}"; may be empty
     /// Returns the option or value at fault, under its name in this library or, with a place(), in the file
-    /// ("soa_s"). Empty if the error is about none, or about several that do not go together.
+    /// ("soa_s"). Empty if the error concerns no value, or several that do not belong together.
     [[nodiscard]] std::string_view field() const noexcept;
     /// Returns the place in a file or text, without file and line if the error is about none.
     [[nodiscard]] const source_place& place() const noexcept;
-    /// Returns errno of the call that failed, or 0 if none did.
+    /// Returns the errno of the failed call, or 0.
     [[nodiscard]] int os_code() const noexcept;
 
     /// Returns a copy with this field, place or errno.

@@ -18,7 +18,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Changes of an input that count.
+/// Direction of the edges that an input reports.
 enum class edge_kind { rising, falling, both };
 TACTOR_KIND(edge_kind);
 

@@ -30,8 +30,8 @@ struct percept_sample {
     double intensity = 0.0; ///< square root of the summed energy, linear
     double target_intensity = 1.0;
     bool shared = false; ///< a tactor serves two bursts
-    /// Speed of the felt position, smoothed over percept_window_s. None if this window would reach out of the
-    /// movement, or back to a time before anything was felt.
+    /// Speed of the felt position, smoothed over percept_window_s. None if this window extends beyond the
+    /// movement, or to before the first felt position.
     std::optional<double> speed_mm_s = {};
 };
 
@@ -66,11 +66,11 @@ struct person {
 
 /// Predicts the percept at 0, 1, 2 ... ms, as long as the target moves. The last sample is at the end of the
 /// stroke if that is a multiple of 1 ms (within 1 ns), else just before it. `p` must be a plan of `s` on `a`.
-/// `who` is another person than the one for whom it was made.
+/// `who`: the person who feels it, if not the one for whom it was made.
 ///
-/// A burst sounds from its onset until before its end (within 1 ns). The exception is a burst that ends with
-/// the movement: it still counts at that time, unless another begins there. plan::overlap joins bursts that
-/// overlap on one tactor.
+/// A burst sounds from its onset to its end, its end excluded (within 1 ns). The exception is a burst that
+/// ends with the movement: it still counts at that time, unless another begins there. plan::overlap joins
+/// bursts that overlap on one tactor.
 ///
 /// Speed: in silence, the last felt position is held. These positions are averaged over percept_window_s, and
 /// speed is the central difference of the average.
@@ -197,8 +197,8 @@ struct compensated_plan {
 
 /// Plans as make_plan() does, then moves the bursts for the observer. Assumes that each burst alone is felt
 /// at its own point, which holds for phantom_kind::barycentric. With other phantoms, the distance from that
-/// point to the centre of energy adds to the error. A warning of the plan says that bursts are moved, and
-/// which error is left.
+/// point to the centre of energy adds to the error. The plan warns that its bursts are moved, and names the
+/// remaining error.
 /// \throws error (bad_input) as make_plan() and compensate() do, and for `continuous`.
 [[nodiscard]] TACTOR_API compensated_plan make_compensated_plan(const array& a, const layout& l,
                                                                 const stroke& s, const plan_options& o,

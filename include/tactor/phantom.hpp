@@ -27,8 +27,8 @@ struct drive {
     friend bool operator==(const drive&, const drive&) = default;
 };
 
-/// Distance outside the array, mm, at which a stroke still counts as on its edge. Drawing programs and
-/// converted units leave less.
+/// Distance outside the array, mm, at which a stroke still counts as on its edge. Rounding by drawing
+/// programs and unit conversions is smaller.
 inline constexpr double edge_tolerance_mm = 0.01 - same_place_mm; // 0.01 itself is outside, rounded or not
 
 /// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one face.
@@ -98,7 +98,8 @@ struct fitting {
     point to = {};
     double scale = 1.0;
     double margin_mm = 0.0;
-    /// Direction, of length 1, of an array in one line. Only the picture's extent along this line remains.
+    /// Unit vector along an array whose tactors are in one line. The picture keeps only its extent along this
+    /// line.
     std::optional<point> line = {};
 
     /// Returns the new place of a point of the picture.
@@ -125,9 +126,9 @@ struct fitted_strokes {
 /// (finite, >= 0) from its edge. Width and height keep their ratio. `l` is the layout of the array:
 /// fit_strokes(strokes, layout(a)).
 ///
-/// If all tactors lie in one line, to a tenth of their pitch, that line is the array: the picture is fitted
-/// by its extent along the line, and its extent across is dropped. A picture without extent (a timed stroke
-/// that rests) moves to the middle.
+/// If all tactors lie in one line, within a tenth of their pitch, that line is the array: the picture is
+/// fitted by its extent along the line, and its extent across is dropped. A picture without extent (a timed
+/// stroke that rests) moves to the middle.
 ///
 /// Strokes with a speed (stroke::speed_mm_s) keep it. The others keep their time, whatever their new length.
 /// Starts, intensities and carriers stay. A pure function; any thread. O(n log n) in the points, and O(k h)

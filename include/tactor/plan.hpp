@@ -40,8 +40,8 @@ struct intensity_scale {
     /// finger it is 0.95 at 60 Hz and 0.6 at 250 Hz (Stevens, Perception & Psychophysics 3, 1968).
     double exponent = 0.6;
     double sl_db = 0.0; ///< sl: sensation level of intensity 1, dB, above 0
-    /// Level that is added to the amplitudes, dB, 0 or less; then 1 does not stay 1. A stroke's own level
-    /// (stroke_choices) adds to it.
+    /// Level that is added to the amplitudes, dB, 0 or less. Below 0, intensity 1 has an amplitude below 1. A
+    /// stroke's own level (stroke_choices) adds to it.
     double level_db = 0.0;
 
     /// Returns the amplitude of an intensity.
@@ -62,8 +62,8 @@ struct plan_options {
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile = {};
     double soa_s = 0.07; ///< intercept < soa <= max_soa (with burst_s up to 10); the longest SOA for `fit`
-    /// Duration of each burst of park2016 instead of the law's, 0.0001 s to soa_s. The plan warns if both
-    /// together do not follow the law. The other algorithms warn that they do not use it.
+    /// Duration of each burst of park2016 instead of the law's, 0.0001 s to soa_s. The plan warns if the pair
+    /// does not follow the law. The other algorithms warn that they do not use it.
     std::optional<double> burst_s = {};
     timing_kind timing = timing_kind::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use
@@ -202,7 +202,7 @@ struct plan {
 /// \throws error (bad_input) unless intercept < soa <= max_soa; the message names both bounds.
 [[nodiscard]] TACTOR_API double burst_duration_s(const timing_profile& p, double soa_s);
 
-/// Returns the duration of park2016's bursts: burst_s if it is given, else the law's.
+/// Returns the duration of park2016's bursts: burst_s if it is set, else the law's.
 /// \throws error (bad_input) as above, and for a burst that is longer than the SOA or shorter than 0.1 ms.
 [[nodiscard]] TACTOR_API double burst_duration_s(const plan_options& o);
 

@@ -63,7 +63,7 @@ enum class reason_kind {
     muted,     ///< the amplifier was off
     amplifier, ///< the amplifier's line cannot be switched
     left_on,   ///< the amplifier's line cannot be switched off: it may be on
-    plan,      ///< live strokes: a custom phantom model failed, or gave more than the intensity
+    plan,      ///< live strokes: a custom phantom model failed, or returned more than the intensity
     handler,   ///< one of the program's handlers threw
 };
 TACTOR_KIND(reason_kind);
@@ -95,7 +95,7 @@ struct stroke_report {
     std::optional<live_delay> delay = {}; ///< live strokes only, after a point has sounded
     std::uint64_t held_points = 0;        ///< live strokes only: points above intensity 1, which sounded as 1
     std::uint64_t outside_points = 0;     ///< live strokes only: points outside the array, moved to its edge
-    std::string doubt = {}; ///< live strokes only: the unit that its points are likely in, if not millimetres
+    std::string doubt = {}; ///< live strokes only: likely unit of its points, if not millimetres
 };
 
 /// End of a stream.
@@ -286,7 +286,7 @@ struct player_options {
     /// The drive time of each channel counts together with that of all players on the same device
     /// (stream_setup::device), earlier ones and those that play now, also of other processes of this user. So
     /// neither a new player nor a second process gives a tactor its used drive time back. See
-    /// player::drive_time_doubt(). False: it begins with 0, and is not kept.
+    /// player::drive_time_doubt(). False: it begins at 0 and is not stored.
     bool keep_drive_time = true;
     /// Receives messages about the stream's start and end, xruns and recovery, mutes of the amplifier, and
     /// limits that acted.
@@ -357,11 +357,11 @@ struct player_lines {
 /// channels of the device, or clipped on the way (stream_wiring::most_gain).
 [[nodiscard]] TACTOR_API std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w);
 
-/// Returns the reason why other processes do not know of the drive time that players here add to a device
-/// (stream_setup::device); empty: they do. It is kept in a file of the folder `tactor` in the runtime folder
-/// (RUNTIME_DIRECTORY, else XDG_RUNTIME_DIR), which must be this user's alone. Finds out by writing what the
-/// file says already. Without a file, players of this process still know of each other. Blocks for 0.2 s at
-/// most. Any thread that reads the environment.
+/// Returns the reason why this process cannot share the drive time of a device (stream_setup::device) with
+/// other processes; empty: it can. They share it in a file of the folder `tactor` in the runtime folder
+/// (RUNTIME_DIRECTORY, else XDG_RUNTIME_DIR), which must belong to this user alone. Tests this by writing the
+/// file's present contents again. Without a file, only players of this process share drive time. Blocks for
+/// 0.2 s at most. Any thread that reads the environment.
 [[nodiscard]] TACTOR_API std::string drive_time_fault(std::string_view device);
 
 /// Owns the sink, the audio thread and the control thread. Any thread but the audio thread may call its
@@ -388,7 +388,8 @@ public:
 
     [[nodiscard]] const stream_setup& setup() const noexcept;
 
-    static constexpr double least_level_db = -60.0; ///< of submit() and set_level()
+    static constexpr double least_level_db =
+        -60.0; ///< lower bound of the levels of submit() and set_level(), dB
 
     /// Plays a score as soon as possible, from a frame or a time on, or when triggered. Several scores may
     /// sound at once. Does not block: drives that do not fit into the ring wait on the control side.
@@ -402,14 +403,16 @@ public:
     ///         marker on a tactor's channel; runtime if the stream has ended.
     stroke_id submit(const score& s, start_at start = start_at::now(), double level_db = 0.0);
 
-    /// Leads a stroke, planned or live, to a level below what it asks for, within 20 ms from the next period
-    /// on: -60 to 0 dB, 0 at its beginning if submit() was given no other. It never gets stronger than it
-    /// asks for. Returns false if the stroke has ended or is not known. Does not block.
+    /// Changes the level of a stroke, planned or live, within 20 ms from the next period on. `db` is relative
+    /// to the stroke's own level, -60 to 0 dB, so it never gets stronger than it was designed. It begins at 0
+    /// dB unless submit() sets another level. Returns false if the stroke has ended or is not known. Does not
+    /// block.
     /// \throws error (bad_input) for another level.
     bool set_level(stroke_id id, double db);
 
     /// Returns the frame of the stream with which a planned stroke began, while it sounds; nothing before and
-    /// after that. A stroke for start_at::frame() so many frames later joins it to the frame.
+    /// after that. To continue it exact to the frame, start another stroke with start_at::frame() at this
+    /// frame plus its length.
     [[nodiscard]] std::optional<std::uint64_t> first_frame(stroke_id id) const;
 
     /// Starts all armed strokes: their first samples are at the DAC at a time, or as soon as possible if that
@@ -471,10 +474,10 @@ public:
     /// Returns the drive time that earlier players and other programs had left on the device when the stream
     /// began, s, by channel; see drive_limits::max_drive_s. Empty without player_options::keep_drive_time.
     [[nodiscard]] std::vector<double> drive_levels_s() const;
-    /// Returns why the drive time of this player does not count as it should; empty: it does. Without a file
-    /// that can be written, the next run does not know of it. A file that cannot be read as a whole, or that
-    /// another program keeps locked for 0.2 s, counts as if each tactor had been driven for as long as it
-    /// may. The first reason stays. player_options::log gets it, too.
+    /// Returns the reason why the drive time of this player does not count fully; empty: it does. Without a
+    /// file that can be written, the next run does not know of it. A file that cannot be read as a whole, or
+    /// that another program keeps locked for 0.2 s, counts as if each tactor had been driven for as long as
+    /// it may. The first reason stays. player_options::log gets it, too.
     [[nodiscard]] std::string drive_time_doubt() const;
     [[nodiscard]] player_stats stats() const;
 

@@ -25,7 +25,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Limits on what the array gets at run time, besides each channel's own max_dbfs. Both limits act on the
+/// Limits on the drive of the array at run time, besides each channel's own max_dbfs. Both limits act on the
 /// envelopes of the channels, after all strokes are summed. If a score stays within them, not a single bit of
 /// its samples changes. The defaults are safe guesses: know your actuators.
 struct drive_limits {
@@ -70,10 +70,11 @@ struct render_options {
 
 /// Weakening of a score by together_kind::weaken, and the place where it would be loudest.
 struct weakening {
-    double weakened_db = 0.0; ///< added to the level of all of it, 0 or less; 0: all else says nothing
+    double weakened_db =
+        0.0; ///< added to the level of all of it, 0 or less; at 0 the other members have no meaning
     unsigned tactor = 0;
     double at_s = 0.0;                   ///< from the start of the score
-    std::vector<std::size_t> plans = {}; ///< those that sound there, by number, ascending
+    std::vector<std::size_t> plans = {}; ///< numbers of the plans that sound there, ascending
 };
 
 /// Returns the ramp of a burst (or of a continuous stroke, whose onset is 0) in s: o.ramp_s, or the default.
@@ -81,8 +82,8 @@ struct weakening {
 [[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, double carrier_hz,
                                              const render_options& o) noexcept;
 
-/// Returns the same for a burst of a plan. Counts with its waveform and carrier, which may cross zero at
-/// other times than a sine.
+/// Returns the same for a burst of a plan. Uses its waveform and carrier, which may cross zero at other times
+/// than a sine.
 [[nodiscard]] TACTOR_API double burst_ramp_s(double onset_s, double duration_s, const plan& p,
                                              const render_options& o) noexcept;
 
@@ -103,7 +104,7 @@ struct placed_plan {
 /// copy, so a moved-from score keeps its value.
 class TACTOR_API score {
 public:
-    /// Makes a score of several plans. The level asked for is the most that any tactor reaches, before its
+    /// Makes a score of several plans. The requested level is the most that any tactor reaches, before its
     /// gain_db and the boost for its rise_s: by default a score that would exceed it is weakened as a whole.
     /// \throws error (bad_input) for a carrier at or above half the rate, for a level above full scale or a
     ///         tactor's max_dbfs (with its line in the array file), for a sensation level on a tactor
@@ -122,7 +123,7 @@ public:
     [[nodiscard]] unsigned rate() const noexcept; ///< Hz
     /// Returns the start of each plan in frames.
     [[nodiscard]] const std::vector<std::uint64_t>& starts() const noexcept;
-    /// Returns how much weaker than asked for the score is, so that no tactor exceeds the level.
+    /// Returns the weakening that keeps every tactor within the requested level.
     [[nodiscard]] const weakening& weakened() const noexcept;
     /// Returns the plans without their bursts: the score stores those in another form.
     [[nodiscard]] const std::vector<placed_plan>& plans() const noexcept;
@@ -158,8 +159,8 @@ public:
     /// \throws error (bad_input) as make_plan() does, and if the plan cannot be rendered.
     void add(const layout& l, const stroke& s, const plan_options& o);
 
-    /// Returns the score of all that was added. Its samples equal those of a score made of the same plans.
-    /// The builder becomes empty, even if this throws.
+    /// Returns the score of all added plans. Its samples equal those of a score made of the same plans. The
+    /// builder becomes empty, even if this throws.
     /// \throws error (bad_input) for levels that a tactor may not have, as the constructor of score does.
     [[nodiscard]] score take();
 
@@ -179,8 +180,8 @@ public:
     renderer& operator=(renderer&&) noexcept;
 
     /// Fills `out` with the next interleaved frames, as many as fit, and with silence after the end.
-    /// Allocates only for samples of continuous strokes. \throws error (bad_input) unless `out` is a whole
-    /// number of frames (channels * sample_bytes(format));
+    /// Allocates only for samples of continuous strokes.
+    /// \throws error (bad_input) unless `out` is a whole number of frames (channels * sample_bytes(format));
     ///         std::bad_alloc if memory runs out. The frames before position() are then complete, and the
     ///         next call continues at position().
     void process(std::span<std::byte> out);

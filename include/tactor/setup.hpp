@@ -17,7 +17,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// [output]: the PCM. The program chooses values that are not given.
+/// [output]: the PCM. The program chooses missing values.
 struct output_settings {
     std::optional<std::string> pcm = {}; ///< ALSA name; check names from others with require_device_name()
     source_place pcm_at = {};            ///< place of the name in its file
@@ -30,9 +30,9 @@ struct output_settings {
 
 /// [sync.codes]: numbers of the events of one kind.
 struct code_numbering {
-    std::optional<unsigned> first = {}; ///< none: the next after those of the kind before
-    /// Parts that give events numbers of their own: run, motion, method, value, interval, answer. None: those
-    /// that are usual for the kind.
+    std::optional<unsigned> first = {}; ///< none: follows the last number of the kind before
+    /// Parts of an event that select its number: run, motion, method, value, interval, answer. None: the
+    /// parts that are usual for the kind.
     std::optional<std::vector<std::string>> by = {};
 };
 

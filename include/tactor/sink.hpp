@@ -21,8 +21,8 @@ inline namespace v0 {
 
 /// Map from the channels of a stream to the channels of the device.
 struct stream_wiring {
-    /// By channel of the stream: the device's channels that it reaches, ascending (those of a second device
-    /// count from 1024). A channel that reaches none is lost. Empty: each channel reaches the one of the same
+    /// Device channels that each channel of the stream reaches, ascending (those of a second device count
+    /// from 1024). A channel that reaches none is lost. Empty: each channel reaches the one of the same
     /// number.
     std::vector<std::vector<unsigned>> outputs = {};
     /// Factor on the samples of each of `outputs`, in the same order; below 0 the polarity is reversed. A
@@ -43,15 +43,16 @@ struct stream_setup {
     std::string name;        ///< as the user named it
     std::string device = {}; ///< name under which the drive time of its channels is kept; empty: it is not
     unsigned channels = 0;
-    unsigned device_channels = 0; ///< of the PCM; those beyond `channels` are silent; 0: as many
-    unsigned rate = 0;            ///< Hz
+    unsigned device_channels =
+        0;             ///< channels of the PCM; those beyond `channels` are silent; 0: equal to `channels`
+    unsigned rate = 0; ///< Hz
     format_kind format = format_kind::s32;
     unsigned period_frames = 0;
     unsigned buffer_frames = 0;
     bool batch = false;        ///< the position moves by whole periods
     bool planar = false;       ///< the device takes a block for each channel; write() still takes frames
     bool has_clock = true;     ///< false for null and file devices, which the sink paces; known after start()
-    stream_wiring wiring = {}; ///< map behind this stream
+    stream_wiring wiring = {}; ///< map from this stream to the device
 
     /// Returns the number of bytes of one frame.
     [[nodiscard]] std::size_t frame_bytes() const noexcept { return channels * sample_bytes(format); }
@@ -116,7 +117,7 @@ public:
 
     /// Returns the number of frames that can be written now.
     [[nodiscard]] virtual io_result available() noexcept = 0;
-    /// Writes whole interleaved frames. May take fewer than given, even none.
+    /// Writes whole interleaved frames. May take fewer than offered, even none.
     [[nodiscard]] virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
     [[nodiscard]] virtual stream_position position() noexcept = 0;
     /// Stops at once and discards the queued frames.
@@ -130,7 +131,8 @@ class TACTOR_API paced_sink : public sink {
 public:
     /// Uses name, device, channels (1 to 1024), rate (8000 to 768000 Hz) and format of `s`. period_frames (50
     /// us at least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three
-    /// periods. \throws error: bad_input for numbers out of range, runtime if no timer is available.
+    /// periods.
+    /// \throws error: bad_input for numbers out of range, runtime if no timer is available.
     explicit paced_sink(stream_setup s);
     ~paced_sink() override;
 

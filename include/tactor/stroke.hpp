@@ -144,7 +144,7 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Speed of a stroke that gives neither a duration nor a speed.
+/// Speed of a stroke that has neither a duration nor a speed.
 inline constexpr double default_speed_mm_s = 60.0;
 
 /// Remark that every user of the stroke must see.
@@ -190,7 +190,7 @@ struct stroke_places {
     source_place wave = {};
 };
 
-/// A stroke as the user gave it.
+/// A stroke as the user described it.
 struct stroke {
     std::string name = {};
     trajectory motion = {};
@@ -199,8 +199,7 @@ struct stroke {
     start_anchor anchor = {};
     /// Speed from which the duration follows; none if the input gives a time. fit_strokes() keeps it.
     std::optional<double> speed_mm_s = {};
-    /// The input gives neither a time nor a speed, so default_speed_mm_s holds unless a set-up has another
-    /// speed.
+    /// Input without a time and a speed: default_speed_mm_s holds unless a set-up has another speed.
     bool usual_pace = false;
     std::optional<stroke_fit> fit = {};
     stroke_sound sound = {};
@@ -232,7 +231,8 @@ struct stroke {
 /// tactor.toml(5). May block on the file system.
 ///
 /// `intensity_max`, here and below: value of an intensity in CSV and of a timed point in TOML that means 1,
-/// such as 255. A greater value is refused. \throws error (bad_input) with file, line and column.
+/// such as 255. A greater value is refused.
+/// \throws error (bad_input) with file, line and column.
 [[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file,
                                                           double intensity_max = 1.0);
 

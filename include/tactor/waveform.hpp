@@ -81,8 +81,8 @@ struct modulation {
 [[nodiscard]] TACTOR_API waveform parse_waveform(std::string_view text,
                                                  const std::filesystem::path& folder = {});
 
-/// Returns true if parse_waveform() would open a file for this text. Use it to refuse the text from somebody
-/// who may not name files.
+/// Returns true if parse_waveform() would open a file for this text. Use it to refuse such texts from clients
+/// that must not open files.
 [[nodiscard]] TACTOR_API bool waveform_names_file(std::string_view text) noexcept;
 
 /// Returns the text that parse_waveform() reads: with the frequencies of noise, or the file of a recording.
@@ -93,7 +93,8 @@ struct modulation {
 [[nodiscard]] TACTOR_API modulation parse_modulation(std::string_view text);
 
 /// Reads a WAV file (RIFF, RF64 or BW64) of one channel: integers of 8 to 32 bits, or floats of 32 or 64
-/// bits. \throws error (bad_input) that names the file.
+/// bits.
+/// \throws error (bad_input) that names the file.
 [[nodiscard]] TACTOR_API recording load_recording(const std::filesystem::path& file);
 
 /// Checks ranges. The constructor of a score checks values that depend on the sample rate.
