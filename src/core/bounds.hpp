@@ -12,8 +12,8 @@ inline constexpr unsigned max_channels = 1024;
 /// Greatest coordinate or length, mm. More than a kilometre is a mistake in the unit.
 inline constexpr double max_mm = 1e6;
 
-/// Returns the frames of 50 us. Shorter periods only keep a processor busy. No card offers them, but null
-/// does.
+/// Returns the number of frames in 50 us, the shortest period. Shorter ones only keep a processor busy: no
+/// card offers them, but ALSA's null device does.
 constexpr unsigned least_period_frames(unsigned rate)
 {
     constexpr unsigned periods_a_second = 20'000;
@@ -24,7 +24,7 @@ inline constexpr double min_db = -200.0; ///< below the noise of any converter
 inline constexpr double max_gain_db = 60.0;
 inline constexpr double max_displacement_um = 10000.0;
 
-/// Times nearer than this are one time, s.
+/// Two times nearer than this count as the same time, s.
 inline constexpr double same_time_s = 1e-9;
 
 inline constexpr double longest_stroke_s = 86400.0;
@@ -32,7 +32,7 @@ inline constexpr double longest_stroke_s = 86400.0;
 /// Least speed of a profile. It bounds the time at its slowest place.
 inline constexpr double least_speed_mm_s = 1e-6;
 
-/// Greatest intensity: the level asked for, which is a ceiling.
+/// Greatest intensity: the requested level, which nothing exceeds.
 inline constexpr double max_intensity = 1.0;
 
 /// Least and greatest number.

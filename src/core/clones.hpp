@@ -5,7 +5,7 @@
 /// samples are equal.
 #pragma once
 
-#include <cstddef> // defines __GLIBC__ where it is glibc
+#include <cstddef> // defines __GLIBC__ if the C library is glibc
 
 // Sanitizers are not initialised yet when the loader chooses.
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&    \

@@ -56,7 +56,7 @@ std::string source_place::text() const
 
 struct error::data {
     std::string text = {};    ///< without marks
-    std::string subject = {}; ///< the parts, with them
+    std::string subject = {}; ///< parts of the text, with marks
     std::string reason = {};
     std::string advice = {};
     std::string field = {};
@@ -70,7 +70,7 @@ struct error::data {
         d.subject = what;
         d.reason = why;
         d.advice = hint;
-        // A file's name may have braces in it.
+        // A file's name may contain braces.
         const auto m = detail::find_mark(what);
         const bool whole = m && m->text.size() == what.size();
         d.text = fmt::format("{}: {}", whole ? detail::plain(*m) : std::string(what), why);

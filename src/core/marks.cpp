@@ -48,7 +48,7 @@ std::string_view command_name(const mark& m) noexcept
 
 std::string plain(const mark& m)
 {
-    if (m.setting == "fit=true") // no option of a plan, but a function
+    if (m.setting == "fit=true") // a function, not an option of a plan
         return "fit_strokes()";
     if (!command_name(m).empty())
         return fmt::format("tactor {}", command_name(m));

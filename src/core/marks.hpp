@@ -2,8 +2,8 @@
 /// \file
 /// Marks in hints: names that each front end writes as its users know them.
 ///
-/// {soa_s} is an option by its field or name, {timing=fit} what sets it, {command:devices} a command of the
-/// tool. {fit=true| scales it, } has a clause behind it, which a front end without that option leaves out.
+/// {soa_s} is an option by its field or name, {timing=fit} its setting, {command:devices} a command of the
+/// tool. {fit=true| scales it, } also carries a clause; a front end without that option leaves both out.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@
 namespace tactor::detail {
 
 struct mark {
-    std::string_view text = {};    ///< all of it, braces included
+    std::string_view text = {};    ///< whole mark, braces included
     std::string_view setting = {}; ///< name and value: "soa_s", "timing=fit", "command:devices"
     std::string_view name = {};    ///< "timing"
     std::string_view value = {};   ///< "fit"; empty: none
-    std::string_view clause = {};  ///< text behind it
+    std::string_view clause = {};  ///< text after the '|'
 };
 
-/// Finds the first mark. Other braces are none.
+/// Finds the first mark. Other braces are not marks.
 [[nodiscard]] std::optional<mark> find_mark(std::string_view text) noexcept;
 
 /// Returns the command that a mark names; empty: it names none.
@@ -42,7 +42,7 @@ std::string write_marks(std::string_view text, Write write)
 
 /// Returns a mark as the library's own users know it: "soa_s", "timing = fit".
 [[nodiscard]] std::string plain(const mark& m);
-/// Returns a text with all marks so, and with their clauses.
+/// Returns a text with each mark replaced by plain(mark) and its clause.
 [[nodiscard]] std::string plain(std::string_view marked);
 
 } // namespace tactor::detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Descriptions of values by their members. A template members(io, value) names each member once, with what
-/// it is; the io decides what becomes of them: text, a value that is read, a schema.
+/// Descriptions of values by their members. A template members(io, value) names each member once, with its
+/// meaning; the io makes text of them, reads them, or makes a schema.
 #pragma once
 
 #include <concepts>
@@ -36,7 +36,7 @@ inline std::optional<std::string> omit_empty(const std::string& text)
     return text.empty() ? std::nullopt : std::optional(text);
 }
 
-/// Returns a value, or nothing for the usual one.
+/// Returns a value, or nothing if it is the usual one.
 template <class T>
 std::optional<T> omit_usual(const T& v, const T& usual)
 {
@@ -51,7 +51,7 @@ void unless_usual(Io& io, const char* name, T& v, const std::remove_const_t<T>& 
         name, omit_usual(v, usual), [&v](const auto& read) { v = read.value_or(v); }, what);
 }
 
-/// A member that is always there, as null where it has no value. Without it, an optional is left out.
+/// A member that is always present, null if it has no value. Other optionals without a value are left out.
 template <class T>
 struct nullable {
     std::optional<T> value = {};

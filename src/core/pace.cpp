@@ -80,7 +80,7 @@ double exp_part(double x) noexcept
     return x == 0.0 ? 1.0 : std::expm1(x) / x;
 }
 
-/// Returns the speeds with one at either end of the path.
+/// Returns the speeds, completed by one at each end of the path.
 std::vector<profile_point> whole(std::vector<profile_point> speeds)
 {
     if (speeds.empty())

@@ -43,7 +43,7 @@ private:
     struct stretch {
         double part = 0.0;
         double width = 0.0;
-        double change = 0.0; ///< of the speed, relative to the first
+        double change = 0.0; ///< change of the speed, relative to its first
         double begin_s = 0.0;
         double unit_s = 0.0; ///< time to cross it at its first speed
     };

@@ -27,8 +27,8 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
     return parts;
 }
 
-/// Returns the number that a text is as a whole; nothing for any other text, and beyond what T holds. `base`
-/// is of whole numbers, else ten.
+/// Parses a text that is a number as a whole. Returns nothing for other texts and for numbers that T cannot
+/// hold. `base` applies to whole numbers; the default is ten.
 template <typename T, typename... Base>
 std::optional<T> number_in(std::string_view text, Base... base)
 {

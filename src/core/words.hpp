@@ -30,11 +30,12 @@ namespace tactor {
 /// Returns the recording's file, or "recording" if it has none.
 [[nodiscard]] std::string recording_name(const recording& r);
 
-/// Hint for a text that is no label: a short text by which somebody names a thing for others to read, such as
-/// a client or the place of an array.
+/// Hint for a text that is not a label. A label is a short name that a user gives to a thing, such as a
+/// client or the place of an array.
 inline constexpr const char* label_hint = "1 to 40 characters, no control characters";
 
-/// Returns the first bytes of a text, at most so many and no part of a character.
+/// Returns the longest beginning of a text that has at most `most_bytes` bytes and ends with a whole
+/// character.
 [[nodiscard]] std::string_view first_characters(std::string_view utf8, std::size_t most_bytes);
 
 /// Returns true for a text with control characters, or with characters that turn the direction of a line.

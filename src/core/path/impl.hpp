@@ -20,8 +20,8 @@ namespace tactor::detail {
 /// stays within a nanometre of its tangent for 0.01 mm.
 inline constexpr double shortest_run_mm = 0.1;
 
-/// Returns the meetings with a line of a movement that is given as nodes. Between two nodes the distance from
-/// the line is monotone. N has
+/// Returns the meetings of a movement with a line. Nodes describe the movement: between two of them the
+/// distance from the line is monotone. N has
 ///   size()       number of nodes
 ///   off(i)       signed distance of node i from the line, mm
 ///   when(i)      arc length or time of node i
@@ -75,7 +75,7 @@ struct path::impl {
         std::size_t segment;
         detail::shape form;
         detail::arc_length measure;
-        std::shared_ptr<const detail::curve_places> places = {}; ///< null: each is computed
+        std::shared_ptr<const detail::curve_places> places = {}; ///< null: each place is computed anew
     };
 
     std::vector<point> vertices;
@@ -118,8 +118,8 @@ std::optional<double> absurd_coordinate(const outline& o);
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
 path make_path(outline o, std::string_view what);
 
-/// Returns the path with curve_places for the curves on which a target that does about `step_mm` at a time
-/// stays for long. Its places differ by less than 1e-9 mm.
+/// Returns the path with curve_places for each curve that a target with steps of about `step_mm` takes long
+/// to cross. Its places differ from those of `p` by less than 1e-9 mm.
 path with_places(const path& p, double step_mm);
 
 /// Allowed subpaths of SVG path data (https://www.w3.org/TR/SVG2/paths.html): with `one`, a second is a

@@ -135,7 +135,8 @@ void write(out o, const detail::cubic& c, point to)
 
 constexpr double flat_mm = 1e-6; // less would be lost in the digits of coordinates of up to a kilometre
 
-// Writes an ellipse that is so flat that it moves to and fro on a line: writes the ends that it reaches.
+// Writes an ellipse that is so flat that it runs to and fro on a line: writes lines to the ends that it
+// reaches.
 void write_flat(out o, const detail::elliptic& e, double turn, point to)
 {
     const double end = e.from + e.sweep;
@@ -218,7 +219,7 @@ std::optional<double> absurd(const shape& c)
     return std::nullopt;
 }
 
-/// Least steps on a curve for which its polynomials pay: they cost as much as some hundred places.
+/// Least number of steps on a curve that pays for its polynomials, which cost as much as some hundred places.
 constexpr double least_steps = 256.0;
 /// Most pieces of a curve, and of a path (6 MB).
 constexpr std::size_t most_pieces_of_curve = 1024;

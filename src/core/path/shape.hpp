@@ -40,7 +40,7 @@ struct box {
     point low;
     point high;
 
-    /// Returns true if p is in it, or within a margin of it.
+    /// Returns true if p is in the box, or within a margin of it.
     bool holds(point p, double margin_mm) const noexcept
     {
         return p.x_mm >= low.x_mm - margin_mm && p.x_mm <= high.x_mm + margin_mm &&
@@ -64,9 +64,9 @@ inline double dot(point a, point b) noexcept
     return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
 }
 
-/// Returns std::hypot(x, y) on every machine, bit for bit as the C library has computed it since glibc 2.35
-/// without fused multiplications (Borges 2019, algorithm "fused" without the fusing). In line, because a call
-/// takes as long as the rest of a phantom.
+/// Returns hypot(x, y) with the same bits on every machine: those of glibc 2.35 and later without fused
+/// multiplications (Borges 2019, algorithm "fused" without the fusing). In line, because a call takes as long
+/// as the rest of a phantom.
 [[gnu::always_inline]] inline double portable_hypot(double x, double y) noexcept
 {
     const double u = std::abs(x);
@@ -172,7 +172,7 @@ private:
     std::vector<double> speed_; ///< speed at each entry; empty if the parameter is proportional to the length
 };
 
-/// Places on a curve by arc length without inverting it, for strokes that ask for one each millisecond:
+/// Places on a curve by arc length without inverting it, for strokes that need one each millisecond:
 /// polynomials in the arc length, off by less than 1e-9 mm, or by the last digits of a curve of kilometres.
 class curve_places {
 public:
@@ -186,7 +186,7 @@ public:
 private:
     static constexpr std::size_t nodes = 7;
 
-    /// In Newton's form: c[0] + (s - s[0]) (c[1] + (s - s[1]) (c[2] + ...)).
+    /// A polynomial in Newton's form: c[0] + (s - s[0]) (c[1] + (s - s[1]) (c[2] + ...)).
     struct piece {
         std::array<double, nodes> s;
         std::array<point, nodes> c;

@@ -158,7 +158,7 @@ private:
     {
         if (to == at_) {
             cubic_handle_ = quadratic_handle_ = to;
-            return; // SVG draws no arc here, where a line would have no length
+            return; // SVG draws no arc between equal points
         }
         if (const auto a = svg_arc(at_, v[0], v[1], v[2], v[3] != 0.0, v[4] != 0.0, to))
             open_.arc(*a, to);

@@ -40,15 +40,14 @@ trajectory scaled(const trajectory& t, double factor);
 /// Adds all corners of a movement, its ends included, and its curves.
 void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);
 
-/// Returns the movement mapped by `m` after `from` became the origin, which keeps the digits of a small
-/// picture that is far away. If `m` flattens everything to a line, `line` gives its direction, and curves
-/// become straight pieces between their turns. Time and intensity stay. `what` names the movement in
-/// messages.
+/// Moves `from` to the origin, then maps the movement by `m`. In this order a small, distant picture keeps
+/// its precision. If `m` flattens everything to a line, `line` gives its direction, and curves become
+/// straight pieces between their turns. Time and intensity stay. `what` names the movement in messages.
 /// \throws error (bad_input) for coordinates beyond the limit of a path.
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
                  std::string_view what);
 
-/// Returns points by part of the path, in the order from its other end.
+/// Reverses points that are placed by part of the path, as if the path began at its other end.
 template <class Point>
 std::vector<Point> from_the_end(std::vector<Point> points)
 {
@@ -68,7 +67,8 @@ struct trajectory::impl {
     double duration_s = 0.0;
     double gain = 1.0;
 
-    /// Convert a time of this trajectory to that of its points or pace, which take `own_s`, and back.
+    /// Convert a time of this trajectory to the time of its points or pace, whose duration is `own_s`, and
+    /// back.
     double to_own(double t_s, double own_s) const noexcept
     {
         return own_s == duration_s ? t_s : t_s / duration_s * own_s;
@@ -86,7 +86,7 @@ struct trajectory::impl {
                        : s_mm / length * duration_s;
     }
 
-    /// The points before and after a time, and the position between them (0 to 1).
+    /// Points before and after a time, and the position between them (0 to 1).
     struct bracket {
         const timed_point* before;
         const timed_point* after;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Points as a recorder gave them. The same rules hold in files, messages and arrays.
+/// Points as a recorder delivers them. The same rules hold in files, messages and arrays.
 #pragma once
 
 #include <cstddef>
@@ -40,11 +40,11 @@ public:
     /// \throws error (bad_input) for fewer than two.
     std::vector<timed_point> take();
 
-    /// Returns remarks on what was accepted. Call it after take().
+    /// Returns remarks on oddities that were accepted. Call it after take().
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
 private:
-    /// Points of one kind: how many, and the place of the first.
+    /// Number of points with one oddity, and the place of the first.
     struct oddity {
         std::size_t count = 0;
         std::string first = {};

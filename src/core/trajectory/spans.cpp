@@ -79,8 +79,8 @@ void add(std::vector<progress_point>& progress, progress_point p)
         progress.back().part = p.part;
 }
 
-/// Adds points of a pace between two of its bends, the first excluded: as many as the error allows lines
-/// between them.
+/// Adds points of a pace between two of its bends, the first excluded: so many that lines between them stay
+/// within the error.
 void add_smooth(std::vector<progress_point>& progress, const pace& p, double from_s, double to_s)
 {
     const auto when = [&](unsigned i) { return std::lerp(from_s, to_s, static_cast<double>(i) / finest); };
@@ -181,7 +181,7 @@ std::vector<progress_point> find_linear_progress(const trajectory& t, std::span<
     return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
 }
 
-// Half of what is promised: between the places that are looked at it may be a little more.
+// Half of the promised error: between the checked places it may be a little larger.
 constexpr double tolerance_mm = 0.005;
 constexpr double tolerance_intensity = 0.002;
 constexpr double shortest_s = 1e-4;

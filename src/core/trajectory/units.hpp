@@ -19,8 +19,8 @@ struct travel {
 };
 
 /// Returns a warning that names the unit that is likely, and the factor: all places within 1 mm of (0, 0),
-/// more than a minute below 1 mm/s, or above 5 m/s. Empty for other movements. Live points come in true time:
-/// they may be slow, and a file of them comes at once, so that the first second does not count.
+/// more than a minute below 1 mm/s, or above 5 m/s. Empty for other movements. Live points arrive in real
+/// time, so they may be slow. A program may send a whole file at once, so the first second does not count.
 std::string doubt_units(const travel& t);
 
 } // namespace tactor::detail
