@@ -11,23 +11,23 @@
 
 namespace tactor::rt {
 
-/// A variable of the environment; empty where it is not set.
+/// Returns a variable of the environment; empty if it is not set.
 inline std::string variable(const char* name)
 {
     const char* v = std::getenv(name);
     return v == nullptr ? "" : v;
 }
 
-/// Returns the first of RUNTIME_DIRECTORY, which systemd gives to services and may be a list; empty where
-/// there is none.
+/// Returns the first folder of RUNTIME_DIRECTORY, a list that systemd sets for services; empty if it is not
+/// set.
 inline std::string service_folder()
 {
     const std::string all = variable("RUNTIME_DIRECTORY");
     return all.substr(0, all.find(':'));
 }
 
-/// Returns the folder of what lives no longer than this machine's run: service_folder(), else
-/// XDG_RUNTIME_DIR; empty where nothing says which.
+/// Returns the folder for files that last until this machine stops: service_folder(), else XDG_RUNTIME_DIR;
+/// empty if neither is set.
 inline std::string runtime_folder()
 {
     const std::string folder = service_folder();

@@ -48,12 +48,12 @@ private:
     int fifo_error_ = -1;
 };
 
-/// Work of a thread since it last waited. Pure: it gets readings.
+/// Work of a thread since it last waited. Pure: the caller passes the readings.
 class busy_time {
 public:
-    /// Longest work that is allowed, ns, as far as it is seen: work before the first look and after the last
-    /// is not. With pieces of work of up to 95 ms and a look after each, less than 200 ms pass until the
-    /// limit acts. That is RLIMIT_RTTIME as rtkit and the tool set it.
+    /// Longest allowed work, ns. It counts from the first look to the last; work before and after them is not
+    /// seen. With pieces of work of up to 95 ms and a look after each, less than 200 ms pass until the limit
+    /// acts. That is RLIMIT_RTTIME as rtkit and the tool set it.
     static constexpr std::int64_t most_ns = 60'000'000;
     /// Returns true if the work is too long now. `cpu_ns`: processor time of the thread; `waits`: number of
     /// its waits.
