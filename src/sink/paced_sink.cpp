@@ -45,7 +45,8 @@ void pacer::arm() noexcept
     ::timerfd_settime(fd_.get(), TFD_TIMER_ABSTIME, &when, nullptr);
 }
 
-// Rounds up, so that `frames` frames have left at that time. Computes whole seconds apart, so that years fit.
+// Rounds up, so that `frames` frames have left at that time. Computes whole seconds separately, so that years
+// fit.
 std::int64_t virtual_queue::duration(std::uint64_t frames) const noexcept
 {
     const std::uint64_t rest = frames % rate_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Explanations and hints for ALSA's error numbers, and libasound's own messages, which stand in errors
-/// instead of on the user's standard error.
+/// Explanations and hints for ALSA's error numbers, and libasound's own messages, which go into errors
+/// instead of to standard error.
 ///
 /// libasound has one message handler for the process, which belongs to the host program. The default one
 /// passes messages to a handler of each thread. That one is replaced during the calls, and then restored.

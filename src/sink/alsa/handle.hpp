@@ -45,7 +45,8 @@ using hw_params = std::unique_ptr<snd_pcm_hw_params_t, deleter<snd_pcm_hw_params
 using sw_params = std::unique_ptr<snd_pcm_sw_params_t, deleter<snd_pcm_sw_params_free>>;
 using status = std::unique_ptr<snd_pcm_status_t, deleter<snd_pcm_status_free>>;
 
-/// Allocates an object of ALSA's by its function. \throws std::bad_alloc.
+/// Allocates an ALSA object with its own function.
+/// \throws std::bad_alloc.
 template <typename Owner>
 Owner allocate(int (*make)(typename Owner::pointer*))
 {
@@ -81,7 +82,8 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 /// \throws error (not_available).
 void set_software(snd_pcm_t* p, const stream_setup& s);
 
-/// In the order in which they are tried: first those that I2S and USB devices carry without loss.
+/// Formats in the order in which open_alsa() tries them: first those that I2S and USB devices carry without
+/// loss.
 inline constexpr std::array format_preference{format_kind::s32, format_kind::float32, format_kind::s24_3,
                                               format_kind::s24_4, format_kind::s16};
 

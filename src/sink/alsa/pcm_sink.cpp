@@ -328,8 +328,8 @@ std::optional<card_place> find_place(snd_pcm_t* p)
                       .subdevice = snd_pcm_info_get_subdevice(info.get())};
 }
 
-// Configures a PCM. `top`: the configuration that defines it; null: none does. `device`: then, as
-// stream_setup::device.
+// Configures a PCM. `top`: the configuration that defines it, or null. `device`: stream_setup::device if
+// `top` is null.
 std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card = false,
                                 std::string_view device = {})
 try {

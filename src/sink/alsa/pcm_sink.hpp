@@ -28,7 +28,7 @@ namespace tactor::alsa {
 /// that moved and was not looked at during a whole round, whatever the kernel says.
 class pcm_sink final : public sink {
 public:
-    /// Takes over a PCM. `on_card`: it plays on a card of the kernel's.
+    /// Takes over a PCM. `on_card`: it plays on a sound card of the kernel.
     pcm_sink(handle h, stream_setup s, bool on_card);
 
     const stream_setup& setup() const noexcept override { return setup_; }

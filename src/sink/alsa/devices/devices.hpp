@@ -24,7 +24,7 @@ std::vector<card_info> sound_cards(const system_root& root);
 
 struct playback_device {
     unsigned number = 0;
-    std::string name = {}; ///< by the driver; may be empty
+    std::string name = {}; ///< as the driver names it; may be empty
 };
 std::vector<playback_device> playback_devices(const system_root& root, unsigned card_index);
 

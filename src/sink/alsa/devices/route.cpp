@@ -25,13 +25,13 @@ namespace {
 
 using types = std::vector<std::string>;
 
-constexpr int deepest = 32;              // of plugins that are followed: a definition may name itself
+constexpr int deepest = 32;              // levels of plugins that are followed: a definition may name itself
 constexpr std::size_t most_types = 1024; // of one PCM; also stops definitions that double at each step
 
-// These affect only the device at their end.
+// Types that affect only the device at their end.
 constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "copy",  "route", "rate",
                               "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
-// These start a card's mixer, set it ("ctl_elems" is the type of hooks), or talk to a server.
+// Types that start a card's mixer, set it ("ctl_elems" is the type of hooks), or talk to a server.
 constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
 
 using c_text = std::unique_ptr<char, deleter<std::free>>;
@@ -105,7 +105,7 @@ unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
         .value_or(most_channels);
 }
 
-// Returns the fault of a definition's tables of channels, as libasound does not check them; empty if it has
+// Returns the fault of a definition's tables of channels, which libasound does not check; empty if it has
 // none.
 std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
 {
@@ -330,10 +330,10 @@ namespace {
 constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
 constexpr std::size_t most_links = 1U << 19; // a table may connect each channel to each
 
-// These pass each channel on unchanged.
+// Types that pass each channel on unchanged.
 constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
                               "adpcm", "iec958", "empty",  "hooks", "softvol", "file",  "mmap_emul"};
-// These map each channel to the slave's channel in their bindings.
+// Types that map each channel to the slave's channel in their bindings.
 constexpr std::array binding{"dmix", "dshare", "share"};
 
 constexpr double least_gain = 1e-3; // -60 dB: less is not felt
@@ -342,7 +342,7 @@ constexpr double rounding = 1e-6;
 // First number of an output that is the end of a table, where ALSA clips, and no channel of a device.
 constexpr unsigned first_end = 1U << 30;
 
-// For each channel: the outputs that it reaches, and the factor on its samples there.
+// Outputs that each channel reaches, and the factor on its samples there.
 using outputs = std::vector<std::map<unsigned, double>>;
 
 // A plugin on the route that is not understood.
@@ -490,7 +490,7 @@ private:
     std::size_t links_ = 0;
     unsigned next_end_ = first_end;
     std::string level_by_ = {};
-    std::map<std::string, unsigned> devices_ = {}; ///< with the number of the first output of each
+    std::map<std::string, unsigned> devices_ = {}; ///< number of the first output of each device
 };
 
 bool is_straight(const outputs& all)

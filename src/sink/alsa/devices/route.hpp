@@ -65,7 +65,7 @@ bool writes(const std::vector<std::string>& route);
 /// Returns "PipeWire", "PulseAudio" or "JACK" if the route ends in one, else empty.
 std::string find_server(const std::vector<std::string>& route);
 
-/// Place of a PCM on a card of the kernel's.
+/// Place of a PCM on a sound card of the kernel.
 struct card_place {
     std::string card = {}; ///< its id
     unsigned device = 0;
@@ -73,8 +73,8 @@ struct card_place {
 };
 
 /// Returns stream_setup::device of a PCM: the same for all names that reach one place on a card, else the
-/// PCM's own name. Empty if its route ends in the null device, which nobody feels. `place`: where it plays,
-/// or, of several devices (`w` knows), where the first plays; none: on no card.
+/// PCM's own name. Empty if its route ends in the null device, which nobody feels. `place`: place of its
+/// device, or of the first of several (`w` lists them); none: not on a card.
 std::string name_drive_time(const std::string& pcm, const std::vector<std::string>& route,
                             const std::optional<card_place>& place, const stream_wiring& w);
 
