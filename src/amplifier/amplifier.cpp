@@ -52,7 +52,7 @@ void sequence::handle(event e, std::int64_t now, played_frames at) noexcept
     look(now);
 }
 
-// Switches off; on again when the DAC has shown that it runs.
+// Switches the line off until the DAC has shown that it runs.
 void sequence::prove() noexcept
 {
     if (state_ != state::stopped)

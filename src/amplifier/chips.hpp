@@ -32,8 +32,8 @@ line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted);
 /// gpiochip4 as a second name of gpiochip0.
 std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev");
 
-/// Returns why a path is no GPIO chip, as an errno, or 0 if it is one. Opens nothing: a pipe would wait, and
-/// a watchdog would start.
+/// Returns the errno that tells why a path is not a GPIO chip; 0: it is one. Opens nothing, because opening a
+/// pipe blocks and opening a watchdog starts it.
 int not_a_chip(const std::string& path);
 
 /// Returns the name of the group that owns a file, or "gpio" if it is not known.

@@ -40,8 +40,8 @@ struct holder_job {
     holder_limits limits = {};
 };
 
-// Above the audio threads (65) and the kernel's interrupt threads (50). The holder sleeps except for a few
-// ioctls.
+// Priority above the audio threads (65) and the kernel's interrupt threads (50). The holder sleeps except for
+// a few ioctls.
 constexpr int priority = 80;
 
 // Attempts to switch the line off at the end, for a second.

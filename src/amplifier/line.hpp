@@ -27,7 +27,7 @@ inline std::string text(const char* s)
     return s ? s : "";
 }
 
-/// Returns why libgpiod failed. It sets errno on every failure.
+/// Returns the errno of libgpiod's last failure. libgpiod sets it on each one.
 inline int failure() noexcept
 {
     return errno != 0 ? errno : EIO;
@@ -90,7 +90,8 @@ chip read_chip(const std::string& path);
 requested<output> request_output(const output_request& r);
 /// Requests outputs of one chip by one ioctl, all off.
 requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets);
-/// The same of lines that a user named. `where`: their place in a file. Throws as open_output().
+/// Requests the lines that a user named, in the same way. `where`: their place in a file. Throws as
+/// open_output().
 std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::vector<unsigned>& offsets,
                                             const source_place& where);
 /// Requests an input with every edge that the kernel saw, not debounced.

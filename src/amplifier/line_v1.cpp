@@ -178,7 +178,7 @@ requested<code_lines> request_code(const std::string& path, const std::vector<un
 {
     errno = 0;
     chip_handle c(gpiod_chip_open(path.c_str()));
-    std::vector<unsigned> own = offsets; // the library does not write to them, but says that it may
+    std::vector<unsigned> own = offsets; // the library takes them as mutable, but does not write to them
     const std::array<int, most_code_lines> off{};
     gpiod_line_bulk lines{};
     if (!c || gpiod_chip_get_lines(c.get(), own.data(), static_cast<unsigned>(own.size()), &lines) != 0 ||

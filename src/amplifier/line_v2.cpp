@@ -129,7 +129,7 @@ request_handle request(const std::string& path, std::span<const unsigned> offset
     return request_handle(gpiod_chip_request_lines(c.get(), by.get(), lines.get()));
 }
 
-// The same for outputs, which are off.
+// Requests outputs in the same way, off at first.
 request_handle request_outputs(const std::string& path, std::span<const unsigned> offsets, bool active_low)
 {
     errno = ENOMEM;

@@ -80,7 +80,7 @@ std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::
     for (const unsigned offset : offsets) {
         wanted.offset = offset;
         at = look_up(wanted);
-        if (!at.line.consumer.empty()) // the request of all would not say which line is busy
+        if (!at.line.consumer.empty()) // a request for all lines does not report which one is busy
             break;
     }
     return take(request_code(at.path, offsets), wanted, at);
