@@ -142,7 +142,7 @@ public:
                                          std::memory_order_relaxed);
         changed_.store(true, std::memory_order_release);
     }
-    /// Returns 1 for a score without one.
+    /// Returns the factor; 1 for a score without one.
     float get(ticket t) const noexcept
     {
         const std::uint64_t v = by_place_[ticket_place(t)].load(std::memory_order_relaxed);
@@ -210,7 +210,7 @@ struct link {
     counters count;
     /// Frames in which each channel was driven so far; empty where drive time is not counted.
     std::vector<std::atomic<std::uint64_t>> driven;
-    level_requests raised;           ///< what other programs and players drive on the same device
+    level_requests raised;           ///< drive of other programs and players on the same device
     std::atomic<bool> sounds{false}; ///< drives wait or sound
     amplifier_link amplifier;
 };

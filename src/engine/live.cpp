@@ -26,7 +26,7 @@
 namespace tactor::engine {
 namespace {
 
-constexpr std::size_t live_knots = 33;    // most of a course
+constexpr std::size_t live_knots = 33;    // most knots of a course
 constexpr double least_live_soa_s = 0.01; // of bursts
 
 // Adds one more point with its delay.
@@ -100,7 +100,7 @@ void live_voice::wait(std::uint64_t frames) noexcept
         has_point_ = true;
         idle_ = 0;
     } else if (requested() == action::go_on) {
-        idle_ += frames; // after its end the producer owes no more points
+        idle_ += frames; // after its end the producer need not send points
     }
 }
 
@@ -395,7 +395,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     return l;
 }
 
-/// Mark of the thread that is in a model, while it lives.
+/// Mark of the thread that runs a model, while it lives.
 class model_call {
 public:
     explicit model_call(std::atomic<std::thread::id>& who) noexcept : who_(who)
@@ -487,7 +487,7 @@ bool live_stroke::impl::write_course(point p, double intensity)
             fmt::format("phantom model \"{}\" failed: {}", model->name(), what.substr(0, what.find('\n'))));
     };
     const model_call now(model_thread);
-    excess.clear(); // of a point that was refused
+    excess.clear(); // text about an earlier point that was refused
     try {
         return compute_course({p, intensity}, voice.draft());
     } catch (const error& e) {
@@ -520,7 +520,7 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
         course.knots = most_knots;
     bool limited = false;
     const std::size_t channels = limits.size();
-    // Begins at the end, which has the given intensity, so that an error names that one.
+    // Begins at the end, which has the requested intensity, so that an error names that one.
     for (std::size_t k = course.knots; k-- > 0;) {
         const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
         const auto mean = next.at(course.start + after);

@@ -66,7 +66,7 @@ struct live_course {
 std::size_t live_reserve(const stream_setup& s) noexcept;
 
 /// A live stroke. The producer writes amplitudes by channel; the audio thread makes drives of them, period by
-/// period, so no point waits for a plan. All other requests of the producer are a flag.
+/// period, so no point waits for a plan. All other requests of the producer set a flag.
 class live_voice {
 public:
     enum class action : std::uint32_t { go_on, end, cancel, fail };
@@ -113,8 +113,8 @@ public:
         const live_course& c = points_.value();
         return has_begun_ && c.length != 0 && c.start + c.length > position - base_;
     }
-    /// Counts `frames` more before it begins. Called by its present owner: the feeder, and after the
-    /// hand-over the audio thread.
+    /// Counts `frames` more of waiting before it begins. Called by its present owner: the feeder, and after
+    /// the hand-over the audio thread.
     void wait(std::uint64_t frames) noexcept;
     /// Returns true if wait() has seen a point.
     bool has_point() const noexcept { return has_point_; }
@@ -162,7 +162,7 @@ private:
     std::atomic<double> length_mm_{0.0};
     std::atomic<double> farthest_mm_{0.0};
     std::atomic<double> moving_s_{0.0};
-    std::optional<point> newest_ = {}; ///< of the producer; so is the time of its first point
+    std::optional<point> newest_ = {}; ///< the producer's; so is the time of its first point
     std::int64_t begun_ns_ = 0;
     std::string failure_;
 
@@ -181,7 +181,7 @@ private:
     std::vector<double> to_;    ///< bursts: of the next one
 };
 
-/// Place of a stroke as the mean of its given places over a window that ends now. So a step becomes an even
+/// Place of a stroke as the mean of its points over a window that ends now. So a step becomes an even
 /// movement that takes one window, and an even movement is half a window late. At intensity 0 nothing touches
 /// the skin: such a place counts only while all places in the window have it.
 class smoothing {
@@ -199,7 +199,7 @@ public:
     void to(std::uint64_t frame, const place& p);
     /// Returns the place of the stroke at a frame after the newest, if no other place comes.
     place at(std::uint64_t frame) const;
-    /// Returns the frames from the newest on until the stroke is at its place.
+    /// Returns the number of frames after the newest point until the stroke has reached it.
     std::uint64_t settles_in() const noexcept { return places_.size() < 2 ? 0 : window_; }
 
 private:
@@ -223,7 +223,7 @@ struct live_stroke::impl {
     impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
 
     bool to(point p, double intensity, std::optional<std::int64_t> at_ns = {});
-    /// Writes the amplitudes of a place, by channel. Returns true if a limit held one. If the model gives
+    /// Writes the amplitudes of a place, by channel. Returns true if a limit lowered one. If the model gives
     /// more than the intensity, `excess` says so.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
     /// Writes the amplitudes from the current place to another one. The stroke ends if the model fails.

@@ -18,7 +18,8 @@ namespace {
 // spin.
 constexpr unsigned many_idle_steps = 16;
 
-// While something sounds the control side wakes that often at least, and looks at what others drive.
+// While something sounds, the control side wakes at least this often, and reads the drive time of other
+// programs.
 constexpr unsigned least_wakes_per_s = 10;
 
 // A level changes within 20 ms.
@@ -180,7 +181,7 @@ void audio_loop::mix_period() noexcept
         scores_.fade_what_runs_out(setup_.period_frames);
     const bool sounds = mixer_.size() != 0;
     if (link_.sounds.exchange(sounds, std::memory_order_relaxed) != sounds && sounds)
-        link_.to_control.signal(); // what may be driven is written before it is
+        link_.to_control.signal(); // the control side writes the entry of this drive before it is played
     mixer_.process(setup_.period_frames, block_.data());
     pending_ = setup_.period_frames;
     pending_from_ = 0;

@@ -27,16 +27,16 @@ namespace tactor::engine {
 /// unless called stream frames. Audio thread only; nothing allocates.
 class score_table {
 public:
-    /// Makes an empty table. `reserve`: drives of the mixer that are kept for live strokes.
-    /// `ramp_frames`: in which a gain changes.
+    /// Makes an empty table. `reserve`: drives of the mixer that are kept for live strokes. `ramp_frames`:
+    /// frames in which a gain changes.
     score_table(synth::mixer& m, link& l, std::uint32_t fade_frames, std::size_t reserve,
                 std::uint32_t ramp_frames) noexcept
         : mixer_(m), link_(l), fade_(fade_frames), ramp_(ramp_frames), reserve_(reserve)
     {
     }
 
-    /// Returns true if this ticket was cancelled, and reported, before its begin came. Call it once for each
-    /// begin.
+    /// Returns true if the ticket was cancelled (and reported) before its begin command arrived. Call it once
+    /// for each begin.
     bool called_off(ticket t) noexcept;
     /// Begins a score. `offset`: stream frame at which the epoch began.
     void begin(const command& c, std::uint64_t offset) noexcept;
@@ -51,7 +51,7 @@ public:
     void begin_live(const request& r) noexcept;
     /// Ends live strokes whose producer requests it or is silent for too long, and those that last too long.
     void handle_live_requests() noexcept;
-    /// Leads scores to the gains that the control side asks for. Called before each mix.
+    /// Moves the gains of scores towards those that the control side requests. Called before each mix.
     void follow_gains() noexcept;
     /// Adds the live strokes' drives of the next frames. Called before each mix. `offset` as in begin();
     /// `clock` may be unknown.
@@ -74,8 +74,8 @@ public:
     /// wait.
     void update(std::uint64_t played) noexcept;
 
-    /// Ends the scores that had begun to sound, because the stream broke. Returns the others if `give_back`,
-    /// else ends them, too.
+    /// Ends the scores that had begun to sound, because the stream broke. Hands the others back if
+    /// `give_back`, else ends them, too.
     void interrupt(reason_kind why, int code, std::uint64_t played, bool give_back) noexcept;
 
     bool empty() const noexcept { return used_ == 0; }
@@ -89,7 +89,8 @@ private:
     /// Base of a live stroke before its first point, and length of a live stroke that still gets points.
     static constexpr std::uint64_t never = std::uint64_t{1} << 62;
 
-    /// Frames after the mixer or a ring was full in which late drives are blamed on that.
+    /// Number of frames after the mixer or a ring was full. The report of a drive that is late within them
+    /// names this as the reason.
     static constexpr std::uint64_t crowd_frames = 8192;
 
     struct entry {
@@ -97,11 +98,11 @@ private:
         stroke_id id = {};
         std::uint64_t base = 0;
         std::uint64_t length = 0;
-        std::uint64_t finish = 0;  ///< frame after which it is over, once played
+        std::uint64_t finish = 0;  ///< it is over once this frame has been played
         std::uint64_t covered = 0; ///< end of its drives so far
         std::uint32_t fade = 0;    ///< length of its final fade, frames
         bool open = false;         ///< another drive must follow, because it still sounds at `covered`
-        bool ahead = false;        ///< drives came in time before
+        bool ahead = false;        ///< earlier drives came in time
         bool used = false;
         bool fed = false;
         bool fade_wanted = false;
@@ -174,7 +175,7 @@ private:
     sink& sink_;
 };
 
-/// Longest time from a stop to the end of its fade. What sounds then is cut.
+/// Longest time from a stop to the end of its fade. Strokes that still sound then are cut.
 inline constexpr std::int64_t longest_stop_ns = 400'000'000;
 
 struct loop_options {
@@ -183,8 +184,8 @@ struct loop_options {
     std::int64_t stall_ns = 500'000'000;   ///< time after which a device that stands still counts as lost
     std::size_t drives = 8192;             ///< capacity of the mixer
     bool amplifier = false;                ///< true if link::amplifier drives an amplifier
-    /// Time that the end waits for the amplifier to go off: a holder that hangs takes a second, and a line
-    /// that refuses is tried again for another.
+    /// Time for which the end of the stream waits for the amplifier to go off: a second for a holder that
+    /// hangs, and another for more tries on a line that refuses.
     std::int64_t off_ns = 2'000'000'000;
     synth::guard_settings guards{};
     std::vector<double> driven_s = {}; ///< levels of drive time, by channel
@@ -270,7 +271,7 @@ private:
     bool reported_clocked_ = false;
     std::uint64_t stop_frame_ = 0;  ///< 0: not silent yet
     std::uint64_t offset_ = 0;      ///< stream frame at which this epoch began
-    std::uint64_t played_ = 0;      ///< of this epoch
+    std::uint64_t played_ = 0;      ///< frames played in this epoch
     std::uint64_t woken_frame_ = 0; ///< stream frame at which the control side was last woken
     std::int64_t epoch_ns_ = 0;     ///< start time of the DAC
     std::int64_t moved_ns_ = 0;     ///< time when the position last moved

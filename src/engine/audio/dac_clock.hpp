@@ -47,7 +47,7 @@ private:
     double nominal_; ///< ns per frame
     double noise_;   ///< variance of a reading, ns^2
     clock_line line_;
-    double fraction_ = 0.0; ///< of a ns, to line_.time_ns
+    double fraction_ = 0.0; ///< fraction of a ns, added to line_.time_ns
     double drift_ = 0.0;    ///< ns per ns
     double p_time_ = 0.0;   ///< covariance
     double p_cross_ = 0.0;

@@ -130,8 +130,8 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
         } else if (e.ahead && e.base < next) {
-            // Between one and two periods are left, because the last look found two; or none, and it is
-            // silent.
+            // Between one and two periods are left, because two were left at the last call; or none is left,
+            // and it is silent.
             e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
             want_fade(e, state_kind::interrupted, why_late());
         }
@@ -216,7 +216,7 @@ void score_table::mute() noexcept
         entry& e = entries_[i];
         if (!e.used || e.fading || e.fade_wanted || e.base == never)
             continue;
-        if (e.base < mixer_.position() || stopping_) { // as each live stroke that has begun
+        if (e.base < mixer_.position() || stopping_) { // true also of each live stroke that has begun
             want_fade(e, state_kind::interrupted, reason_kind::muted);
         } else if (mixer_.fade_out(e.score, 0)) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
@@ -264,7 +264,8 @@ void score_table::interrupt(reason_kind why, int code, std::uint64_t played, boo
             continue;
         if (give_back && e.base == never)
             continue; // a live stroke that waits for its first point continues to wait
-        if (give_back && !e.fade_wanted && e.base >= mixer_.position()) { // no live stroke that has begun
+        if (give_back && !e.fade_wanted &&
+            e.base >= mixer_.position()) { // false for each live stroke that has begun
             link_.reports.push({.what = report::kind::returned, .score = e.score});
             forget(e);
             continue;
@@ -355,7 +356,8 @@ void score_table::handle_live_requests() noexcept
 void score_table::render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept
 {
     handle_live_requests();
-    // In order, so that the first to begin sounds first. A stroke that closes now makes way for the next.
+    // Goes in order, so that the first stroke to begin sounds first. A stroke that closes now makes room for
+    // the next.
     for (std::size_t i = 0; i < live_count_;) {
         entry& e = *live_[i];
         if (!e.fade_wanted)

@@ -38,7 +38,7 @@ bool erase_task(Tasks& tasks, stroke_id id)
     return true;
 }
 
-// Possible error of the DAC clock's line between two looks.
+// Possible error of the DAC clock's line between two readings.
 constexpr double clock_right_s = 0.001;
 
 // Returns the delay in seconds, 0 within a frame. The requested time can be any number.
@@ -147,7 +147,7 @@ void feeder::end_waiting(stroke_id last, End end)
     }
 }
 
-// Moves a live stroke that waits to those that have ended.
+// Moves a waiting live stroke to the ended ones.
 void feeder::end_live(live_map::iterator w)
 {
     w->second->close();
@@ -366,7 +366,7 @@ bool feeder::knows(stroke_id id) const
 
 void feeder::submit(stroke_id id, const score& s, start_at start, float gain)
 {
-    std::map<stroke_id, float> own; // takes its memory before the stroke can play
+    std::map<stroke_id, float> own; // allocated here, before the stroke can play
     if (gain != 1.0F)
         own.emplace(id, gain);
     switch (start.what()) {
@@ -464,8 +464,8 @@ void feeder::begun(active& a, std::uint64_t frame)
     a.begun = true;
     a.base = frame;
     const clock_line clock = link_.clock.load();
-    // Needs its memory before a pulse is planned and is passed on last: without memory the report is handled
-    // again, and neither the line nor a handler must get a beginning twice.
+    // Allocates before it plans a pulse, and passes the beginning on last. If memory runs out, the report is
+    // handled again, and neither the line nor a handler may get a beginning twice.
     const bool known = clock.valid() && frame >= clock.first;
     std::list<stroke_start> start;
     start.emplace_back(a.id, known ? std::optional(clock.time_at(frame)) : std::nullopt);

@@ -158,7 +158,7 @@ private:
     std::vector<std::uint32_t> in_use_; ///< places, in the order in which they began
     std::vector<next_drive> next_;      ///< a heap, the earliest first; of fixed capacity
     std::vector<command> batch_;        ///< of fixed capacity
-    std::map<stroke_id, float> gains_;  ///< of strokes that have one
+    std::map<stroke_id, float> gains_;  ///< only of strokes that have one
     std::list<stroke_report> reports_;
     std::list<stroke_start> beginnings_;
     trigger_thread* pulses_ = nullptr;

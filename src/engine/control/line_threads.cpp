@@ -317,7 +317,7 @@ std::optional<pulse> pulse_board::offer(const pulse& p) noexcept
     if (last == places)
         return p;
     const bool made_way = end_turn(last, latest_turn);
-    // The place is free in either case: otherwise its pulse has just been sent.
+    // The place is free either way: if its pulse did not make way, it has just been sent.
     fill(places_[last], p, latest_turn + 1);
     return made_way ? std::optional(latest) : std::nullopt;
 }

@@ -229,7 +229,8 @@ private:
 class trigger_thread {
 public:
     /// Starts the thread, which reads link::sync_clock for the due times. `time`: CLOCK_MONOTONIC but in
-    /// tests. \throws std::system_error when no thread can be started.
+    /// tests.
+    /// \throws std::system_error when no thread can be started.
     trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t,
                    pulse_time* time = nullptr);
     /// Ends the thread; the line is off afterwards.

@@ -46,7 +46,7 @@ TACTOR_KIND_NAMES(wait_kind, "wait", {ended, "ended"}, {timeout, "timeout"}, {ta
 
 namespace {
 
-// Returns the frames of a time, 0 to ten minutes. Refuses NaN, too.
+// Converts a time of 0 to ten minutes to frames. Refuses NaN, too.
 std::uint32_t to_frames(double seconds, unsigned rate, const char* name)
 {
     if (!(seconds >= 0.0 && seconds <= 600.0))
@@ -59,7 +59,7 @@ std::int64_t to_ns(double seconds, const char* name)
     return std::int64_t{to_frames(seconds, 1'000'000, name)} * 1000;
 }
 
-// Returns the horizon. Drives handed over later than the least one would be late.
+// Returns the horizon: at least as long as drives need to be in time.
 std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
 {
     const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
@@ -72,7 +72,7 @@ engine::loop_options loop_options(const player_options& o, std::vector<double> d
     engine::loop_options l;
     l.fade_frames = to_frames(o.fade_s, s.rate, "fade_s");
     l.horizon_frames = horizon_frames(o, s);
-    // Long periods make long pauses.
+    // The timeout grows with the period.
     const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
     l.stall_ns = std::max(periods, to_ns(o.stall_s, "stall_s"));
     l.amplifier = amplifier;
@@ -83,7 +83,7 @@ engine::loop_options loop_options(const player_options& o, std::vector<double> d
     return l;
 }
 
-// Returns a stream's setup, without the name of its device where drive time is not kept.
+// Returns a stream's setup, without the name of its device if drive time is not kept.
 stream_setup kept_setup(const player_options& o, stream_setup s)
 {
     if (!o.keep_drive_time)
@@ -157,7 +157,8 @@ void check_start(const engine::audio_thread& audio, const std::string& stream, c
                              audio.fifo_error());
 }
 
-// Returns the sink. \throws error (bad_input) for null, and for a setup() without frames.
+// Returns the sink.
+// \throws error (bad_input) for null, and for a setup() without frames.
 std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
@@ -194,8 +195,9 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
                     replan);
 }
 
-// Returns the array. \throws error: bad_input for a tactor on a channel that the stream does not have,
-// not_available for a tactor that shares its channel of the device.
+// Returns the array.
+// \throws error: bad_input for a tactor on a channel that the stream does not have, not_available for a
+//         tactor that shares its channel of the device.
 const array& checked(const array& a, const stream_setup& s)
 {
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
@@ -211,7 +213,8 @@ const array& checked(const array& a, const stream_setup& s)
     return a;
 }
 
-// Checks that a score fits the player. `limits`: of its array, by channel of the stream; 0: no tactor.
+// Checks that a score fits the player. `limits`: levels that the player's array allows, by channel of the
+// stream; 0: no tactor.
 // \throws error (bad_input) for a score that has another rate or number of channels, drives a channel without
 // a tactor, drives a tactor beyond its limit, or has its marker on a tactor's channel.
 void check_fits(const score& s, const stream_setup& stream, std::span<const double> limits)

@@ -34,9 +34,9 @@ constexpr std::string_view first_line = "tactor-drive-time 2";
 constexpr std::string_view last_line = "\nend\n";
 constexpr double ahead_s = 0.5;
 constexpr std::int64_t renewed_ns = rt::ns_per_s / 10;
-constexpr std::int64_t patience_ns = rt::ns_per_s / 5; // with a process that keeps the file locked
-constexpr int patient_tries = 40;                      // of 5 ms: the same
-constexpr std::size_t longest_name = 200;              // longer ones share what begins alike
+constexpr std::int64_t patience_ns = rt::ns_per_s / 5; // wait for a process that keeps the file locked
+constexpr int patient_tries = 40;                      // tries of 5 ms: the same time
+constexpr std::size_t longest_name = 200;              // longer names that begin alike share a file
 constexpr double noticed_s = 1e-4;                     // levels in files are rounded
 constexpr double longest_s = 3600.0;                   // no limit is above it
 
@@ -50,7 +50,7 @@ std::string describe(int code)
     return std::generic_category().message(code);
 }
 
-// Returns a name of this start of the machine; the same in all containers.
+// Returns the identifier of this boot, the same in all containers.
 std::string boot_name()
 {
     const std::string id = rt::read_file("/proc/sys/kernel/random/boot_id");
@@ -77,10 +77,10 @@ std::string file_name(std::string_view device)
 
 struct place {
     std::string folder = {}; ///< empty: there is none
-    std::string why = {};    ///< then
+    std::string why = {};    ///< reason why there is none
 };
 
-/// Finds a folder that nobody else can put anything into: that of a service, else the user's.
+/// Finds a folder in which no other user can create files: the service's, else the user's.
 place find_folder()
 {
     const std::string runtime = rt::runtime_folder();
@@ -104,7 +104,7 @@ std::string find_path(const place& p, std::string_view device)
 /// A file that is open and locked against other processes.
 class locked_file {
 public:
-    /// Opens and locks it, and makes it where there is none. `text`: of a new one.
+    /// Opens and locks the file. Makes it with `text` if it does not exist.
     locked_file(const std::string& path, std::string_view text, int tries)
     {
         fd_ = open_book(path, O_RDWR);
@@ -126,7 +126,7 @@ public:
             fd_ = {};
         }
     }
-    /// Unlocks it, also where a process that was forked meanwhile has it open.
+    /// Unlocks the file, even if a process that was forked meanwhile has it open.
     ~locked_file()
     {
         if (fd_)
@@ -136,10 +136,10 @@ public:
     locked_file& operator=(const locked_file&) = delete;
 
     bool open() const noexcept { return static_cast<bool>(fd_); }
-    /// Returns true if a later try may open it: another process keeps it locked, or this one has no
+    /// Returns true if a later try may open the file: another process keeps it locked, or this one has no
     /// descriptors.
     bool busy() const noexcept { return busy_; }
-    /// Returns true if it is there and cannot be opened.
+    /// Returns true if the file exists and cannot be opened.
     bool exists() const noexcept { return exists_; }
     /// Returns the error of the call that failed last.
     int code() const noexcept { return code_; }
@@ -154,11 +154,11 @@ public:
         }
         return text;
     }
-    /// Writes it. Returns false if that failed. A kill between the two calls leaves an end of the text before
-    /// behind the new one.
+    /// Replaces the text of the file. Returns false on failure. If the process is killed between the two
+    /// system calls, the end of the old text stays behind the new one.
     bool write(const std::string& text) noexcept
     {
-        if (code_ != 0) // it can only be read
+        if (code_ != 0) // the file can only be read
             return false;
         if (write_all(fd_, text) && ::ftruncate(fd_.get(), static_cast<off_t>(text.size())) == 0)
             return true;
@@ -250,8 +250,8 @@ drive_levels full_levels(double limit_s, std::int64_t now_ns)
     return {.levels_s = std::vector<double>(detail::max_channels, limit_s), .at_ns = now_ns};
 }
 
-/// Calls `change` with the levels of a device, the newer of those in its file and in memory, and the time.
-/// Keeps them.
+/// Calls `change` with the levels of a device and the time, then stores the levels. Takes them from its file
+/// or from memory, whichever are newer.
 template <class Clock, class Change>
 fault look_up(const book_place& at, const Clock& clock, int tries, Change change)
 {
@@ -295,7 +295,7 @@ void drive_levels::add(std::span<const double> drive_s, std::int64_t now_ns, con
     levels_s.resize(std::max(levels_s.size(), drive_s.size()));
     for (std::size_t i = 0; i < levels_s.size(); ++i) {
         const double drive = i < drive_s.size() ? drive_s[i] : 0.0;
-        // Others let it leak for all of the time before their last entry, so the rest may be below 0.
+        // Other runs let the level fall until their last entry, so the remaining rest may be below 0.
         const double rested = std::min(levels_s[i], law.limit_s) - law.leak * (passed_s - drive);
         levels_s[i] = std::min(std::max(rested, 0.0) + drive, law.limit_s);
     }
@@ -367,7 +367,7 @@ std::vector<double> drive_share::enter(drive_levels& l, std::span<const double> 
             theirs[i] = 0.0;
     }
     while (l.runs.empty() && l.levels_s.size() > drive_s.size() && l.levels_s.back() == 0.0)
-        l.levels_s.pop_back(); // of channels of which nothing is known
+        l.levels_s.pop_back(); // of unknown channels
     if (goes_on)
         l.runs.push_back({name, now_ns + std::llround(ahead_s * 1e9)});
     left_s = l.levels_s;

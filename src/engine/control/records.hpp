@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Records of a stream: drive time of a device's channels, which counts on from player to player and from
+/// Records of a stream: drive time of a device's channels, which continues from player to player and from
 /// process to process, and messages to the program's log about the stream. The audio thread itself writes
 /// none.
 #pragma once
@@ -36,8 +36,8 @@ struct drive_law {
 
 /// Levels of drive time of a device, s, at a CLOCK_BOOTTIME. A plain value.
 struct drive_levels {
-    /// A run that drives the device, and the time until which it may drive without another entry. If that
-    /// passes without one, the run was killed, and counts as if it had driven all channels for `ahead_s`.
+    /// A run that drives the device, and the time until which it may drive before its next entry. A run that
+    /// makes no entry by then was killed: it counts as if it had driven all channels for `ahead_s`.
     struct run {
         std::int64_t name = 0;
         std::int64_t until_ns = 0;
@@ -47,43 +47,43 @@ struct drive_levels {
     std::int64_t at_ns = 0;
     std::vector<run> runs = {};
 
-    /// Lets time pass until `now_ns`, and adds what runs that were killed may have driven.
+    /// Advances to `now_ns`, and adds the possible drive of killed runs.
     void pass(std::int64_t now_ns, const drive_law& law);
-    /// Lets time pass until `now_ns`. Channel i was driven for drive_s[i] since `at_ns`, or, if others made
-    /// entries meanwhile, since before; others rested. Counts as if a channel had rested first.
+    /// Advances to `now_ns`. Channel i was driven for drive_s[i] since `at_ns` (or since an earlier time, if
+    /// others made entries meanwhile); other channels rested. Assumes that a channel rested first.
     void add(std::span<const double> drive_s, std::int64_t now_ns, const drive_law& law);
 
-    /// Returns a text of a line each. `boot`: name of this start of the machine.
+    /// Returns the levels and runs as text, a line each. `boot`: identifier of this boot.
     std::string text(std::string_view boot) const;
-    /// Returns the levels in such a text, and ignores what follows it: none if it is not whole or of a time
-    /// to come, empty ones if it is from another start of the machine.
+    /// Reads such a text and ignores anything behind it. Returns nothing if it is incomplete or from the
+    /// future, and empty levels if it is from another boot.
     static std::optional<drive_levels> read(std::string_view text, std::string_view boot,
                                             std::int64_t now_ns);
 };
 
 /// Entries of a player so far. A plain value.
 struct drive_share {
-    std::int64_t name = 0;                  ///< other than that of any other run
-    std::vector<std::uint64_t> driven = {}; ///< frames by channel that were added
+    std::int64_t name = 0;                  ///< differs from the names of all other runs
+    std::vector<std::uint64_t> driven = {}; ///< frames that were entered, by channel
     std::vector<double> left_s = {};        ///< levels by channel of the device after the last entry, ...
     std::int64_t left_ns = 0;               ///< ... and when that was, CLOCK_BOOTTIME
-    bool sounds = false;                    ///< since then
+    bool sounds = false;                    ///< channels may be driven since then
 
-    /// Adds to `l` what was driven since the last call, s by channel of the device. `goes_on`: until the next
-    /// call, 0.5 s later at most, more may be driven. Returns the levels of all channels, 0 where nobody else
-    /// has driven them meanwhile.
+    /// Adds the drive since the last call to `l`, s, by channel of the device. `goes_on`: channels may be
+    /// driven until the next call, at most 0.5 s later. Returns the level of each channel that others have
+    /// driven meanwhile, else 0.
     std::vector<double> enter(drive_levels& l, std::span<const double> drive_s, const drive_law& law,
                               bool goes_on, std::int64_t now_ns);
 };
 
-/// The book of a device: a file in the folder `tactor` of the user's runtime folder, and this process's
-/// memory where there is no such folder. A run that sounds is in it by name, so that a run that is killed
-/// counts, too. A file that is there and cannot be read as a whole, or is locked for 0.2 s, counts as if each
-/// channel were at the limit. One thread at a time, but doubt().
+/// The book of a device: a file in the folder `tactor` of the user's runtime folder, or this process's memory
+/// if there is no such folder. The book names each run that sounds, so that a killed run counts, too. A file
+/// that exists but cannot be read as a whole, or is locked for 0.2 s, counts as if each channel were at the
+/// limit. One thread at a time, except doubt().
 class drive_book {
 public:
-    /// Opens the book, and finds out whether it can be written. Blocks for 0.2 s at most.
-    /// \param s its `device`: empty: no book is kept
+    /// Opens the book and checks that it can be written. Blocks for 0.2 s at most.
+    /// \param s stream; without a `device` no book is kept
     /// \param clock CLOCK_BOOTTIME, ns
     drive_book(const stream_setup& s, const synth::guard_settings& g,
                std::function<std::int64_t()> clock = rt::boottime_ns);
@@ -91,12 +91,13 @@ public:
     bool has_device() const noexcept { return !device_.empty(); }
     /// Returns the levels of drive time when the book was opened, s, by channel.
     std::vector<double> levels() const { return levels_at_channels(share_.left_s); }
-    /// Returns why drive time is not counted on, or is taken for used; empty: it is counted. Any thread.
+    /// Returns the reason why drive time does not continue, or counts as used up; empty: it continues. Any
+    /// thread.
     std::string doubt() const;
-    /// Enters what was driven, if it is time to, and looks at what others drove. `driven`: frames by channel
-    /// so far. `sounds`: a channel may be driven from now on. `raised`: gets the levels, s, to which others
-    /// have driven channels. Blocks shortly, for 0.2 s at most where nothing sounds. Returns true if there is
-    /// a new doubt.
+    /// Enters the drive of this run if an entry is due, and reads that of others. `driven`: frames by channel
+    /// so far. `sounds`: a channel may be driven from now on. `raised`: receives the levels, s, to which
+    /// others have driven channels. Blocks shortly, for 0.2 s at most if nothing sounds. Returns true if
+    /// there is a new doubt.
     bool enter(std::span<const std::atomic<std::uint64_t>> driven, bool sounds,
                level_requests& raised) noexcept;
 
@@ -115,7 +116,7 @@ private:
     double rate_;
     std::function<std::int64_t()> clock_;
     drive_share share_ = {};
-    std::optional<std::int64_t> locked_ns_ = {}; ///< since when another process has kept it locked
+    std::optional<std::int64_t> locked_ns_ = {}; ///< time from which another process has kept it locked
     mutable std::mutex mutex_;                   ///< guards doubt_
     std::string doubt_ = {};
 };
