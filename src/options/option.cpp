@@ -19,7 +19,7 @@
 namespace tactor::options {
 namespace {
 
-// Option names with - for _.
+// Compares option names; '-' and '_' are equal.
 bool same_name(std::string_view a, std::string_view b)
 {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
@@ -52,7 +52,7 @@ value check_number(const option& o, const value& v)
     return v;
 }
 
-// Returns one of the given unit in the option's own; 0 for another kind of unit.
+// Returns the factor from a typed unit to the option's own; 0 if they measure different things.
 double unit_factor(std::string_view given, std::string_view unit)
 {
     struct entry {
@@ -76,7 +76,8 @@ double unit_factor(std::string_view given, std::string_view unit)
     return given == unit ? 1.0 : 0.0;
 }
 
-// Returns what to write for "70ms" where seconds are meant, and for "1,5"; empty where that is not known.
+// Returns the number to write instead of "70ms" (for an option in seconds) or "1,5"; empty if it is not
+// known.
 std::string without_unit(const std::string& text, double v, std::string_view rest, detail::bounds b,
                          std::string_view unit)
 {

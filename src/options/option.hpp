@@ -39,12 +39,12 @@ struct stream_options {
     std::optional<unsigned> period_frames = {};
     std::optional<unsigned> periods = {};
     bool require_realtime = false;
-    double reopen_s = 0.0; ///< time that a lost device is waited for
+    double reopen_s = 0.0; ///< longest wait for a lost device
     bool void_on_xrun = false;
     bool arm = false; ///< strokes wait for an edge on the [sync] in line
     double sync_delay_ms = 50.0;
     bool live = false;                   ///< points come from standard input
-    std::optional<double> smooth_s = {}; ///< of those
+    std::optional<double> smooth_s = {}; ///< smoothing of those points
     bool no_gpio = false;
     bool verbose = false; ///< log on standard error
     std::string log = {}; ///< file that log lines are appended to; empty: none
@@ -56,16 +56,16 @@ struct stream_options {
 /// Most rows that the table may have.
 inline constexpr std::size_t most_options = 128;
 
-/// Values of the options; without one of the user or of [defaults] the built-in default.
+/// Values of all options: the user's, else that of [defaults], else the built-in default.
 struct wishes {
     std::optional<std::string> path_data = {};   ///< SVG path data in place of a stroke
-    std::optional<std::string> shape = {};       ///< the same, by the name of a shape
+    std::optional<std::string> shape = {};       ///< name of a shape in place of a stroke
     std::optional<std::string> array_name = {};  ///< preset or file
-    std::optional<std::string> config_file = {}; ///< of the configuration
+    std::optional<std::string> config_file = {}; ///< configuration file
     std::optional<std::string> pcm = {};
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
-    std::optional<double> usual_speed_mm_s = {}; ///< of strokes that say neither a time nor a speed
+    std::optional<double> usual_speed_mm_s = {}; ///< speed of strokes that have neither a time nor a speed
     std::optional<double> intensity_max = {};    ///< value in a recording that means intensity 1
     bool fit = false;
     double fit_margin_mm = 0.0;
@@ -81,10 +81,10 @@ struct wishes {
     stream_options stream = {};
 
     std::uint64_t place = 0;                          ///< front end: bits of `place`
-    std::bitset<most_options> given = {};             ///< rows of the user
+    std::bitset<most_options> given = {};             ///< rows that the user set
     std::map<std::size_t, source_place> in_file = {}; ///< rows of [defaults], with their places
 
-    /// Returns true if the user gave the option. \pre There is one of that name.
+    /// Returns true if the user set the option. \pre An option has that name.
     bool gives(std::string_view name) const;
     bool gives(const option& o) const;
 };
@@ -103,7 +103,7 @@ inline constexpr std::string_view output = "Output";
 
 enum class kind : std::uint8_t { number, whole, choice, flag, text };
 
-/// Places where an option may be given, a bit each.
+/// Places where an option may be set, a bit each.
 enum place : std::uint64_t {
     on_plan = 1,
     on_render = 1 << 1,
@@ -119,7 +119,7 @@ enum place : std::uint64_t {
     on_any_command = (1 << 11) - 1,
     in_defaults = 1 << 11,    ///< [defaults] of a configuration or array file
     in_method = 1 << 12,      ///< [[method]] of a definition
-    by_client = 1 << 13,      ///< strokes that a client of the service asks for
+    by_client = 1 << 13,      ///< strokes that a client of the service requests
     live = 1 << 14,           ///< strokes that are fed point by point
     in_plan = 1 << 15,        ///< Python's plan() and Score.plan()
     in_score = 1 << 16,       ///< Python's Score()
@@ -144,10 +144,11 @@ struct place_name {
 /// A value on its way from a front end: nothing, a flag, a number (whole ones, too), or a text or choice.
 using value = std::variant<std::monostate, bool, double, std::string>;
 
-/// Functions that set and get the member which an option stands for.
+/// Functions that set and get the member for which an option stands.
 struct access {
-    /// \pre The value is of the option's kind, in bounds, and one of the choices; or it is none, and the
-    /// option has a rival. \throws error (bad_input) for a text that cannot be read.
+    /// \pre The value is of the option's kind, in bounds, and one of the choices; or it is empty, which
+    ///         clears an option that has a rival.
+    /// \throws error (bad_input) for a text that cannot be read.
     void (*set)(wishes&, const value&) = nullptr;
     value (*get)(const wishes&) = nullptr;
 };
@@ -159,20 +160,20 @@ struct option {
     std::string_view unit = {};  ///< "s", "mm", "Hz"; empty: none
     kind what = kind::number;
     detail::bounds allowed = {};
-    std::string_view range = {}; ///< the bounds in words where they are not these two numbers
+    std::string_view range = {}; ///< bounds in words, unless these two numbers are enough
     std::vector<std::string_view> (*choices)() = nullptr;
-    std::string_view shown = {};  ///< type of the value in help, else by unit or choices: "HZ[:DEPTH]"
+    std::string_view shown = {};  ///< type of the value in help; empty: by unit or choices: "HZ[:DEPTH]"
     std::string_view letter = {}; ///< the command line's short name
     std::string_view in = group::stroke;
     std::string_view help = {}; ///< one line, with the default
     std::uint64_t where = 0;
     std::string_view rival = {};           ///< name of the option that cannot stand beside it
-    bool (*used)(const wishes&) = nullptr; ///< whether anything uses it; null: always
-    std::string_view needs = {};           ///< otherwise: what to add, in marks; alternatives parted by |
+    bool (*used)(const wishes&) = nullptr; ///< returns true if anything uses the value; null: always used
+    std::string_view needs = {}; ///< options to add if nothing uses it, as marks; alternatives separated by |
     access to = {};
 
     [[nodiscard]] std::string_view field_name() const noexcept { return field.empty() ? name : field; }
-    /// Returns true for what a plan keeps of its sound.
+    /// Returns true if a plan keeps the value as a part of its sound.
     [[nodiscard]] bool is_sound() const noexcept
     {
         return (where & in_score) != 0 && (where & in_defaults) != 0;
@@ -216,34 +217,36 @@ inline bool wishes::gives(std::string_view name) const
 /// Returns the bounds in words: "0 to 10 s".
 [[nodiscard]] std::string range_text(const option& o);
 
-/// Returns the value of a text as people type it: "0.07", "s16", "true".
+/// Parses a text as people type it: "0.07", "s16", "true".
 /// \throws error (bad_input) about the option, with its bounds or choices.
 value read_text(const option& o, const std::string& text);
 
-/// Returns a typed value as it is, checked: a number is within the bounds, a text one of the choices.
+/// Checks a typed value and returns it: a number is within the bounds, a text one of the choices.
 /// \throws error (bad_input) likewise.
 value read_value(const option& o, const value& v);
 
-/// Sets an option to what read_text() or read_value() returned. \throws error (bad_input), about the option,
-/// for a text that cannot be read.
+/// Sets an option to a result of read_text() or read_value().
+/// \throws error (bad_input), about the option, for a text that cannot be read.
 void put(wishes& w, const option& o, const value& v);
 
 /// Returns the bounds in words: "0 to 10 s".
 std::string range_text(detail::bounds b, std::string_view unit);
 
-/// Returns a finite number within bounds. \throws error (bad_input) about `what`, with the text, the number
-/// to give where the text has a unit, and the range, in words of its own unless empty.
+/// Parses a finite number within bounds.
+/// \throws error (bad_input) about `what`. It has the text, the number to write if the text has a unit, and
+///         the range, in the words of `range` unless empty.
 double parse_number(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit,
                     std::string range = {});
-/// Returns a whole number within bounds. \throws error (bad_input) likewise.
+/// Parses a whole number within bounds.
+/// \throws error (bad_input) likewise.
 double parse_whole(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit);
 
 /// Returns "did you mean -12? " for a number that is out of bounds without its minus sign, else nothing.
 std::string sign_hint(detail::bounds b, double v);
 
-/// A front end's own word for a mark, or for a field that is no row: {"command:devices", "devices()"}. The
-/// mark "array" stands for {array=palm}, too, and {} for its value. An empty word leaves it out, with its
-/// clause.
+/// A front end's own word for a mark, or for a field that is not in the table: {"command:devices",
+/// "devices()"}. The mark "array" stands for {array=palm}, too, and {} in the word for its value. An empty
+/// word drops the mark and its clause.
 struct own_word {
     std::string_view mark;
     std::string_view here;
@@ -251,14 +254,14 @@ struct own_word {
 
 /// A front end's way to write options.
 struct spelling {
-    /// The option, or with a value what sets it: "--timing", "--timing fit". The value of a flag is "true".
+    /// Name of an option, or its setting to a value: "--timing", "--timing fit". The value of a flag is
+    /// "true".
     std::string (*write)(const option& o, std::string_view value) = nullptr;
     std::uint64_t where = ~std::uint64_t{0}; ///< bits of its options; others are written as fields
     std::span<const own_word> own = {};
 };
 
-/// Writes the marks of a text. Braces that name nothing known stay. `in_file`: keys of stroke files are
-/// written as fields.
+/// Writes the marks of a text. Unknown braces stay. `in_file`: keys of stroke files are written as fields.
 std::string spell(std::string_view text, const spelling& by, bool in_file = false);
 /// Writes the name of a field.
 std::string spell_field(std::string_view field, const spelling& by);

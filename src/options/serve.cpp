@@ -68,7 +68,7 @@ bool is_port(std::string_view text)
     return detail::number_in<std::uint16_t>(text).has_value();
 }
 
-// Returns whether it is [HOST:]PORT. Whether this machine has such a host shows when it listens there.
+// Returns true for [HOST:]PORT. Listening will show if this machine has the host.
 bool is_address(std::string_view text)
 {
     const auto colon = text.rfind(':');
@@ -83,7 +83,7 @@ std::string read_host(const written_value& d)
     std::string text = read_text_value(d);
     const std::string_view all(text);
     const auto colon = all.rfind(':');
-    // Browsers write a port as it is counted, and no other.
+    // Browsers write a port without leading zeros.
     const bool has_port = colon != all.npos && is_port(all.substr(colon + 1)) && all[colon + 1] != '0';
     if (!is_host(all) && !(has_port && is_host(all.substr(0, colon))))
         fail(d, fmt::format("\"{}\" is not a host", text),
@@ -92,7 +92,7 @@ std::string read_host(const written_value& d)
     return text;
 }
 
-// "127.0.0.1:4001", or a bare 4001.
+// Reads "127.0.0.1:4001", or a bare 4001.
 std::string read_address(const written_value& d)
 {
     if (std::holds_alternative<double>(d.said))

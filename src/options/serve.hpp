@@ -24,8 +24,8 @@ struct serve_limits {
     double max_stroke_s = 600.0;
     std::size_t max_message_bytes = 1U << 20;
     std::size_t max_nesting = 64;
-    double max_message_s = 10.0;             ///< for a message to be complete, and for the first one to come
-    std::size_t max_unread_bytes = 4U << 20; ///< waiting for one client
+    double max_message_s = 10.0; ///< time for a message to be complete, and for the first one to come
+    std::size_t max_unread_bytes = 4U << 20; ///< bytes that wait for one client
 };
 
 /// Addresses and limits of a service. An absent value is the service's default.
@@ -38,12 +38,13 @@ struct serve_settings {
     std::vector<std::string> allow_hosts = {};
     std::vector<std::string> osc_peers = {};
     std::optional<double> max_level_dbfs = {};
-    source_place max_level_at = {}; ///< of that, in its file
+    source_place max_level_at = {}; ///< place of the level in its file
     std::optional<double> idle_stop_s = {};
     serve_limits limits = {};
 };
 
-/// Reads and checks setup::serve. \throws error (bad_input) with file, line and column.
+/// Reads and checks setup::serve.
+/// \throws error (bad_input) with file, line and column.
 [[nodiscard]] serve_settings read_serve(const std::vector<written_value>& said);
 
 /// Returns the limits by their names in [serve].

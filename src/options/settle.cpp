@@ -15,7 +15,7 @@
 namespace tactor::options {
 namespace {
 
-// The level in dBFS is always there: one in dB SL counts before it.
+// Clears an option. The level in dBFS keeps a value: a level in dB SL overrides it.
 void forget(wishes& w, const option& o)
 {
     w.given.reset(index(o));
@@ -45,7 +45,8 @@ const option& find_default(const written_value& d)
                               std::vector<std::string_view>(names.begin(), names.end()));
 }
 
-// Refuses a pair in one file. What an included file says of the other counts no more.
+// Refuses an option whose rival comes before it in the same file. A rival in an included file no longer
+// counts.
 void refuse_both(const setup& says, const written_value& d, const option* rival)
 {
     for (const written_value& other : says.defaults)
@@ -55,7 +56,7 @@ void refuse_both(const setup& says, const written_value& d, const option* rival)
                         fmt::format("[defaults] has both {} and {}", other.name, d.name), "keep one of them");
 }
 
-// Returns true where the place has the option, and the user gave neither it nor its rival.
+// Returns true if the front end has the option, and the user set neither it nor its rival.
 bool takes_default(const wishes& w, const option& o)
 {
     const option* rival = find(o.rival);
@@ -97,7 +98,7 @@ std::vector<default_value> read_defaults(const setup& says)
             all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.said), d.at});
             wishes tried;
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
-                o.to.set(tried, all.back().content); // a file is looked for where it is used
+                o.to.set(tried, all.back().content); // a file is opened only where it is used
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
@@ -118,7 +119,7 @@ void apply_defaults(wishes& w, const setup& says)
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
-        if (o.name == "speed") // what a stroke says itself comes first
+        if (o.name == "speed") // a stroke's own speed comes first
             w.usual_speed_mm_s = std::exchange(w.speed_mm_s, std::nullopt);
         w.in_file.insert_or_assign(index(o), d.at);
     }

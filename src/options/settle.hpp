@@ -13,8 +13,8 @@
 
 namespace tactor::options {
 
-/// Sets an option that the user gave. Values of [defaults] for it and for its rival no longer count. \throws
-/// error (bad_input) for a rival that the user gave as well, and for a text that cannot be read.
+/// Sets an option that the user wrote. Values of [defaults] for it and for its rival no longer count.
+/// \throws error (bad_input) if the user set its rival as well, and for a text that cannot be read.
 void give(wishes& w, const option& o, const value& v);
 
 /// A value of [defaults], checked.
@@ -24,21 +24,25 @@ struct default_value {
     source_place at = {};
 };
 
-/// Checks [defaults]. \throws error (bad_input) with the place in the file.
+/// Checks [defaults].
+/// \throws error (bad_input) with the place in the file.
 std::vector<default_value> read_defaults(const setup& says);
 
-/// Sets options that w.place has and that the user did not give, from [defaults]. They win over earlier ones.
+/// Sets options that the front end (w.place) has and the user did not set, from [defaults]. They win over
+/// earlier ones.
+/// \throws error (bad_input) with the place in the file.
 /// \throws error (bad_input) with the place in the file.
 void apply_defaults(wishes& w, const setup& says);
 
-/// Settles options that depend on others, once all are there. \throws error (bad_input) for those that
-/// nothing uses.
+/// Resolves options that depend on others, once all are set.
+/// \throws error (bad_input) for options that nothing uses.
 void settle(wishes& w);
 
-/// Refuses options of planning for `what`, which is planned already. \throws error (bad_input).
+/// Refuses options of planning for `what`, which is planned already.
+/// \throws error (bad_input).
 void refuse_planning(const wishes& w, const std::string& what);
 
-/// Returns an error about a value of [defaults] with its place there; others as they are.
+/// Adds the place in [defaults] to an error about a value from there. Returns other errors unchanged.
 error at_default(const wishes& w, const error& e);
 
 } // namespace tactor::options

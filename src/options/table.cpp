@@ -80,12 +80,12 @@ constexpr std::uint64_t measuring = playing | on_calibrate | on_experiment;
 constexpr std::uint64_t with_device = playing | on_devices | on_calibrate | on_experiment;
 constexpr std::uint64_t with_array = with_device | drawing | on_off;
 constexpr std::uint64_t in_python = in_plan | in_compare;
-// Places of what plans a stroke; `live`, too, where a stroke that is fed point by point can use it.
+// Places of options that plan a stroke; `live`, too, if a stroke that is fed point by point can use them.
 constexpr std::uint64_t planned = drawing | in_defaults | by_client | in_python | planning;
-// Places of what makes the sound of bursts.
+// Places of options for the sound of bursts.
 constexpr std::uint64_t heard =
     sounding | in_defaults | by_client | live | in_plan | in_score | in_method | unstated;
-// The same of what concerns strokes that are planned ahead.
+// Places of sound options for strokes that are planned ahead.
 constexpr std::uint64_t heard_together = heard & ~(live | std::uint64_t{on_check});
 
 constexpr auto low_speed_choices = [] { return std::vector<std::string_view>{"none", "low-speed"}; };
@@ -115,7 +115,7 @@ bool has_people(const wishes& w)
     return w.spread.people != 0;
 }
 
-// Seed and texture are options of their own.
+// Keeps seed and texture, which are separate options.
 void set_waveform(wishes& w, const value& v)
 {
     const waveform said = parse_waveform(std::get<std::string>(v));
@@ -130,7 +130,7 @@ value get_waveform(const wishes& w)
     return waveform_text(w.plan.wave);
 }
 
-// HZ or "HZ:DEPTH".
+// Reads a number of Hz or the text "HZ:DEPTH".
 void set_modulation(wishes& w, const value& v)
 {
     const auto* hz = std::get_if<double>(&v);
@@ -142,7 +142,7 @@ value get_modulation(const wishes& w)
     return fmt::format("{}:{}", w.plan.am.hz, w.plan.am.depth);
 }
 
-// The times in which a burst rises and falls are options of their own.
+// Keeps the times in which a burst rises and falls, which are separate options.
 void set_envelope(wishes& w, const value& v)
 {
     const auto& text = std::get<std::string>(v);
@@ -160,7 +160,7 @@ value get_envelope(const wishes& w)
 void set_shape(wishes& w, const value& v)
 {
     const auto& name = std::get<std::string>(v);
-    static_cast<void>(shape_stroke(name)); // refuses what is none
+    static_cast<void>(shape_stroke(name)); // throws for an unknown shape
     w.shape = name;
 }
 
