@@ -108,7 +108,8 @@ std::vector<point> pushed(std::span<const double> give, std::span<const point> f
 }
 
 // Returns the centre of energy of a burst's drives, multiplied by the gains of their tactors, if any; nothing
-// for a silent burst. \throws error (bad_input) for a tactor that the array does not have.
+// for a silent burst.
+// \throws error (bad_input) for a tactor that the array does not have.
 std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains = {})
 {
     double energy = 0.0;
@@ -315,8 +316,8 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
     constexpr int last_weighing = 1000;
     constexpr double most_work = 1e7; // steps of a tap
     constexpr double relaxation = 1.6;
-    constexpr double small = 1e-12; // change of the cost between two looks, of the cost
-    constexpr double apart = 1e-9;  // RMS of m - z, of the array's size
+    constexpr double small = 1e-12; // change of the cost between two looks, relative to it
+    constexpr double apart = 1e-9;  // converged: RMS of m - z, relative to the array's size
     const std::size_t n = targets.size();
     const auto [first, last] = detail::find_ends(l.places());
     const double apart_mm = apart * distance_mm(first, last);
