@@ -25,7 +25,7 @@ std::vector<double> meeting_times(const std::vector<meeting>& points)
     return tau;
 }
 
-/// Returns the shortest duration in which the same movement is possible: each part is linear in it.
+/// Returns the shortest duration in which the same movement is possible. Each part is linear in the duration.
 double shortest_duration_s(const timing_profile& p, const std::vector<double>& tau_s)
 {
     // part = grow * T + fixed, with tau_i = share_i * T.
@@ -56,7 +56,7 @@ double shortest_duration_s(const timing_profile& p, const std::vector<double>& t
         advice);
 }
 
-/// Leaves places out until the timing is possible, and reports them.
+/// Drops places until the timing is possible, and reports them.
 std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& points, plan& out)
 {
     const std::vector<std::size_t> keep = thin_out(j.options.profile, meeting_times(points));
@@ -77,8 +77,8 @@ std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& point
     return rest;
 }
 
-/// Returns the interior virtual tactors in the order in which they are dropped: the one with the smallest gap
-/// first, of equals the first.
+/// Returns the interior virtual tactors in the order in which they are dropped: smallest gap first, the
+/// earlier one if two gaps are equal.
 std::vector<std::size_t> find_drop_order(const std::vector<double>& tau_s)
 {
     const std::size_t n = tau_s.size();
@@ -114,7 +114,7 @@ std::vector<std::size_t> find_drop_order(const std::vector<double>& tau_s)
     return order;
 }
 
-/// Returns the places, ascending, that remain of n without the first `count` of `order`.
+/// Returns the places of n, ascending, without the first `count` of `order`.
 std::vector<std::size_t> remaining_places(std::size_t n, const std::vector<std::size_t>& order,
                                           std::size_t count)
 {
@@ -133,7 +133,7 @@ struct virtual_tactor {
     point place;
     bool on_column = false;
     bool on_row = false;
-    double moved_mm = 0.0; // by --snap
+    double moved_mm = 0.0; // distance that the option snap moved it
 };
 
 bool earlier(const virtual_tactor& a, const virtual_tactor& b)
@@ -165,7 +165,7 @@ std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
     for (const double y : g.y_mm)
         for (const double t : motion.meets_y(y))
             found.push_back({t, {motion.position(t).x_mm, y}, false, true, 0.0});
-    check_burst_count(j, static_cast<double>(found.size())); // before many millions are sorted
+    check_burst_count(j, static_cast<double>(found.size())); // checked here, before many millions are sorted
     std::stable_sort(found.begin(), found.end(), earlier);
     return found;
 }
@@ -178,7 +178,7 @@ public:
     point held(point p) const { return held_in(job_.faces, p); }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
-    /// Returns true for two at one place that the target does not leave in between.
+    /// Returns true if both are at one place that the target does not leave between them.
     bool same(const virtual_tactor& a, const virtual_tactor& b) const
     {
         if (distance_mm(a.place, b.place) > same_place_mm)
@@ -200,8 +200,8 @@ const double* line_at(const std::vector<double>& lines, double v)
     return near != lines.end() && *near <= v + same_place_mm ? &*near : nullptr;
 }
 
-/// A stretch along a line meets the others only: where the path turns from one onto another neither tells of
-/// the corner, which is on both.
+/// Adds the corners that lie on two lines. A path that runs along a line meets only the others, so a turn
+/// from one line onto another is met by neither.
 void add_corners(const job& j, const grid_lines& g, const in_array& path,
                  std::vector<virtual_tactor>& crossed)
 {
@@ -225,7 +225,8 @@ void add_corners(const job& j, const grid_lines& g, const in_array& path,
     check_burst_count(j, static_cast<double>(crossed.size()));
 }
 
-/// Start or end of the stroke. \throws error when it is off the grid's lines and may not be moved.
+/// Returns the start or end of the stroke.
+/// \throws error if it is off the grid's lines and may not be moved.
 virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path, bool start)
 {
     virtual_tactor v;
@@ -259,8 +260,8 @@ void check_inside(const job& j, const std::vector<virtual_tactor>& crossed)
     check_to(j.motion.motion.duration_s());
 }
 
-/// Finds the start, every crossing with a grid line and the end, in path order, each place once where the
-/// target does not leave it in between; start and end are never joined. At least two.
+/// Finds the start, every crossing with a grid line and the end, in path order, each place once unless the
+/// target leaves it meanwhile; start and end are never joined. At least two.
 /// \throws error (bad_input) if the path leaves the array, or starts or ends off the grid's lines.
 std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
 {
@@ -322,7 +323,7 @@ void plan_brush(const job& j, plan& out)
 
 std::vector<double> parts_s(const timing_profile& p, const std::vector<double>& tau_s)
 {
-    constexpr double slack_s = 1e-10; // a part that is negative by a rounding error is none
+    constexpr double slack_s = 1e-10; // a part that is negative by a rounding error counts as 0
     std::vector<double> parts{0.0};
     for (std::size_t i = 1; i < tau_s.size(); ++i) {
         const double gap_s = tau_s[i] - tau_s[i - 1];
@@ -343,9 +344,9 @@ std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<dou
             tau.push_back(tau_s[i]);
         return !parts_s(p, tau).empty();
     };
-    // Without a place, the part of the next grows by (2 slope part + intercept) / (1 + slope), with the part
-    // of the dropped one. No part is below -intercept / (2 slope), so that is never negative: a schedule that
-    // works stays possible if more places are dropped.
+    // Without a place, the next part grows by (2 slope part + intercept) / (1 + slope), where `part` is that
+    // of the dropped place. No part is below -intercept / (2 slope), so this growth is never negative: a
+    // possible schedule stays possible if more places are dropped.
     std::size_t few = 0;
     std::size_t many = order.size();
     while (few < many) {

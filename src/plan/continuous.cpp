@@ -22,7 +22,7 @@
 namespace tactor::detail {
 namespace {
 
-/// Parameters, ascending, at which a curve turns round as seen from the sides that it may cross.
+/// Adds the parameters, ascending, at which a curve turns round as seen from the sides that it may cross.
 void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vector<double>& turns_at)
 {
     turns_at.clear();
@@ -40,8 +40,8 @@ void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vec
 
 /// Checks that a movement stays in the array at all times. Looks only at the corners of the path and at the
 /// turns of its curves. This is enough, because the hull is convex: between two corners only a curve can
-/// leave it, and it is farthest out where it turns, seen from an edge of the hull. \throws error (bad_input)
-/// that says where the path leaves the array first.
+/// leave it, and it is farthest out where it turns, seen from an edge of the hull.
+/// \throws error (bad_input) that names the place where the path first leaves the array.
 void check_inside(const job& j)
 {
     const std::vector<hull_side> sides = hull_sides(detail::access::of(j.faces));
@@ -50,7 +50,7 @@ void check_inside(const job& j)
     target.at(0.0);
     double latest_s = 0.0;
     const auto look = [&](double t_s) {
-        latest_s = std::max(latest_s, t_s); // rounding may put the turn of a curve beside its end
+        latest_s = std::max(latest_s, t_s); // rounding may put the turn of a curve past its end
         target.at(latest_s);
     };
     for_each_span(j.motion.motion, [&](const trajectory_span& span) {
@@ -64,7 +64,7 @@ void check_inside(const job& j)
     });
 }
 
-/// Returns the movement with the places on its curves at hand.
+/// Returns the movement with precomputed places on its curves.
 trajectory prepare(const trajectory& t)
 {
     trajectory::impl made = access::of(t);
@@ -86,7 +86,7 @@ public:
     {
         if (scale_.kind != scale_kind::linear || scale_.level_db == 0.0)
             return;
-        // So that it is bounded.
+        // Moves the level into the movement, so that bounds() includes it.
         motion_ = scaled(motion_, scale_.amplitude(1.0));
         scale_.level_db = 0.0;
     }
@@ -121,7 +121,7 @@ private:
     intensity_scale scale_;
 };
 
-// Asks the user's model once for each sample, so that the plan is a value.
+// Calls the user's model once for each sample, so that the plan is a value.
 curve sample_model(const job& j)
 {
     const followed f(j);

@@ -33,10 +33,10 @@ std::vector<carrier_point> texture_course(const trajectory& motion, double textu
     return course;
 }
 
-/// Below it, as a part of the frequency, a bend is the last digits.
+/// Part of the frequency below which a bend is only rounding.
 constexpr double last_digits = 1e-12;
 
-/// Between two points the phase is off by at most `phase_error`, or as far as rounding lets it.
+/// Largest error of the phase between two points, and the rounding error that it cannot go below.
 constexpr double phase_error = 1e-11; // cycles
 constexpr double rounding = 2e-14;    // of the frequency
 /// Most carrier cycles between two points of a bent course; beyond it a double cannot resolve 1e-10 of a
@@ -44,11 +44,11 @@ constexpr double rounding = 2e-14;    // of the frequency
 constexpr double most_cycles = 4096.0;
 constexpr int most_halvings = 12;
 
-/// The frequency between two points of a way, u from 0 to 1.
+/// The frequency between two points, u from 0 to 1.
 using frequency = std::function<double(double u)>;
 
-/// Returns a course of the fifth degree through a frequency from `from` to `to`: at both ends and four places
-/// between them (Chebyshev's), and with the same mean.
+/// Returns the bend of a polynomial of the fifth degree from `from` to `to`. It agrees with the frequency at
+/// both ends, at four places between them (Chebyshev's), and in its mean.
 std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_hz)
 {
     constexpr std::array<double, 4> places{0.0954915028125263, 0.3454915028125263, 0.6545084971874737,
@@ -81,7 +81,7 @@ std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_h
     return bend;
 }
 
-/// Adds the points after the last one up to `to`, as many as the frequency between them needs.
+/// Adds points after the last one up to `to`, as many as the frequency needs.
 void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_point to, int halvings = 0)
 {
     carrier_point& from = course.back();
@@ -105,7 +105,7 @@ void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_p
         course, [&hz](double u) { return hz(0.5 + 0.5 * u); }, to, halvings + 1);
 }
 
-/// Keeps the carrier while the target rests.
+/// Returns the carrier of a profile. It stays constant while the target rests.
 std::vector<carrier_point> profile_course(const trajectory& motion, const std::vector<carrier_part>& profile)
 {
     std::vector<double> parts;

@@ -19,7 +19,7 @@
 namespace tactor::detail {
 namespace {
 
-// A sample counts as being at times so near to it.
+// Distance in steps within which a time counts as that of a sample.
 constexpr double same_step = same_time_s / continuous_step_s;
 
 void scale(burst& b, double factor)
@@ -138,7 +138,8 @@ std::shared_ptr<const curve::impl> make_samples(double duration_s, curve_samples
     return std::make_shared<sampled>(duration_s, std::move(s));
 }
 
-// Towards `next` by a part of the way; a tactor that is in one of them only comes from 0 or goes there.
+// Moves `here` towards `next` by a part of the way. A tactor that only one of them has rises from 0 or falls
+// to it.
 void mix(burst& here, const burst& next, double part)
 {
     std::vector<drive> drives;
@@ -207,7 +208,7 @@ double curve::time_s(std::uint64_t k) const noexcept
 
 void curve::sample(std::uint64_t k, burst& out) const
 {
-    detail::same_tactors nowhere{.skips = 1}; // one sample is not worth a look around
+    detail::same_tactors nowhere{.skips = 1}; // looking around does not pay for one sample
     impl_->sample(k, nowhere, out);
 }
 

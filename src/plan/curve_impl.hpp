@@ -27,7 +27,7 @@ struct curve::impl {
 
     /// Fills in position, intensity and drives of sample k < size.
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
-    /// Returns a movement whose intensity, linear between its points, no drive exceeds, if the curve drives
+    /// Returns a movement whose intensity (linear between its points) bounds all drives, if the curve drives
     /// only the first so many tactors; null if no bound is known.
     virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
@@ -49,8 +49,8 @@ namespace tactor::detail {
 std::uint64_t count_samples(double duration_s) noexcept;
 double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 
-/// Returns the plan with all its amplitudes and intensities times a factor, above 0. Samples of a curve are
-/// scaled when they are read.
+/// Returns the plan with all its amplitudes and intensities multiplied by a factor above 0. Samples of a
+/// curve are scaled when they are read.
 plan scaled(plan p, double factor);
 
 } // namespace tactor::detail

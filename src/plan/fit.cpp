@@ -66,7 +66,7 @@ public:
     bool rests() const { return extent({1.0, 0.0}) <= same_place_mm && extent({0.0, 1.0}) <= same_place_mm; }
 
 private:
-    std::vector<point> corners_; ///< of the convex hull
+    std::vector<point> corners_; ///< corners of the convex hull
     std::vector<detail::shape> curves_;
 };
 
@@ -222,7 +222,8 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
 
 std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l)
 {
-    std::map<std::pair<unsigned, std::size_t>, std::vector<std::size_t>> pictures; // each of group 0 alone
+    std::map<std::pair<unsigned, std::size_t>, std::vector<std::size_t>>
+        pictures; // strokes of group 0 are pictures by themselves
     for (std::size_t i = 0; i < strokes.size(); ++i)
         if (const auto& fit = strokes[i].fit)
             pictures[{fit->group, fit->group == 0 ? i : 0}].push_back(i);

@@ -26,7 +26,7 @@ bool in_one_line(point a, point b, point c)
     return std::abs(turn(a, b, c)) <= same_place_mm * longest;
 }
 
-// Its edge included, which rounding may make either side.
+// Returns true if p is in the triangle or on its edge, with room for rounding.
 bool holds(point a, point b, point c, point p)
 {
     if (turn(a, b, c) < 0.0)
@@ -34,7 +34,7 @@ bool holds(point a, point b, point c, point p)
     return triangle_distance_mm(a, b, c, p) <= 2.0 * same_place_mm;
 }
 
-// Distance from a whole number of nanoseconds that is rounding in the last digits.
+// Part of a nanosecond within which a time counts as whole.
 constexpr double slack = 1e-4;
 
 std::string seconds(double nanoseconds)
@@ -138,7 +138,7 @@ void follower::refuse(double t_s) const
                     hint);
     double in = inside_s_;
     double out = t_s;
-    // Until no double is left between, which is well within a micrometre.
+    // Bisects until no double is left between, which is well within a micrometre.
     for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
         (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
     throw error(error_kind::bad_input, job_.name(),

@@ -25,12 +25,12 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-constexpr double shortest_burst_s = 0.0001; // under a frame at 8 kHz there would be nothing to hear
+constexpr double shortest_burst_s = 0.0001; // shorter than a frame at 8 kHz
 constexpr double longest_free_soa_s = 10.0;
 // Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
 constexpr double longest_fitted_s = 0.160;
-// Part of the distance between two tactors. People hardly feel a movement over less (Remache-Vinueza,
-// Trujillo-Leon and Vidal-Verdu, Displays 2024).
+// Least travel that people feel well as movement, as a part of the distance between two tactors
+// (Remache-Vinueza, Trujillo-Leon and Vidal-Verdu, Displays 2024).
 constexpr double least_travel = 0.2;
 // The longest side of a face without a warning, in pitches. Along a diagonal of a grid of 20 x 20 mm gaussian
 // is 1.2 mm RMS off, of 20 x 24 mm 2.5, of 20 x 28 mm 4.2, of 20 x 40 mm 9.
@@ -76,7 +76,7 @@ void warn_of_short_bursts(const detail::burst_count& c, plan& p)
                                          c.shortest_s * 1e3));
 }
 
-/// Warns of a stroke that hardly moves. A stroke that rests is not meant to.
+/// Warns of a stroke that hardly moves, but not of a stroke that rests.
 void warn_of_short_travel(double pitch_mm, plan& p)
 {
     if (p.stroke_length_mm > 0.0 && p.stroke_length_mm < least_travel * pitch_mm * (1.0 - 1e-9))
@@ -104,7 +104,7 @@ void warn_of_units(const stroke& s, plan& p)
         p.warnings.push_back(std::move(text));
 }
 
-/// gaussian takes 0.6 of the pitch, the distance to the nearest tactor, whatever the direction.
+/// Warns of faces that are too wide for gaussian, whose width is 0.6 of the pitch in every direction.
 void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
 {
     if (m.name() != to_string(phantom_kind::gaussian) || l.faces().empty())
@@ -126,7 +126,7 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
 }
 
 /// Warns of faces that the algorithm does not use, and of those that miss their places. `missed` has counted
-/// the bursts; of a curve, some 4000 samples are looked at.
+/// the bursts; for a curve, this checks some 4000 samples.
 void warn_of_faces(const layout& l, const plan_options& o, detail::missed_places& missed, plan& p)
 {
     if (o.faces != p.faces)
@@ -144,7 +144,8 @@ void warn_of_faces(const layout& l, const plan_options& o, detail::missed_places
         p.warnings.push_back(std::move(text));
 }
 
-/// A recorder that was switched off leaves a file that is shorter than its header says.
+/// Warns of missing samples: a recorder that was switched off leaves a file that is shorter than its header
+/// says.
 void warn_of_missing_samples(plan& p)
 {
     const std::shared_ptr<const recording>& r = p.wave.recorded;
@@ -184,6 +185,7 @@ double check_carrier(double hz)
     return hz;
 }
 
+/// Checks the timing law.
 /// \throws error (bad_input) for a law that no SOA can follow.
 void check_profile(const timing_profile& p)
 {
@@ -201,12 +203,13 @@ void check_profile(const timing_profile& p)
                fmt::format("give more than the intercept, {}", p.intercept_s));
 }
 
+/// Checks options.
 /// \throws error (bad_input) for options that the algorithm cannot use.
 void check_options(const plan_options& o)
 {
     if (o.algorithm == algorithm_kind::tactile_brush)
         check_profile(o.profile);
-    // Checks SOA and burst. Of the other algorithms, which have none, only an SOA that was chosen.
+    // Checks SOA and burst. The other algorithms have none, so only an SOA that the user set is checked.
     if (o.algorithm == algorithm_kind::park2016 || o.soa_s != plan_options{}.soa_s)
         static_cast<void>(burst_duration_s(o));
     if (o.algorithm != algorithm_kind::park2016)

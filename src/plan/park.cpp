@@ -11,9 +11,9 @@
 namespace tactor::detail {
 namespace {
 
-constexpr std::size_t bursts_at_once = 1024; // most that a burst_taker gets
+constexpr std::size_t bursts_at_once = 1024; // most for one call of a burst_taker
 
-/// Returns the SOA of the fewest intervals that are not longer than the requested one.
+/// Returns the longest SOA, at most the requested one, that divides the duration into equal intervals.
 /// \throws error (bad_input) if their bursts are too short.
 double fit_soa(const job& j, double duration_s)
 {
@@ -47,7 +47,7 @@ void plan_park(const job& j, plan& out)
     const double count = one_burst ? 1.0 : std::floor((end + same_time_s) / soa) + 1.0;
     check_burst_count(j, count);
 
-    // A fitted SOA may be a rounding error shorter than the burst.
+    // Rounding may make a fitted SOA shorter than the burst.
     const double duration =
         j.options.burst_s ? std::min(*j.options.burst_s, soa) : law_duration_s(j.options.profile, soa);
     follower target(j);
@@ -57,7 +57,7 @@ void plan_park(const job& j, plan& out)
         // No burst lasts longer than the SOA, so none overlaps those that were passed on.
         if (j.take && out.bursts.size() == bursts_at_once)
             pass_on(j, out);
-        // The last one may be a rounding error past the end.
+        // Rounding may put the last one past the end.
         const double t = std::min(k * soa, end);
         out.bursts.push_back(make_burst(j, k * soa, duration, target.at(t), t));
     }

@@ -22,8 +22,8 @@ namespace {
 
 using site = boost::polygon::point_data<std::int32_t>;
 
-// Boost.Polygon is exact for 32-bit sites. A power of two as scale keeps a grid of whole
-// millimetres exactly rectangular; the grain of a 1 m array is 5e-7 mm.
+// Converts points to 32-bit sites, for which Boost.Polygon is exact. The scale is a power of two, which keeps
+// a grid of whole millimetres exactly rectangular; the grain of a 1 m array is 5e-7 mm.
 std::vector<site> quantise(const std::vector<point>& points)
 {
     const box b = box_around(points);
@@ -101,7 +101,7 @@ std::vector<bordering> borders(const std::vector<triangle>& triangles)
     return edges;
 }
 
-/// Drops, from the hull inwards, triangles that are flat against the hull.
+/// Filter that drops, from the hull inwards, triangles that are flat against the hull.
 class sliver_filter {
 public:
     sliver_filter(const std::vector<point>& points, std::vector<triangle>& triangles)
@@ -250,7 +250,7 @@ bool cocircular(const std::array<point, 4>& p)
     const auto best = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
     if (!(area[best] > 0.0))
         return false;
-    // Circle through the best conditioned three, seen from one of them.
+    // Circle through the three points that determine it best, seen from one of them.
     const point o = p[(best + 1) % 4];
     const point u{p[(best + 2) % 4].x_mm - o.x_mm, p[(best + 2) % 4].y_mm - o.y_mm};
     const point v{p[(best + 3) % 4].x_mm - o.x_mm, p[(best + 3) % 4].y_mm - o.y_mm};
@@ -268,7 +268,8 @@ bool cocircular(const std::array<point, 4>& p)
     return off * area[best] <= same_place_mm * (area[0] + area[1] + area[2] + area[3]);
 }
 
-/// Neighbours on one circle each need not mean that all are: a chain may drift off it.
+/// Returns true if all points of a ring are on one circle. Neighbours on one circle each are not enough: a
+/// chain may drift off it.
 bool on_one_circle(const std::vector<point>& points, const std::vector<unsigned>& ring)
 {
     const std::size_t k = ring.size();

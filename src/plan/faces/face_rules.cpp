@@ -17,7 +17,7 @@ struct found_segment {
     rank_pair ends;
 };
 
-/// Returns false where p is not on the segment between the two.
+/// Adds the segment if p is on it; else returns false.
 bool take_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::vector<found_segment>& out)
 {
     const point a = l.points[u];
@@ -28,7 +28,7 @@ bool take_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::v
     return true;
 }
 
-/// Returns the shortest, of ties the one of lowest rank.
+/// Returns the shortest segment; of equal ones, that of lowest rank.
 std::optional<rank_pair> shortest(const std::vector<found_segment>& found)
 {
     if (found.empty())
@@ -43,8 +43,8 @@ std::optional<rank_pair> shortest(const std::vector<found_segment>& found)
     return best;
 }
 
-/// From a corner of a convex ring, the other corners are in order of direction. So the segments from that
-/// corner that pass p are neighbours, and bisection finds the first.
+/// Finds the segments of a convex ring that pass p. From a corner, the other corners are in order of
+/// direction, so the segments from that corner that pass p are neighbours, and bisection finds the first.
 void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, point p,
                       std::vector<found_segment>& out)
 {
@@ -73,7 +73,7 @@ void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, 
 struct seen_tactor {
     unsigned rank;
     double far_mm;
-    double side = 0.0; ///< of the line from the closest one through p; > 0: left
+    double side = 0.0; ///< side of the line from the closest tactor through p; > 0: left
 };
 
 /// Tactors as seen from a point, mostly the few of a face.
@@ -87,7 +87,8 @@ seen_tactors see(const layout::impl& l, const std::vector<unsigned>& ranks, poin
     return all;
 }
 
-/// Returns the closest tactor for which `allowed` holds, of ties the lowest; null if there is none.
+/// Returns the closest tactor for which `allowed` holds; of equal distances the lowest rank; null if there is
+/// none.
 template <class Allowed>
 const seen_tactor* closest(const seen_tactors& all, const Allowed& allowed)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Tactors to which a point belongs (rendering model, section 4). Tactors go by rank.
+/// Tactors to which a point belongs (rendering model, section 4), by rank.
 #pragma once
 
 #include <array>
@@ -21,29 +21,29 @@ struct near_triple {
     std::array<double, 3> distances;
 };
 
-/// Returns the tactor that p is on, of the given faces.
+/// Returns the tactor of the given faces at p, if any.
 std::optional<unsigned> tactor_at(const layout::impl& l, const std::vector<unsigned>& faces, point p);
 
-/// Applies rule 2: the segment between two tactors of one face that p is on; of several the shortest, then
-/// the one of lowest rank. p is on no tactor. O(k log k) in a face's tactors.
+/// Applies rule 2: returns the segment between two tactors of one face that p is on; of several the shortest,
+/// then that of lowest rank. p must not be on a tactor. O(k log k) in a face's tactors.
 std::optional<rank_pair> segment_at(const layout::impl& l, const std::vector<unsigned>& faces, point p);
 
 /// Applies rule 2 to three tactors, wherever they lie.
 std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& three, point p);
 
-/// Applies rule 3: of all triangles of the face's tactors that hold p, the first by the distances of its
-/// tactors: the closest, then the second, then the third. p is on no segment of the face. O(k).
+/// Applies rule 3: returns the triangle of the face's tactors that holds p and whose closest, then second,
+/// then third tactor is nearest to p. p must not be on a segment of the face. O(k).
 std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p);
 
-/// Returns the three of these tactors that are closest to p, in this order, of ties the lowest. There are
-/// three or more. O(k).
+/// Returns the three of these (at least three) tactors that are closest to p, in this order; of equal
+/// distances the lowest rank. O(k).
 near_triple closest_three(const layout::impl& l, const std::vector<unsigned>& ranks, point p);
 
 /// Returns the segment between neighbours on the face's ring that is nearest to p.
 rank_pair nearest_edge(const layout::impl& l, unsigned face, point p);
 
-/// Returns the triangle that holds p, or else is nearest, of the fan from the face's lowest tactor; for faces
-/// of three and more tactors.
+/// Returns the triangle that holds p, or else the nearest one, from the fan of the face's lowest tactor. The
+/// face has at least three tactors.
 rank_triple fan_triangle(const layout::impl& l, unsigned face, point p);
 
 } // namespace tactor::detail

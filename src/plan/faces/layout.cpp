@@ -81,7 +81,7 @@ using detail::turn;
 
 using rings = std::vector<std::vector<unsigned>>;
 
-/// Indices by row, then by column; rows nearer than same_place_mm are one row.
+/// Returns indices by row, then by column; rows nearer than same_place_mm are one row.
 std::vector<unsigned> rank_places(const std::vector<point>& places)
 {
     std::vector<unsigned> order(places.size());
@@ -102,7 +102,7 @@ std::vector<unsigned> rank_places(const std::vector<point>& places)
     return order;
 }
 
-/// Ranks along the line on which all tactors lie; empty where they do not.
+/// Returns the ranks along the line on which all tactors lie; empty if they do not lie on one.
 std::vector<unsigned> find_line_order(const std::vector<point>& points)
 {
     const std::pair<point, point> ends = detail::find_ends(points);
@@ -120,7 +120,7 @@ std::vector<unsigned> find_line_order(const std::vector<point>& points)
 rings segments(const std::vector<unsigned>& order)
 {
     if (order.size() == 1)
-        return rings(1, order); // not {order}: gcc 14 sees an overflow there that is none
+        return rings(1, order); // not {order}: gcc 14 reports a false overflow there
     rings s;
     for (std::size_t i = 1; i < order.size(); ++i)
         s.push_back({std::min(order[i - 1], order[i]), std::max(order[i - 1], order[i])});
@@ -140,7 +140,8 @@ std::vector<box> make_boxes(const rings& faces, const std::vector<point>& points
     return boxes;
 }
 
-/// A tactor's nearest neighbour is always next to it on the ring of one of its faces.
+/// Returns the median distance to the nearest neighbour, which is always next on the ring of one of a
+/// tactor's faces.
 double median_pitch(const rings& faces, const std::vector<point>& points)
 {
     if (points.size() < 2)
@@ -159,7 +160,7 @@ double median_pitch(const rings& faces, const std::vector<point>& points)
     return d.size() % 2 == 1 ? *middle : std::midpoint(*middle, *std::max_element(d.begin(), middle));
 }
 
-/// Searches for the wedge of a convex polygon that p is in, seen from its first corner.
+/// Returns true if p is in a convex polygon. Searches for the wedge that p is in, seen from the first corner.
 bool inside(const std::vector<point>& hull, point p)
 {
     if (hull.size() < 3)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Contents of a layout. Inside, tactors go by rank: by row, then by column. So the order in which a file
-/// lists them does not matter.
+/// Contents of a layout. It identifies tactors by rank (by row, then by column), so that their order in a
+/// file does not matter.
 #pragma once
 
 #include <atomic>
@@ -20,12 +20,12 @@ struct layout::impl {
     explicit impl(const array& a);
 
     std::vector<point> places;                   ///< by index
-    std::vector<std::vector<unsigned>> by_index; ///< faces for the public
+    std::vector<std::vector<unsigned>> by_index; ///< public faces, by index
 
     std::vector<point> points;      ///< by rank
     std::vector<unsigned> index_of; ///< rank to index
-    /// Rings of ranks with positive turn, each from its lowest rank. Where all tactors are in one line:
-    /// pairs of neighbours, or the one tactor.
+    /// Rings of ranks with positive turn, each from its lowest rank. If all tactors are in one line: pairs of
+    /// neighbours, or the single tactor.
     std::vector<std::vector<unsigned>> faces;
     std::vector<point> hull;                  ///< corners with positive turn; none for a line
     std::vector<std::pair<point, point>> rim; ///< edges of the hull, or the line's segments
@@ -33,14 +33,15 @@ struct layout::impl {
 
     std::vector<detail::box> face_boxes; ///< round each face
 
-    double clear_mm = 0.0; ///< farther from an edge than any rounding reaches
-    /// Face of the point before, mostly the next one's too. Threads share it; a wrong one only costs time.
+    double clear_mm = 0.0; ///< distance from an edge that is beyond any rounding
+    /// Face of the previous point, which is mostly that of the next one, too. Threads share it; a wrong one
+    /// only costs time.
     mutable std::atomic<unsigned> latest = 0;
 
-    /// Replaces `out` by the faces that hold p within same_place_mm; never none. p must be in the hull.
+    /// Replaces `out` by the faces (at least one) that hold p within same_place_mm. p must be in the hull.
     void faces_at(point p, std::vector<unsigned>& out) const;
-    /// Returns the one face that holds p, if p keeps clear of its edges. Looks only at the face of the point
-    /// before; if it returns none, use faces_at().
+    /// Returns the face that holds p if p keeps clear of its edges. Checks only the face of the previous
+    /// point; if it returns none, use faces_at().
     std::optional<unsigned> clear_face(point p) const noexcept;
     /// Returns true if p also keeps clear of all segments between the tactors of a face.
     bool clear_of_diagonals(unsigned face, point p) const noexcept;

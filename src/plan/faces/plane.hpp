@@ -15,7 +15,7 @@
 
 namespace tactor::detail {
 
-/// Returns twice the signed area of the triangle a, b, c: > 0 where c lies to the side of y from x.
+/// Returns twice the signed area of the triangle a, b, c: > 0 if the way a, b, c turns from x towards y.
 inline double turn(point a, point b, point c) noexcept
 {
     return (b.x_mm - a.x_mm) * (c.y_mm - a.y_mm) - (b.y_mm - a.y_mm) * (c.x_mm - a.x_mm);
@@ -56,7 +56,7 @@ inline bool finite(point p) noexcept
     return std::isfinite(p.x_mm) && std::isfinite(p.y_mm);
 }
 
-/// Returns two points that are as far apart as any, in a line; elsewhere nearly so.
+/// Returns two points of greatest distance if all are in a line; else nearly so.
 std::pair<point, point> find_ends(const std::vector<point>& points);
 
 /// Returns the corners of the convex hull, with positive turn; two for points in one line, none for a single
@@ -67,7 +67,7 @@ using triangle = std::array<unsigned, 3>;
 
 /// Returns Delaunay triangles of points that are not all in one line, each with positive turn(). Slivers on
 /// the hull that are thinner than same_place_mm are left out: the points are in line there.
-/// \throws error (bad_input) where two points are too near to each other for the extent of them all.
+/// \throws error (bad_input) if two points are too near to each other for the extent of all.
 std::vector<triangle> delaunay(const std::vector<point>& points);
 
 /// Joins neighbouring triangles whose points lie on one circle (each point within same_place_mm of

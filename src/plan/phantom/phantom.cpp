@@ -45,7 +45,7 @@ point check_request(const layout& l, point p, double a_v)
     return held_in(l, p);
 }
 
-/// Adds a drive of the tactor of that rank if its amplitude is above 0. Drives stay in order of tactor.
+/// Adds a drive for the tactor of that rank if its amplitude is above 0. Keeps drives in order of tactor.
 void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out)
 {
     if (!(amplitude > 0.0))
@@ -55,7 +55,7 @@ void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<dri
         std::iter_swap(d, d - 1);
 }
 
-// Segments of so few tactors are looked at one by one.
+// Number of tactors up to which their segments are tried one by one.
 constexpr std::size_t few = 8;
 
 double distance(const layout& l, unsigned rank, point p)
@@ -99,7 +99,7 @@ void add_three(const layout& l, const near_triple& three, double a_v, std::vecto
         add_drive(l, three.tactors[i], a[i], out);
 }
 
-/// Park et al. 2016: Eq. (2) on a segment, Eq. (10) in a triangle.
+/// The model of Park et al. 2016: Eq. (2) on a segment, Eq. (10) in a triangle.
 class inverse_distance final : public model_of_three {
 public:
     explicit inverse_distance(const layout& l) : layout_(l) {}
@@ -212,7 +212,7 @@ public:
 
 private:
     layout layout_;
-    std::vector<unsigned> ranks_; ///< of all tactors
+    std::vector<unsigned> ranks_; ///< ranks of all tactors
 };
 
 constexpr double least_weight = 1e-9;
@@ -241,7 +241,7 @@ weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point 
     if (std::all_of(w.begin(), w.end(), [](const weight& x) { return x.b >= 0.0; }) &&
         turn(at(0), at(1), at(2)) > 0.0)
         return w;
-    // Beside the triangle within the tolerance: on its nearest edge.
+    // A point outside the triangle, but within the tolerance, counts as on its nearest edge.
     const auto off = [&](std::size_t i) { return segment_distance_mm(at(i), at(i + 1), p); };
     std::size_t best = 0;
     for (std::size_t i = 1; i < 3; ++i)
@@ -295,7 +295,7 @@ public:
         return wound ? free_mm(l, *face, p, false) : 0.0;
     }
 
-    // Only along an edge of the face: of the fan's other sides, the side of them decides.
+    // Handles only points along an edge of the face. On the fan's other sides, the side of them decides.
     unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
                          rank_triple& taken) const override
     {
@@ -309,7 +309,7 @@ public:
 
     std::array<double, 3> amplitudes(const rank_triple& three, unsigned, point p, double a_v) const override
     {
-        // Beside the triangle they come in an order of their own.
+        // Outside the triangle they come in another order.
         std::array<double, 3> out{};
         for (const weight& w : drop_least(in_triangle(detail::access::of(layout_), three, p)))
             if (const double a = amplitude(w.b) * a_v; a > 0.0)
@@ -318,7 +318,7 @@ public:
     }
 
 private:
-    /// Sum 1, the least ones zero.
+    /// Returns coordinates whose sum is 1. The smallest are set to 0.
     weights_of_three coordinates(unsigned face, point p) const
     {
         const layout::impl& l = detail::access::of(layout_);
@@ -362,9 +362,9 @@ private:
 };
 
 constexpr double sigma_in_pitches = 0.6;
-constexpr double least_share = 0.01; // of the largest weight
+constexpr double least_share = 0.01; // of the largest weight; smaller ones are dropped
 
-/// After Yun, Oh and Choi, WHC 2019: all tactors near the point, by distance.
+/// The model of Yun, Oh and Choi, WHC 2019: all tactors near the point, by distance.
 class gaussian final : public phantom_model {
 public:
     explicit gaussian(const layout& l) : layout_(l), variance_(square(sigma_in_pitches * l.pitch_mm())) {}
@@ -409,7 +409,7 @@ private:
 std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o)
 {
     if (!o.custom_phantom) {
-        check_faces(o.phantom, o.faces); // where the algorithm does not use them, too
+        check_faces(o.phantom, o.faces); // also if the algorithm does not use them
         return make_phantom(o.phantom, l, faces_used(o));
     }
     if (o.faces != faces_kind::delaunay)
@@ -452,7 +452,7 @@ std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& 
     detail::check_faces(k, f);
     switch (k) {
     case phantom_kind::inverse_distance:
-        // In one line there are segments, and no three.
+        // An array in one line has segments, and no triangles.
         if (f == faces_kind::nearest && !l.faces().empty())
             return std::make_shared<detail::nearest_three>(l);
         return std::make_shared<detail::inverse_distance>(l);

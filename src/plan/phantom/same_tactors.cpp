@@ -11,7 +11,7 @@
 namespace tactor::detail {
 namespace {
 
-// On a border without a disc, the neighbours mostly have none either.
+// Most places to skip after a border without a disc: its neighbours mostly have none, either.
 constexpr unsigned most_skips = 16;
 
 /// Returns the distance, mm, that p may move along its segment before it comes near another one. p is on a
@@ -29,11 +29,11 @@ double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, 
                     least = std::min(least, segment_distance_mm(a, l.points[ring[k]], p));
         }
     }
-    // Less the reach of the other segments' tolerance, and of this one's.
+    // Subtracts the tolerances of the other segments and of this one.
     return (least - 3.0 * same_place_mm - l.clear_mm) * (1.0 - 1e-9);
 }
 
-// The three or two that the model takes from p on.
+// Fills in the three or two tactors that the model uses at p.
 void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
 {
     seen.count = 3;
@@ -95,11 +95,11 @@ double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance)
         for (std::size_t k = 0; k < i; ++k) {
             const point b = l.points[ring[k]];
             least = std::min(least, std::abs(turn(a, b, p)) / length_mm(a, b) - l.clear_mm);
-            // Both distances change by no more than the way.
+            // Both distances change by at most the distance moved.
             if (by_distance)
                 least = std::min(least, 0.5 * (std::abs(far - length_mm(p, b)) - same_place_mm) - l.clear_mm);
         }
     }
-    return least * (1.0 - 1e-9); // for the rounding of these distances
+    return least * (1.0 - 1e-9); // margin for the rounding of these distances
 }
 } // namespace tactor::detail
