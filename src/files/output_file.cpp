@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int attempts = 100;
-/// Time between two questions whether to go on waiting.
+/// Time between two calls of `go_on`.
 constexpr int moment_ms = 20;
 /// Room for the suffix within the 255 bytes of a name.
 constexpr std::size_t longest_stem = 200;
@@ -54,7 +54,7 @@ int descriptor_in(const fs::path& p)
     throw error(error_kind::bad_input, source_place{file.string()}, why, hint).with_os_code(code);
 }
 
-/// Returns true for a folder in which anybody may put a link: the user may not have meant its target.
+/// Returns true for a folder in which any user may put a link, so that its target may not be meant.
 bool is_shared(const fs::path& folder)
 {
     struct stat s {};
@@ -83,7 +83,7 @@ fs::path follow_links(const fs::path& asked)
 
 constexpr std::string_view hash_name = "sha256";
 
-/// Tests whether bytes are as with_hash() returned them.
+/// Returns true if with_hash() made these bytes.
 bool has_own_hash(std::string bytes, const hash_note& note)
 {
     constexpr std::size_t digits = 64;
@@ -221,8 +221,8 @@ bool output_file::wait_for_room()
     return true;
 }
 
-// The file gets the owner and rights of the one that it replaces, as far as the system allows: only root may
-// give files away. Sets the owner first, since that may take rights away.
+// Gives the file the owner and rights of the one that it replaces, as far as the system allows: only root may
+// give files away. Sets the owner first, since that may remove rights.
 void output_file::open_beside()
 {
     constexpr mode_t rights = 0777;
@@ -299,10 +299,10 @@ void output_file::commit()
         fail(failure_);
     if (given_up_)
         fail(ECANCELED);
-    // Else a power cut could leave an empty file under the name.
+    // Without it a power cut could leave an empty file under the name.
     if (!temporary_.empty() && ::fsync(fd_.get()) != 0)
         fail(errno);
-    // A network file system may tell of a full disk only now.
+    // A network file system may report a full disk only now.
     if (fd_.close() != 0 && errno != EINTR)
         fail(errno);
     if (temporary_.empty())

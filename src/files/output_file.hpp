@@ -15,52 +15,53 @@
 
 namespace tactor::detail {
 
-/// Returns the note in which a format keeps a SHA-256: "sha256", one byte and the digits are in it.
+/// Maker of the note in which a format keeps a SHA-256. The note contains "sha256", one byte and the digits.
 using hash_note = std::function<std::string(std::string_view digits)>;
 
 /// Returns bytes with the note of their SHA-256 at a place.
 std::string with_hash(std::string bytes, std::size_t at, const hash_note& note);
 
-/// Refuses to replace a file that was read as input, and, without `force`, one that another program or a
-/// person wrote or changed: a regular file, not empty, of whose first 16 kB and last 1 kB `is_ours` returns
-/// false, or without the note that with_hash() gave it. \throws error (bad_input).
+/// Refuses to replace a file that was read as input. Without `force` it also refuses a file that another
+/// program or a person wrote or changed: a regular, non-empty file for whose first 16 kB and last 1 kB
+/// `is_ours` returns false, or that lacks the right note of with_hash().
+/// \throws error (bad_input).
 void check_replaced(const std::filesystem::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
                     const hash_note& note);
 
-/// Syncs the names in a folder (empty: this one), so that they survive a power cut, too. Not every file
-/// system can, and none says so.
+/// Syncs the names in a folder (empty: the current one), so that they survive a power cut, too. Ignores
+/// failures: some file systems cannot do it.
 void sync_folder(const std::filesystem::path& folder) noexcept;
 
-/// Opens a new file beside `file`; commit() gives it that name, the destructor removes it otherwise: whoever
-/// looks finds the old file, whole, or the new one, which keeps the old one's owner and rights. Of a link
-/// what it points to is replaced, but no link is followed in a folder where anybody may put one (sticky, as
-/// /tmp). What exists under the name and is no regular file (a device, a pipe), and names of descriptors
-/// (/dev/stdout, /dev/fd/N), are written to directly, in order. One thread at a time; all but a pipe's
-/// members may block on the file system.
+/// A new file beside `file`. commit() gives it that name; the destructor removes it otherwise. So other
+/// programs see the old file or the whole new one, which keeps the old one's owner and rights. Follows links,
+/// except in a folder in which any user may put one (sticky, such as /tmp). Writes directly, in order, to
+/// existing files that are not regular (a device, a pipe) and to names of descriptors (/dev/stdout,
+/// /dev/fd/N). One thread at a time; the members may block on the file system, and on a pipe's reader.
 class output_file {
 public:
-    /// Returns false to give up. Called some 50 times a second while a pipe has no reader or is full.
+    /// Function that returns false to give up. Called some 50 times a second while a pipe has no reader or is
+    /// full.
     using patience = std::function<bool()>;
 
-    /// Waits for a reader where `file` is a pipe without one. `writer`: who owns what is written.
+    /// Opens the file. Waits for a reader if `file` is a pipe without one. `writer`: owner of the content.
     /// \throws error: bad_input for an empty name, one that is a folder's, a folder that is missing, a link
-    ///         in a sticky folder, or a file that was read as input; runtime for what the system refuses.
+    ///         in a sticky folder, or a file that was read as input; runtime if the system refuses.
     explicit output_file(const std::filesystem::path& file, patience go_on = {},
                          owner_kind writer = owner_kind::user);
     ~output_file();
     output_file(const output_file&) = delete;
     output_file& operator=(const output_file&) = delete;
 
-    /// Appends all of it, or less where the system fails or the caller gives up; commit() says why. Returns
-    /// the bytes written.
+    /// Appends all bytes, or fewer if the system fails or the caller gives up; commit() reports the reason.
+    /// Returns the number of bytes written.
     std::int64_t write(const void* data, std::int64_t bytes);
 
     /// Returns errno of the first write that failed, or 0.
     int failure() const noexcept { return failure_; }
     /// Returns true once `go_on` returned false.
     bool given_up() const noexcept { return given_up_; }
-    /// Returns true if nothing failed, and nobody gave up.
+    /// Returns true if no write failed and the caller did not give up.
     bool good() const noexcept { return failure_ == 0 && !given_up_; }
     /// Syncs the file and renames it to its final name. \throws error (runtime) if a write, the sync or the
     /// rename failed, or the caller gave up.
@@ -76,8 +77,8 @@ private:
 
     std::filesystem::path asked_;     ///< as the user named it, for messages
     std::filesystem::path target_;    ///< links followed
-    std::filesystem::path temporary_; ///< beside the target, until that is replaced by it
-    bool directly_ = false;           ///< no other file is there: a pipe, a device, a descriptor
+    std::filesystem::path temporary_; ///< beside the target, until it replaces that
+    bool directly_ = false;           ///< written without a temporary file: a pipe, a device, a descriptor
     patience go_on_;
     owned_fd fd_;
     int failure_ = 0;

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: MIT
-// The four target motions of Park et al. 2016 on its palm-3x3: the figure that shows them is not in the text;
-// these agree with all that the text says of them. And two for palm-2x4, which is too low for the paper's
-// circles.
+// Preset strokes. Four are the target motions of Park et al. 2016 on its palm-3x3: its text does not contain
+// the figure that shows them, but they agree with all that it says about them. Two are for palm-2x4, which is
+// too low for the paper's circles.
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
@@ -45,13 +44,13 @@ struct drawing {
     double duration_s = 0.0; // 0: at the usual speed
 };
 
-// Within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
+// Strokes within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
 constexpr std::array drawings{
     drawing{"wave-2x4", "M 0 10 C 5 -2 15 -2 20 10 S 35 22 40 10 S 55 -2 60 10", 2.1},
     drawing{"round-2x4", "M 58 10 A 28 8 0 0 1 2 10 A 28 8 0 0 1 58 10", 2.8},
 };
 
-// For first steps on any array, which gives them their size. y points down: they begin clockwise.
+// Shapes for first steps on any array, which gives them their size. y points down, so they begin clockwise.
 constexpr std::array shapes{
     drawing{"tap", "M 0 0", 0.3},
     drawing{"line", "M 0 0 H 100"},

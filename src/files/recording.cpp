@@ -33,7 +33,8 @@ constexpr std::uint16_t integers = 1;
 constexpr std::uint16_t floats = 3;
 constexpr std::uint16_t extensible = 0xFFFE;
 constexpr std::uint32_t elsewhere = 0xFFFFFFFF; ///< the size is in the chunk ds64
-/// Recorders that write to a pipe announce about 2 GB or 4 GB, more than a recording may have.
+/// Least announced size that counts as unknown. Recorders that write to a pipe announce about 2 GB or 4 GB,
+/// more than a recording may have.
 constexpr std::uint32_t open_from = 0x7FF00000;
 constexpr std::size_t head_bytes = 8; ///< of a chunk
 
@@ -54,11 +55,12 @@ struct wav_format {
     std::uint16_t bytes = 0; ///< of a sample with its padding
 };
 
-/// Format and samples of a WAV file, whatever chunks lie between and whatever sizes a recorder left open.
+/// Format and samples of a WAV file, whatever chunks lie between and even if the recorder did not write the
+/// sizes.
 struct wav_parts {
     wav_format format;
     std::string_view samples;    ///< within the file
-    std::uint64_t announced = 0; ///< bytes of samples by the header; as many as there are where that is open
+    std::uint64_t announced = 0; ///< bytes of samples by the header; if it has no size, the existing bytes
 };
 
 [[noreturn]] void refuse_wav(const std::string& name, std::string_view why,
@@ -116,7 +118,7 @@ bool goes_on_in_chunks(std::string_view file, std::size_t at)
     return at >= file.size();
 }
 
-/// Bytes of samples by the header, or none where that leaves them open.
+/// Returns the bytes of samples by the header; nothing if it has no size.
 std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t at,
                                              std::optional<std::uint64_t> long_size)
 {
@@ -128,8 +130,8 @@ std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t 
     return size >= open_from ? std::nullopt : std::optional<std::uint64_t>(size);
 }
 
-/// Returns true if 24 bits are the upper three bytes of four (Microsoft); those of ALSA (S24_LE) and of what
-/// records with it have the lower three and, above, their sign, zeros or anything.
+/// Returns true if 24-bit samples are in the upper three of four bytes (Microsoft). ALSA (S24_LE) and
+/// programs that record with it use the lower three, with the sign, zeros or anything above.
 bool is_in_upper_bytes(std::string_view samples)
 {
     bool signs_only = true;
@@ -142,7 +144,7 @@ bool is_in_upper_bytes(std::string_view samples)
     return !signs_only;
 }
 
-/// Returns an integer of that many bytes as a fraction of full scale.
+/// Returns an integer of this many bytes as a fraction of full scale.
 float decode_integer(std::string_view sample, std::size_t bytes)
 {
     if (bytes == 1)
@@ -246,7 +248,8 @@ waveform parse_noise(std::string_view band)
 
 recording load_recording(const std::filesystem::path& file)
 {
-    // A pipe of the shell, <(...), has its other end already; this one would be waited for in silence.
+    // A pipe of the shell, <(...), already has its other end; waiting for another pipe would hang without a
+    // message.
     std::error_code unknown;
     if (std::filesystem::is_fifo(file, unknown) &&
         std::filesystem::exists(std::filesystem::canonical(file, unknown)))
@@ -258,7 +261,7 @@ recording load_recording(const std::filesystem::path& file)
 
 bool waveform_names_file(std::string_view text) noexcept
 {
-    // A word without a dot or a folder is a slip of a name.
+    // A word without a dot or a folder is a mistyped name.
     return text.find_first_of("./") != std::string_view::npos && !text.starts_with(noise_prefix);
 }
 

@@ -30,7 +30,7 @@ namespace {
 struct setup_source {
     std::string name;             // in messages
     std::filesystem::path folder; // of relative names; empty: the current one
-    unsigned depth = 1;           // files that led here, this one included
+    unsigned depth = 1;           // number of nested files, this one included
 };
 
 // A setup, and the places of values on which two tables must agree.
@@ -112,7 +112,7 @@ array read_grid(const toml_table& grid)
     }
 }
 
-// Reads the array of another file. The other tables of that file hold here too, unless this file has them.
+// Reads the array of another file. The other tables of that file apply, too, unless this file has them.
 array read_included(const toml_table& table, const setup_source& source, located_setup& out)
 {
     const std::filesystem::path file = source.folder / *table.text("file");
@@ -120,7 +120,8 @@ array read_included(const toml_table& table, const setup_source& source, located
         table.fail("file", "a chain of too many files",
                    fmt::format("use at most {}, and no file that names itself", longest_chain));
     std::error_code ignored;
-    // Opening a pipe that someone else's file names could block, and a device may take it for a command.
+    // A file from somebody else may name a pipe, which could block, or a device, for which opening may be a
+    // command.
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
@@ -132,7 +133,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     return *std::exchange(out.contents.array, std::nullopt);
 }
 
-// Reads a text that is shown to people as it is.
+// Reads a text that people will see unchanged.
 std::optional<std::string> read_label(const toml_table& t, std::string_view key)
 {
     std::optional<std::string> text = t.text(key);
@@ -141,7 +142,7 @@ std::optional<std::string> read_label(const toml_table& t, std::string_view key)
     return text;
 }
 
-// Reads the kind of actuator. A missing one is unknown, which no file can say.
+// Reads the kind of actuator. A missing one means unknown, which no file can name.
 std::optional<actuator_kind> read_actuator(const toml_table& t)
 {
     std::vector<std::string_view> known = kind_names<actuator_kind>();
@@ -195,8 +196,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
     t.actuator = read_actuator(entry).value_or(t.actuator);
 }
 
-// Reads entries without a grid: each is a tactor and says where it is. `max_dbfs`: limit of those that say
-// none.
+// Reads entries without a grid: each is a tactor and has its own place. `max_dbfs`: limit of those without
+// one.
 void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, array& a)
 {
     for (const toml_table& e : entries) {
@@ -256,8 +257,7 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
     return a;
 }
 
-// Mirrors and turns the array about the middle of its tactors. Each stays the tactor and the channel that it
-// is.
+// Mirrors and turns the array about the middle of its tactors. Each keeps its index and its channel.
 void turn_array(const toml_table& table, array& a)
 {
     if (!table.has("mirror") && !table.has("rotate_deg"))
@@ -384,7 +384,7 @@ void read_amplifier(const toml_table& t, located_setup& out)
 
 constexpr const char* code_hint = "code = { channel = 15 }, { chip, offsets } or { serial, baud }";
 
-// Reads where numbers go.
+// Reads the outputs of event numbers.
 void read_code(const toml_table& t, code_settings& c)
 {
     t.only({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl", "serial", "baud"});
@@ -491,14 +491,14 @@ void read_limits(const toml_table& t, located_setup& out)
     out.contents.limits = join_limits(out.contents.limits, l);
 }
 
-// Reads [defaults] as it is written.
+// Reads [defaults] without interpretation.
 void read_defaults(const toml_table& t, located_setup& out)
 {
     for (const toml_table::said_key& e : t.entries())
         add_default(out.contents.defaults, read_value(t, e, *e.value, false));
 }
 
-// Reads [serve] as it is written.
+// Reads [serve] without interpretation.
 void read_serve(const toml_table& t, located_setup& out)
 {
     std::vector<written_value> all;
@@ -526,8 +526,8 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
             t.number("posterior_sd_db", spread_db), t.need(t.whole("trials", 0, any_number), "trials")};
 }
 
-// Reads and checks [calibration] and [[calibration.tactor]], which say how thresholds were measured, after
-// the array. Keeps the participant and the carrier.
+// Reads and checks [calibration] and [[calibration.tactor]], which describe the measurement of thresholds.
+// The array must be read before. Keeps the participant and the carrier.
 void read_calibration(const toml_table& t, located_setup& out)
 {
     if (!out.contents.array)

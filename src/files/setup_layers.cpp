@@ -15,7 +15,8 @@ bool limits_time(const limit_settings& l)
     return l.max_drive_s || l.window_s;
 }
 
-// Returns true for a ceiling that stays below a later one. One that is no number stays, to be refused.
+// Returns true for a ceiling that is lower than the later one. A value that is not a number stays, to be
+// refused later.
 bool keeps_ceiling(const written_value& earlier, const written_value& later)
 {
     if (!earlier.name.starts_with("max_"))

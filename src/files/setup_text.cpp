@@ -38,14 +38,14 @@ public:
         else
             add_value(key, toml_string(v));
     }
-    /// Adds nothing without a value.
+    /// Adds a line; nothing without a value.
     template <class T>
     void add(std::string_view key, const std::optional<T>& v)
     {
         if (v)
             add(key, *v);
     }
-    /// Adds nothing for the usual value.
+    /// Adds a line; nothing for the default value.
     template <class T>
     void add_unusual(std::string_view key, const T& v, const T& usual)
     {
@@ -80,7 +80,7 @@ std::string line_text(const gpio_line_name& l)
     return fmt::format("chip = {}, offset = {}", toml_string(l.chip), l.offset.value_or(0));
 }
 
-// Writes milliseconds. 15 digits give the number that was divided.
+// Converts seconds to milliseconds. 15 digits restore the number that was divided.
 std::string ms(double s)
 {
     return fmt::format("{:.15g}", s * 1e3);
@@ -175,7 +175,7 @@ std::optional<double> shared_limit(const array& a)
     return same && first != 0.0 ? std::optional(first) : std::nullopt;
 }
 
-// `shared_dbfs`: limit that [array] says.
+// Adds a tactor. `shared_dbfs`: limit in [array].
 void add_tactor(lines& out, const tactor_spec& t, double shared_dbfs)
 {
     out.begin_table("[[tactor]]");
@@ -214,7 +214,7 @@ void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
         out.add("duration_s", i.duration_s);
 }
 
-// Writes speeds and times as they are now: the movement may have been stretched.
+// Writes the current speeds and times: the movement may have been stretched.
 void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 {
     const pace& p = *law.moves;
@@ -261,7 +261,7 @@ void add_sound(lines& out, const stroke& s)
     if (s.sound.wave) {
         const waveform& w = *s.sound.wave;
         const bool recorded = w.kind == waveform_kind::recording;
-        // The new file may lie elsewhere.
+        // The new file may be in another folder.
         out.add("waveform",
                 recorded ? std::filesystem::absolute(waveform_text(w)).string() : waveform_text(w));
         if (w.kind == waveform_kind::noise)
@@ -293,7 +293,7 @@ void add_choices(lines& out, const stroke& s)
     }
 }
 
-// Writes the start. In a file of one stroke there is nothing that it could count from.
+// Writes the start. In a file of one stroke it has nothing to count from.
 void add_start(lines& out, const stroke& s, bool follows)
 {
     if (s.anchor.from != start_from_kind::piece && follows)

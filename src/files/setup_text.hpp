@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Arrays, what their files say, and strokes, as TOML that load_setup() and load_strokes() read again.
+/// Arrays, the other tables of their files, and strokes, as TOML that load_setup() and load_strokes() can
+/// read.
 #pragma once
 
 #include <span>
@@ -22,7 +23,7 @@ std::string array_text(const array& a);
 /// same text drive an array alike.
 std::string besides_text(const setup& besides);
 
-/// Writes an array file with both. It needs no other file.
+/// Writes an array file with both kinds of tables. It needs no other file.
 std::string array_text(const array& a, const setup& besides);
 
 /// Writes the tables [calibration] and [[calibration.tactor]].
@@ -30,11 +31,12 @@ std::string origin_text(const calibration_origin& o);
 
 /// Writes the table [stroke]. It has no place for warnings, the note and a start that counts from another
 /// stroke.
-/// \throws error (bad_input) for what no file can say: an intensity above 1 along a path, a stroke of a
-///         group that is fitted as a single picture.
+/// \throws error (bad_input) for a stroke that no file can hold: an intensity above 1 along a path, a stroke
+///         of a group that is fitted as a single picture.
 std::string stroke_text(const stroke& s);
 
-/// Writes that, or a table [[stroke]] for each of several; each may start after the one before it.
+/// Writes a table [stroke], or a table [[stroke]] for each of several; each may start after the one before
+/// it.
 /// \throws error (bad_input) as above, and for a start that counts from a group (start_anchor::back).
 std::string strokes_text(std::span<const stroke> all);
 

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// WAV files that are in memory.
+// SPDX-License-Identifier: MIT WAV files in memory.
 #pragma once
 
 #include <string>

@@ -36,7 +36,7 @@ struct input {
 
     bool is(const struct stat& s) const noexcept { return device == s.st_dev && inode == s.st_ino; }
 
-    /// Returns false for a file that is gone: a file system gives its number to the next one.
+    /// Returns false if the file is gone: a file system gives its number to the next file.
     bool is_still(const fs::path& name) const noexcept
     {
         struct stat now {};
@@ -55,7 +55,7 @@ inputs& known_inputs()
     return i;
 }
 
-// Returns the first line with something on it that is not a comment.
+// Returns the first line that is not blank and not a comment.
 std::string_view find_first_line(std::string_view text)
 {
     while (!text.empty()) {
@@ -71,8 +71,7 @@ std::string_view find_first_line(std::string_view text)
     return {};
 }
 
-// Returns true for a header, also one that forgets t_s: TOML has no line with a comma and without '=' at its
-// top.
+// Returns true for a CSV header, even without t_s: TOML has no line with a comma and without '=' at its top.
 bool looks_like_csv(std::string_view line)
 {
     return line.find_first_of("=[{") == std::string_view::npos &&
@@ -154,7 +153,7 @@ void note_input(const fs::path& file, owner_kind owner)
     inputs& i = known_inputs();
     const std::lock_guard locked(i.guard);
     input& read = i.all.try_emplace(std::move(whole), input{.owner = owner}).first->second;
-    read = {s.st_dev, s.st_ino, std::min(owner, read.owner)}; // once the user's, always the user's
+    read = {s.st_dev, s.st_ino, std::min(owner, read.owner)}; // a file of the user stays one
 }
 
 void refuse_input(const struct stat& file, const fs::path& output, owner_kind writer)
@@ -183,7 +182,7 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
     std::size_t capacity = 0;
     for (;;) {
         if (text.size_ == capacity) {
-            // Large ones are moved by mapping their pages elsewhere, not by a copy beside them.
+            // realloc() moves large buffers by mapping their pages elsewhere, without a second copy.
             capacity = std::min(std::max(capacity * 2, first_bytes), max_bytes + 1);
             void* moved = std::realloc(text.bytes_.get(), capacity);
             if (moved == nullptr)
@@ -223,7 +222,7 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
     refuse_other_kind(text, name, hint);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
-    // Without a mark, every other byte of plain letters is 0.
+    // In UTF-16 without a mark, every other byte of plain letters is 0.
     const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
     if (marked || bare)
         throw error(error_kind::bad_input, source_place{name}, "is UTF-16, not UTF-8",
@@ -255,7 +254,7 @@ std::string_view find_stroke_format(std::string_view text, const std::filesystem
         if (extension == fmt::format(".{}", format))
             return format;
     const std::string_view form = find_text_form(text);
-    return form == "json" ? "toml" : form; // the reader of TOML explains what it is
+    return form == "json" ? "toml" : form; // the reader of TOML explains the fault
 }
 
 void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,
@@ -298,7 +297,7 @@ std::string stem(const std::string& name)
 source_place find_place(std::string_view text, std::size_t offset, const std::string& name)
 {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
-    const std::size_t line_start = before.rfind('\n') + 1; // 0 where there is none
+    const std::size_t line_start = before.rfind('\n') + 1; // 0 without one
     return {name, static_cast<unsigned>(1 + std::count(before.begin(), before.end(), '\n')),
             static_cast<unsigned>(before.size() - line_start + 1)};
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Whole texts that a user named, places in them, and the files that this process has read, which an output
-/// must not replace by chance. Sound, pictures, reports and logs replace none of them, under whatever name or
-/// link; a record replaces a record, which the program brings up to date; text that a caller of the library
-/// writes (Python's write()) replaces any: that caller reads a stroke, an array or a plan, changes it and
-/// writes it again.
+/// must not replace by chance. Sound, pictures, reports and logs replace none of them, under any name or
+/// link. A record replaces a record, which the program updates. Text that a caller of the library writes
+/// (Python's write()) replaces any: that caller reads a stroke, an array or a plan, changes it and writes it
+/// again.
 #pragma once
 
 #include <cstddef>
@@ -32,23 +32,25 @@ enum class owner_kind {
 /// Returns true if a descriptor is open to that file.
 bool is_open_to(int descriptor, const struct stat& file);
 
-/// Set by a program, before it reads anything, whose standard output and error must not go into an input.
+/// Protection of standard output and error against going into an input. A program sets it before it reads
+/// anything.
 inline bool guards_standard_output = false;
 
 /// Remembers a file that is read; a descriptor's name is /dev/fd/N. Pipes and devices do not count. Any
-/// thread; blocks on the file system. \throws error (bad_input) where a guarded output would go into it.
+/// thread; blocks on the file system.
+/// \throws error (bad_input) if a guarded output would go into it.
 void note_input(const std::filesystem::path& file, owner_kind owner = owner_kind::user);
 
-/// Refuses to replace a file that was read and that this writer may not replace. An input that has been
-/// deleted or replaced since does not count. Any thread; blocks on the file system.
+/// Refuses to replace a file that was read, if this writer may not replace it. Ignores inputs that have been
+/// deleted or replaced since. Any thread; blocks on the file system.
 /// \throws error (bad_input) with the name `output`.
 void refuse_input(const struct stat& file, const std::filesystem::path& output,
                   owner_kind writer = owner_kind::user);
 
-/// Array and configuration files are written by hand.
+/// Longest array or configuration file: they are written by hand.
 inline constexpr std::size_t max_setup_bytes = std::size_t{16} << 20;
 
-/// The bytes of a file. Not a std::string: that copies itself as it grows, and texts may have 512 MB.
+/// Bytes of a file. Not a std::string, which copies itself as it grows: texts may have 512 MB.
 class whole_text {
 public:
     operator std::string_view() const noexcept { return {bytes_.get(), size_}; }
@@ -60,7 +62,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Reads a descriptor up to its end. Needs little more memory than what it returns.
+/// Reads a descriptor up to its end. Needs little more memory than the text.
 /// \throws error (bad_input) with `name` when it cannot be read or gives more than `max_bytes`.
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
 
@@ -74,26 +76,26 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 inline constexpr std::string_view text_kinds_hint =
     "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"";
 
-/// Refuses sound, pictures, archives, UTF-16, as some editors save text, and other bytes that are no text.
-/// \throws error (bad_input) that says which: a reader's own error would be about bytes.
+/// Refuses sound, pictures, archives, UTF-16 (which some editors save) and other bytes that are not text.
+/// \throws error (bad_input) that names the kind; a reader's own error would be about bytes.
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = text_kinds_hint);
 
 /// Returns "svg", "csv", "json" or "toml": the form of a text by its first line.
 std::string_view find_text_form(std::string_view text);
-/// Explains why a text cannot be read as `wanted`, a form of find_text_form(). \throws error (bad_input) for
-/// what is no text, is empty or has another form; returns for others.
+/// Explains why a text cannot be read as `wanted`, a form of find_text_form(). Returns if it may be.
+/// \throws error (bad_input) for bytes that are not text, an empty text, and another form.
 void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,
                        std::string_view hint = text_kinds_hint);
 
-/// Longest stroke file: ten million timed points with all their digits; more is the wrong file.
+/// Longest stroke file: ten million timed points with all their digits. A longer one is the wrong file.
 inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;
 
 /// Returns "svg", "csv" or "toml": the format of a text with strokes by the extension of its file's name, in
 /// upper or lower case, else by its first line.
 std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file);
 
-/// Longest text that is kept as a tree while it is read: TOML takes some 40 bytes of memory for one of text,
-/// so a million timed points fit, and 2 GB are not exceeded.
+/// Longest text that is kept as a tree while it is read. TOML takes some 40 bytes of memory for a byte of
+/// text, so a million timed points fit into 2 GB.
 inline constexpr std::size_t max_tree_bytes = std::size_t{48} << 20;
 
 /// Checks the length. \throws error (bad_input) for text longer than `max_bytes`.

@@ -17,8 +17,8 @@
 namespace tactor::detail {
 namespace {
 
-// Deeper than any table of ours. toml++ limits nested values, but in 3.3 not dotted keys, and frees
-// nested tables by recursion: a key of 100 000 dots would overflow the stack.
+// Most dots of a key, more than any of tactor's. toml++ limits nested values, but in 3.3 not dotted keys, and
+// frees nested tables by recursion: a key of 100 000 dots would overflow the stack.
 constexpr unsigned max_dots = 16;
 
 bool bare(char c) noexcept
@@ -43,12 +43,12 @@ std::size_t after_string(std::string_view t, std::size_t i)
                 ++i;
             return i;
         } else if (t[i] == '\n' && !multiline)
-            return i; // toml++ will complain
+            return i; // toml++ reports the error
     }
     return t.size();
 }
 
-/// A text without its strings and comments, for a look at what remains. Offsets and lines are the text's.
+/// A text with its strings and comments masked. Offsets and lines stay the same.
 struct masked_text {
     std::string text = {};                       ///< '_' in strings, '#' in comments
     std::optional<std::size_t> open_string = {}; ///< start of the first string without an end
@@ -98,8 +98,8 @@ bool in_unit(char c) noexcept
            static_cast<unsigned char>(c) >= 0x80;
 }
 
-// Refuses a line with a number that has a unit or a decimal comma, as people write them. `masked` is the text
-// without its strings.
+// Refuses a line with a number that has a unit or a decimal comma, as people write them. `masked`: the text
+// with its strings masked.
 void refuse_foreign_number(std::string_view masked, const source_place& line)
 {
     for (unsigned i = 1; i < line.line && !masked.empty(); ++i)
@@ -190,7 +190,7 @@ std::string shown(const toml::node& n)
         return fmt::format("{}", i->get());
     if (const auto* f = n.as_floating_point()) {
         std::string text = fmt::format("{}", f->get());
-        // 2.0 is no whole number: a message about one must show that.
+        // 2.0 is not a whole number, and messages must show the difference.
         return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
     }
     if (const auto* b = n.as_boolean())

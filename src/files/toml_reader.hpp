@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// TOML with types, ranges and known keys checked; every complaint has its line and column.
+// TOML with checked types, ranges and keys. Every error has its line and column.
 #pragma once
 
 #include <optional>
@@ -21,29 +20,29 @@
 
 namespace tactor::detail {
 
-/// Hints for a document that is no TOML.
+/// Hints for a document that is not TOML.
 struct toml_hints {
     std::string_view manual = "tactor.toml(5)";
-    std::string_view kinds = text_kinds_hint; ///< where it is something else
+    std::string_view kinds = text_kinds_hint; ///< for other kinds of text
 };
 
 /// Parses a document. `name` stands for the file in messages.
 /// \throws error (bad_input) with file, line and column.
 toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints = {});
 
-/// Range of turns and angles, degrees.
+/// Range of rotations and angles, degrees.
 inline constexpr bounds turn_deg{-3600.0, 3600.0};
 
 /// A table of a document. Refers to the document and to the name: both must outlive it.
 class toml_table {
 public:
-    /// `title` stands for the table in messages, e.g. "[output]".
+    /// Refers to a table. `title` stands for the table in messages, e.g. "[output]".
     toml_table(const toml::table& t, std::string title, const std::string& file);
 
     /// Refuses other keys than these. \throws error that names the nearest.
     void only(const std::vector<std::string_view>& known) const;
 
-    /// A key with its value.
+    /// A key of the table with its value.
     struct said_key {
         std::string_view key;
         const toml::node* value = nullptr;
@@ -76,12 +75,12 @@ public:
         const auto name = choice(key, kind_names<Kind>());
         return name ? find_kind<Kind>(*name) : std::nullopt;
     }
-    /// `example` shows a wrong value's author how it is written.
+    /// Returns a table; nothing if the key is missing. The error for another type shows `example`.
     std::optional<toml_table> table(std::string_view key, std::string title, std::string_view example) const;
     /// Returns an array of tables, [[key]]; an empty list if there is none.
     std::vector<toml_table> tables(std::string_view key) const;
     const toml::array* list(std::string_view key, std::string_view of_what) const;
-    /// Returns a list of texts, at most so many; an empty list if there is none.
+    /// Returns a list of at most `most` texts; an empty list if there is none.
     std::vector<std::string> texts(std::string_view key, std::size_t most) const;
     const toml::node* node(std::string_view key) const { return table_->get(key); }
 
@@ -93,11 +92,12 @@ public:
     /// Returns a list of two values.
     const toml::array& pair(const toml::node& entry, std::string_view called) const;
     point to_point(const toml::node& xy, std::string_view called) const;
-    /// Reads a flag, a number or a text. Refuses whole numbers that a double does not hold.
+    /// Reads a flag, a number or a text. Refuses whole numbers that a double cannot hold.
     std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
                                                                   std::string_view called) const;
     double to_number(const toml::node& n, std::string_view called, bounds b) const;
-    /// Returns a value that must be there. \throws error that says the key is missing.
+    /// Returns a required value.
+    /// \throws error if the key is missing.
     template <class T>
     T need(std::optional<T> value, std::string_view key) const
     {
@@ -106,10 +106,11 @@ public:
         return *std::move(value);
     }
 
-    /// Returns the one of `keys` that is there. \throws error for none or more than one.
+    /// Returns the key of `keys` that the table has.
+    /// \throws error for none or more than one.
     std::string_view one_of(const std::vector<std::string_view>& keys) const;
 
-    /// Returns make(). Adds the key and its place to an error of it.
+    /// Returns make(). Adds the key and its place to its errors.
     template <class F>
     auto at_key(std::string_view key, F make) const
     {

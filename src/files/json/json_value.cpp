@@ -43,7 +43,7 @@ ordered_json read_object(const std::string& text, const std::string& file)
         why = "it is not an object";
     } catch (const ordered_json::parse_error& e) {
         byte = std::min(e.byte, text.size());
-    } catch (const ordered_json::exception&) { // a number that no double holds
+    } catch (const ordered_json::exception&) { // a number beyond the range of double
     }
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
     const auto line = static_cast<unsigned>(1 + std::count(text.begin(), end, '\n'));

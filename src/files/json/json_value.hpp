@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A value of a JSON file with its place there, such as bursts[3].onset_s, for what is refused; and values
-/// read by their members.
+/// Values of a JSON file with their places in it, such as bursts[3].onset_s, for messages; and values read by
+/// their members.
 #pragma once
 
 #include <array>
@@ -26,12 +26,12 @@ namespace tactor::files {
 /// Reads a text that is one object. \throws error (bad_input) with the file's name and the line.
 nlohmann::ordered_json read_object(const std::string& text, const std::string& file);
 
-/// A value that may not be there: null is not there either. It refers to the document and to the file's name,
-/// which must outlive it. All but there() and is_list() throw error (bad_input) for a value of another type,
-/// and what begins with need_ for one that is not there.
+/// A value that may be missing; null counts as missing. It refers to the document and to the file's name,
+/// which must outlive it. All members but there() and is_list() throw error (bad_input) for a value of
+/// another type, and the members need_... also for a missing value.
 class json_value {
 public:
-    /// `hint` ends what is refused.
+    /// Makes a value; `hint` ends the messages about it.
     json_value(const nlohmann::ordered_json& document, const std::string& file, const char* hint,
                std::string place = {})
         : json_value(&document, file, hint, std::move(place))
@@ -46,11 +46,12 @@ public:
     /// Returns the names of an object's members.
     std::vector<std::string> keys() const;
 
-    /// A member of an object; not there where this is not.
+    /// Returns a member of an object; missing if this value is.
     json_value operator[](const std::string& key) const;
-    /// This value, where its object has it; it may be null. \throws error (bad_input).
+    /// Returns this value if its object has it, even as null.
+    /// \throws error (bad_input).
     const json_value& need_member() const;
-    /// Returns the members of a list; none where it is not there.
+    /// Returns the members of a list; none if it is missing.
     std::vector<json_value> list() const;
 
     std::optional<double> number() const;
@@ -72,14 +73,14 @@ public:
     }
     std::vector<json_value> need_list() const;
     std::vector<double> need_numbers() const;
-    /// \throws error (bad_input) for what is no object.
+    /// Checks that this is an object.
+    /// \throws error (bad_input).
     void need_members() const;
 
-    /// Returns any value in words: members of objects and lists with commas between; empty where it is not
-    /// there.
+    /// Returns any value in words: members of objects and lists with commas between; empty if it is missing.
     std::string words() const;
 
-    /// \throws error (bad_input) with file and place. An empty hint is that of the file.
+    /// Throws error (bad_input) with file and place. An empty hint is replaced by that of the file.
     [[noreturn]] void refuse(std::string_view why, std::string_view hint = {}) const;
 
 private:
@@ -105,8 +106,8 @@ private:
     std::string place_;
 };
 
-/// Reads the members of one object, strictly: each must be there, of its type and within its bounds, and no
-/// other. All throw error (bad_input) with the file and the place.
+/// Strict reader of the members of one object: each must be present, of its type and within its bounds, and
+/// no other may be. All functions throw error (bad_input) with the file and the place.
 class json_reader {
 public:
     explicit json_reader(json_value object) : object_(std::move(object)) {}
@@ -162,7 +163,7 @@ public:
         for (const json_value& one : member(name).need_list())
             read(one, [&](auto& io) { each(io, all.emplace_back(), all.size() - 1); });
     }
-    /// Its rows are taken as they are parsed, and are not there any more.
+    /// Reads the rows that the parser has already taken out of the document.
     template <class T, class ForEach, class Each>
     void rows(const char* name, const ForEach&, const detail::about&, const Each&)
     {
@@ -175,7 +176,7 @@ public:
     }
     void new_line() const noexcept {}
 
-    /// \throws error (bad_input) for a member that nobody asked for.
+    /// \throws error (bad_input) for a member that was not read.
     void finish() const;
 
     /// Reads an object whose members are described by `body(io)`.
@@ -256,7 +257,7 @@ nlohmann::ordered_json or_null(const std::optional<T>& v)
     return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
 }
 
-/// Returns null for an empty text.
+/// Returns the text, or null if it is empty.
 inline nlohmann::ordered_json or_null(const std::string& s)
 {
     return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);

@@ -90,7 +90,8 @@ public:
         T one{};
         put(name, described(make_list(describe_object([&](auto& io) { each(io, one); })), what), true);
     }
-    /// Describes members that are there only where another one is null; after those that always are.
+    /// Describes members that are present only if another one is null. Call it after describing those that
+    /// are always present.
     template <class Body>
     void where_null(const char* name, bool, const Body& body)
     {

@@ -20,18 +20,18 @@
 
 namespace tactor::files {
 
-/// Takes the next part of a text. Whatever it throws ends the writing.
+/// Receiver of the next part of a text. An exception from it ends the writing.
 using text_sink = std::function<void(std::string_view)>;
 
-/// Appends a number as nlohmann-json writes it: 1.0, not 1; null where it is not finite.
+/// Appends a number as nlohmann-json writes it: 1.0, not 1; null if it is not finite.
 void append_number(std::string& out, double v);
-/// Appends a text in quotes. Bytes that are no UTF-8 become U+FFFD.
+/// Appends a text in quotes. Bytes that are not UTF-8 become U+FFFD.
 void append_text(std::string& out, std::string_view text);
 
-/// Writes members as one object into a text, without building a document.
+/// Writer of members as an object, without building a document.
 class json_writer {
 public:
-    /// Both must outlive it. The sink gets the text row by row and leaves it empty; null: nobody does.
+    /// Writes to `out`. The sink, if any, takes the text row by row and empties it. Both must outlive this.
     explicit json_writer(std::string& out, const text_sink* sink = nullptr) : out_(out), sink_(sink) {}
 
     template <class T>
@@ -52,13 +52,13 @@ public:
         begin(name);
         put(v);
     }
-    /// Writes a text that is a closed set's name, as a rule.
+    /// Writes a text that is usually the name of a closed set's value.
     template <class Kind>
     void named(const char* name, const std::string& v, const detail::about& what)
     {
         (*this)(name, v, what);
     }
-    /// Writes a text that is one of these.
+    /// Writes a text that is one of the list.
     void one_of(const char* name, std::string_view text, std::initializer_list<const char*>,
                 const detail::about&)
     {
@@ -69,13 +69,13 @@ public:
         begin(name);
         append_text(out_, text);
     }
-    /// Writes what follows from other members, and what nobody reads back.
+    /// Writes a value that follows from other members, or that no reader needs.
     template <class Make>
     void fact(const char* name, const Make& make, const detail::about& what)
     {
         (*this)(name, make(), what);
     }
-    /// Writes a member in another form than the value has it.
+    /// Writes a member in another form than its value has.
     template <class T, class Take>
     void with(const char* name, const T& v, const Take&, const detail::about& what)
     {
@@ -88,7 +88,7 @@ public:
         begin(name);
         braces(body);
     }
-    /// The same of a value: each(io, value).
+    /// Writes a value as an object that each(io, value) describes.
     template <class T, class Each>
     void object_or_null(const char* name, const std::optional<T>& v, const detail::about&, const Each& each)
     {
@@ -117,7 +117,7 @@ public:
         }
         out_ += ']';
     }
-    /// Writes a list of which there may be half a million, each on a line: for_each(row) calls row(value).
+    /// Writes a list of up to half a million items, each on a line: for_each(row) calls row(value).
     template <class T, class ForEach, class Each>
     void rows(const char* name, const ForEach& for_each, const detail::about&, const Each& each)
     {
@@ -134,14 +134,14 @@ public:
         });
         out_ += ']';
     }
-    /// Writes members that are there only where another one is null.
+    /// Writes members that are present only if another one is null.
     template <class Body>
     void where_null(const char*, bool is_null, const Body& body)
     {
         if (is_null)
             body(*this);
     }
-    /// Says that of two members there is exactly one.
+    /// Declares that exactly one of two members is present.
     void exactly_one(const char*, const char*) const noexcept {}
     /// Puts the next member on a line of its own.
     void new_line() { next_line_ = true; }

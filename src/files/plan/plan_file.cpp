@@ -37,7 +37,7 @@ bool is_same(const recording_facts& f, const recording& r)
     return f.sha256 == r.sha256 && f.frames == r.samples.size() && f.rate == r.rate_hz;
 }
 
-// Returns the recording if it lies beside the plan, where both may have been moved.
+// Returns the recording if it is in the folder of the plan: both may have been moved there.
 std::optional<waveform> find_beside(const std::string& file, const plan_sound& s)
 {
     namespace fs = std::filesystem;
@@ -69,7 +69,8 @@ waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings
     }
 }
 
-// Puts the sound into the plan; reads the WAV file that it names, or refuses it. `stroke` is where it stands.
+// Puts the sound into the plan. Reads the WAV file that it names, or refuses it. `stroke`: place of the sound
+// in the file.
 void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recordings_kind recordings)
 {
     if (s.waveform)
@@ -105,7 +106,7 @@ void check_amplitudes(const json_value& f, const std::string& name, const plan& 
                                        d.amplitude, intensity));
 }
 
-// Drives and their order as planners make them.
+// Checks that drives and their order are such as planners make.
 void check_bursts(const json_value& f, const array& a, const plan& p, const std::vector<burst>& bursts)
 {
     double latest = 0.0;
@@ -137,7 +138,7 @@ void check_samples(const json_value& f, const array& a, const plan& p, const cur
             f["points"].refuse(fmt::format("drive tactor {} of {}", d.tactor, a.tactors.size()));
 }
 
-// Checks what a plan says of its bursts or points, and puts them into it.
+// Checks a plan's claims about its bursts or points, and puts them into it.
 void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> bursts, curve_samples samples)
 {
     plan& p = parts.plan;
@@ -199,7 +200,7 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
     return s;
 }
 
-/// Follows the parser: bursts and samples are taken as they end, and dropped from the document.
+/// Parser events. It takes bursts and samples as they end, and drops them from the document.
 class reader {
 public:
     reader(std::string file, recordings_kind recordings) : file_(std::move(file)), recordings_(recordings) {}
@@ -229,7 +230,7 @@ public:
 private:
     std::string key(std::size_t depth) const { return depth < keys_.size() ? keys_[depth] : ""; }
 
-    // Takes a burst or a sample, so deep in a plan.
+    // Takes a burst or a sample at that depth of a plan.
     bool take(std::size_t deep, std::size_t top, const ordered_json& j)
     {
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
@@ -246,7 +247,7 @@ private:
         return is_burst || is_sample;
     }
 
-    // Returns false for a plan that is taken.
+    // Returns false for a plan that has been taken.
     bool end_plan(const ordered_json& j, bool whole)
     {
         const json_value all(j, file_, hint);
@@ -284,11 +285,11 @@ private:
     std::vector<burst> bursts_;
     curve_samples samples_;
     plan_file read_;
-    plan_parts none_; ///< of which no burst that is read needs anything
+    plan_parts none_; ///< empty parts, for bursts that need none
 };
 
-// Throws what the library says, "[json.exception.parse_error.101] parse error at line 1, column 2: syntax
-// error ...", with the place as that of the error.
+// Throws the library's message, "[json.exception.parse_error.101] parse error at line 1, column 2: syntax
+// error ...", as an error with that place.
 [[noreturn]] void refuse_json(std::string_view what, const std::string& name)
 {
     constexpr std::string_view line = "parse error at line ";
@@ -328,7 +329,7 @@ plan_file read_from(Input&& in, const std::string& name, recordings_kind recordi
 plan_file load_plans(const std::string& file)
 {
     std::ifstream in(file, std::ios::binary);
-    in.peek(); // a folder opens, and cannot be read
+    in.peek(); // a folder can be opened, but not read
     const int code = errno;
     if (in.bad() || !in.is_open())
         throw error(error_kind::bad_input, source_place{file}, std::generic_category().message(code),

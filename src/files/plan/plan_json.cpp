@@ -29,12 +29,12 @@ using detail::nullable;
 using detail::prediction;
 using detail::row_spread;
 
-/// Members of plan_parts, of a plan that is written.
+/// Members of plan_parts for a plan that is written.
 struct written_plan {
     const std::string& name;
     note_kind note;
     double start_s;
-    bool follows; ///< the stroke before it, from the frame at which that ends
+    bool follows; ///< it begins at the frame at which the stroke before it ends
     const tactor::plan& plan;
     plan_sound sound;
     const std::optional<fitting>& fit;
@@ -144,7 +144,7 @@ plan_sound record_sound(const plan& p)
     if (w.kind == waveform_kind::noise)
         s.noise_seed = w.seed;
     if (w.kind == waveform_kind::recording) {
-        // Its whole path: the plan may be played in another folder.
+        // Writes the absolute path, because the plan may be played in another folder.
         std::error_code nowhere;
         if (const auto whole = std::filesystem::absolute(*s.waveform, nowhere); !nowhere)
             s.waveform = whole.string();

@@ -20,13 +20,13 @@
 
 namespace tactor::files {
 
-/// Strokes, and the plans that were made of them.
+/// Strokes, and the plans that were made from them.
 struct piece {
     std::string name = {};
     std::vector<stroke> strokes = {};
-    std::vector<placed_plan> plans = {}; ///< one a stroke; none before they are planned
-    std::optional<fitting> fit = {};     ///< what fitting did to all strokes together
-    /// Results of compensation without their plans; none, or one a stroke.
+    std::vector<placed_plan> plans = {}; ///< one for each stroke; empty before planning
+    std::optional<fitting> fit = {};     ///< fitting of all strokes together
+    /// Results of compensation without their plans: empty, or one for each stroke.
     std::vector<compensated_plan> moved = {};
 
     /// Returns the start of each plan and the end of the last, s from the start of all.
@@ -34,7 +34,8 @@ struct piece {
     double total_s() const;
 };
 
-/// A piece that is planned, and everything that its samples depend on. What it refers to must outlive it.
+/// A piece that is planned, and everything that its samples depend on. It refers to objects that must outlive
+/// it.
 struct plan_record {
     const piece& made;
     const array& tactors;
@@ -42,7 +43,7 @@ struct plan_record {
     const render_options& options; ///< with rate and channels
 };
 
-/// Writes one object a plan, row by row: a plan of an hour needs no document in memory.
+/// Writes an object for each plan, row by row, so that a plan of an hour needs no document in memory.
 void write_plans(const plan_record& r, const text_sink& out);
 
 /// Returns what write_plans() writes.
@@ -51,11 +52,11 @@ std::string plans_text(const plan_record& r);
 /// Returns the schema of such an object.
 nlohmann::ordered_json plan_schema();
 
-/// Returns what a stroke's note means, for people; empty for none.
+/// Returns the meaning of a stroke's note, for people; empty for none.
 std::string note_text(note_kind n);
 
-/// Calls row(burst) for each burst; for `continuous`, for each point at which the phantom is evaluated, which
-/// lasts until the next.
+/// Calls row(burst) for each burst. For `continuous`, calls it for each point at which the phantom is
+/// evaluated; a point lasts until the next.
 template <class Row>
 void for_each_row(const plan& p, Row&& row)
 {
@@ -74,7 +75,7 @@ enum class recordings_kind { read, refuse };
 
 /// Contents of a file with one plan or several (schemas tactor-plan/1 and tactor-plans/1).
 struct plan_file {
-    piece made; ///< its strokes as far as plans tell: where their bursts or samples are
+    piece made; ///< strokes as far as plans describe them: places of bursts or samples
     array tactors;
     render_options render; ///< with rate, channels and marker
 };
@@ -85,24 +86,25 @@ inline bool is_plan_file(std::string_view argument) noexcept
     return argument.ends_with(".json");
 }
 
-/// Reads burst by burst, so that the text is never in memory. Blocks on the file system.
+/// Reads plans burst by burst, so that the whole text is never in memory. Blocks on the file system.
 /// \throws error (bad_input) with the line and column, or the field.
 plan_file load_plans(const std::string& file);
-/// Reads a text that is in memory; `name` stands for it in messages. A text that comes from elsewhere may
-/// have no recordings: they are files of this machine.
+/// Reads a text in memory; `name` stands for it in messages. A text from another machine must not name
+/// recordings, which are files of this one.
 plan_file read_plans(std::string_view text, const std::string& name,
                      recordings_kind recordings = recordings_kind::read);
 
 /// Returns true if a text can only be plans: no stroke file begins with a brace.
 bool holds_plans(std::string_view text) noexcept;
 
-/// Compares arrays. \throws error (bad_input) where places, channels or polarities differ.
+/// Compares arrays.
+/// \throws error (bad_input) if places, channels or polarities differ.
 void check_same_array(const std::string& file, const array& made_for, const array& in_use);
 
-/// Returns what a prediction says in numbers, and why it says nothing.
+/// Returns the numbers of a prediction, or the reason why there are none.
 nlohmann::ordered_json errors_json(const detail::prediction& r, observer_kind by);
 
-/// Returns one object of one comparison, a list in an object of several, and a line end.
+/// Returns a comparison as an object, several as a list in an object, with a line end.
 std::string comparisons_text(const std::vector<detail::comparison>& all, const array& a);
 /// Returns the schema of such an object.
 nlohmann::ordered_json compare_schema();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The members of tactor-plan/1, in order: what is written and read back, its schema and its page of the
-/// manual.
+/// The members of tactor-plan/1 in order, for writing, reading, the schema and the manual's page.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +25,7 @@ namespace tactor::files {
 using detail::either;
 using detail::unless_usual;
 
-/// Contents of a WAV file, as far as they tell whether it has changed.
+/// Facts about a WAV file that show if it has changed.
 struct recording_facts {
     std::string file = {};
     std::string sha256 = {};
@@ -89,7 +88,7 @@ void members(Io& io, Sound& s)
         "says otherwise; for a WAV file along the path, how often the file repeats"});
 }
 
-/// A thing that is one number, or one for each of several frequencies in Hz.
+/// A single threshold, or one for each of several frequencies, Hz.
 using thresholds = detail::nullable<std::variant<double, std::vector<std::array<double, 2>>>>;
 
 thresholds find_thresholds(const tactor_spec& t);
@@ -126,7 +125,7 @@ void members(Io& io, Place& p)
        {"the strokes that sound there at that time: their places in the piece, from 0"});
 }
 
-/// Describes by how much a piece is weaker than asked for, and where its strokes meet.
+/// Describes how much weaker than requested a piece is, and the place where its strokes meet.
 template <class Io>
 void weakening_members(Io& io, const weakening& w)
 {
@@ -142,7 +141,7 @@ void weakening_members(Io& io, const weakening& w)
             {"only if it is weakened: the place and time of the highest level"});
 }
 
-/// Parts of an object that is read. A written one has the same members, as references.
+/// Parts of an object that is being read. A written one has the same members, as references.
 struct plan_parts {
     std::string name = {};
     note_kind note = note_kind::none;
@@ -161,12 +160,12 @@ struct plan_parts {
     weakening weakened = {};
 };
 
-/// Returns the peak of each tactor's channel for amplitude 1 in a piece that is weakened so much; nothing
-/// drives one without a value.
+/// Returns the peak of each tactor's channel for amplitude 1 in a piece with that weakening. A tactor without
+/// a value is not driven.
 std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o,
                                                    double weakened_db);
 
-/// Describes which tactor it is.
+/// Describes the identity of a tactor.
 template <class Io, either<tactor_spec> Tactor>
 void identity_members(Io& io, Tactor& t, std::size_t number)
 {
@@ -283,7 +282,7 @@ void members(Io& io, Meeting& m)
     io("y_mm", m.position.y_mm, {"where"});
 }
 
-/// Describes what bursts and points have in common.
+/// Describes the common members of bursts and points.
 template <class Io, either<burst> Burst>
 void place_members(Io& io, Burst& b, const array& a, const char* place, const char* intensity,
                    const char* drives)

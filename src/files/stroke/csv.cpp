@@ -72,7 +72,7 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
                     "' < OLD > NEW");
 }
 
-/// Returns the separator of a line of names or numbers if it is no comma, else null.
+/// Returns the separator of a line of names or numbers if it is not a comma; else null.
 const other_separator* find_other_separator(std::string_view line)
 {
     if (line.find(',') != std::string_view::npos && line.find(';') == std::string_view::npos)
@@ -83,7 +83,7 @@ const other_separator* find_other_separator(std::string_view line)
         for (const std::string_view part : split(line, s.separator)) {
             const std::string_view value = without_blanks(part);
             filled += value.empty() ? 0 : 1;
-            // 0,5 is a number where semicolons separate.
+            // With semicolons as separators, 0,5 is a number.
             fits =
                 fits || value.empty() || value == first_column || is_number(part.substr(0, part.find(',')));
         }
@@ -94,14 +94,14 @@ const other_separator* find_other_separator(std::string_view line)
 }
 
 // Refuses line ends of CR alone, other separators than commas, and a header that is missing or in a comment,
-// with a message that says so.
+// with a message for each.
 void refuse_other_columns(std::string_view text, const std::string& name)
 {
     refuse_lone_cr(text, name);
     source_place comment;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
-        // The form shows in the line's first bytes: a line may be as long as the file.
+        // The line's first bytes show the form: a line may be as long as the file.
         const std::string_view line = without_blanks(text.substr(at, std::min(end - at, longest_look)));
         if (line.starts_with('#') && line.find(first_column) != std::string_view::npos)
             comment = detail::find_place(text, at, name);
@@ -148,7 +148,7 @@ public:
         if (!next_line())
             fail({}, "is empty", header_hint);
         header();
-        // Exactly: a vector that grows needs three times as much for a moment.
+        // Reserves the exact number: a vector that grows briefly needs three times as much.
         points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_lines));
         while (next_line())
             row();
@@ -159,11 +159,11 @@ public:
 private:
     static constexpr std::size_t most_fields = 1000;
     static constexpr std::size_t most_lines = 10'000'000;
-    static constexpr std::size_t most_named = 5; ///< columns
+    static constexpr std::size_t most_named = 5; ///< most columns that a message names
     static constexpr std::string_view header_hint =
         "the first line names the columns: t_s,x_mm,y_mm,intensity";
 
-    // Reads the next line with something on it into line_. A spreadsheet writes its empty rows as commas.
+    // Reads the next non-empty line into line_. Lines of commas are a spreadsheet's empty rows.
     bool next_line()
     {
         while (!rest_.empty()) {
@@ -179,7 +179,7 @@ private:
         return false;
     }
 
-    // Splits line_ at its commas; quotes and blanks round a field go.
+    // Splits line_ at its commas; removes quotes and blanks around fields.
     void split()
     {
         fields_.clear();
@@ -237,7 +237,7 @@ private:
             fail({}, fmt::format("no column {}", absent.front()), header_hint);
     }
 
-    // Ignores columns that a tracker adds; refuses one whose name is a slip of a known name.
+    // Ignores columns that a tracker adds, but refuses a mistyped known name.
     void leave_out(const field& f, std::span<const std::string_view> absent)
     {
         if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())
@@ -312,7 +312,7 @@ private:
     std::string_view line_;
     unsigned line_number_ = 0;
     std::vector<field> fields_;
-    std::vector<column> order_; ///< `columns`: left out
+    std::vector<column> order_; ///< `columns`: ignored
     std::size_t left_out_ = 0;
     std::string left_out_names_;
     unsigned header_line_ = 0;

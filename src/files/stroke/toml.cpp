@@ -34,7 +34,7 @@ constexpr double longest_soa_s = 10.0;
 
 /// Circumstances of a text.
 struct reading {
-    const std::filesystem::path* folder; ///< of its WAV files; null for text that is no file's
+    const std::filesystem::path* folder; ///< folder of its WAV files; null for a text without a file
     double intensity_max;                ///< value of a timed point that means 1
 };
 
@@ -56,7 +56,7 @@ std::vector<std::string_view> join_keys(const Lists&... lists)
     return all;
 }
 
-// Returns make(). Adds the place in the file to an error of it.
+// Returns make(). Adds the place in the file to its errors.
 template <class F>
 auto with_place(const toml_table& t, std::string_view key, F make)
 {
@@ -110,7 +110,7 @@ std::optional<modulation> read_modulation(const toml_table& t)
     return hz ? std::optional(modulation{*hz, depth.value_or(1.0)}) : std::nullopt;
 }
 
-/// Calls take(part, entry) for each entry of a list, which begins with a part of the path. Parts ascend.
+/// Calls take(part, entry) for each entry of a list. An entry begins with a part of the path; parts ascend.
 template <class Take>
 void for_each_part(const toml_table& t, std::string_view key, std::string_view shape, std::size_t most,
                    Take take)
@@ -159,8 +159,8 @@ std::vector<rest> read_pauses(const toml_table& t)
     return rests;
 }
 
-/// Reads the sound. `folder` has the WAV files; null: the text is no file's, may come from anywhere, and may
-/// name none.
+/// Reads the sound. `folder`: folder of the WAV files; null: the text is not from a file of this machine and
+/// must not name any.
 void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s)
 {
     s.sound.wave = read_waveform(t, folder);
@@ -176,7 +176,7 @@ void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke
     s.places.carrier = t.where("carrier_profile");
 }
 
-/// Reads fit and fit_margin_mm; nothing where nothing is to be fitted.
+/// Reads fit and fit_margin_mm; nothing if the stroke is not to be fitted.
 std::optional<stroke_fit> read_fit(const toml_table& t)
 {
     const bool fit = t.boolean("fit").value_or(false);
@@ -186,7 +186,7 @@ std::optional<stroke_fit> read_fit(const toml_table& t)
     return fit ? std::optional(stroke_fit{margin.value_or(0.0)}) : std::nullopt;
 }
 
-/// Reads the choices of a stroke that may differ from the other strokes' in a plan.
+/// Reads the options of a stroke that may differ from the other strokes' in a plan.
 void read_choices(const toml_table& t, stroke& s)
 {
     s.choices.algorithm = t.kind<algorithm_kind>("algorithm");
@@ -204,11 +204,11 @@ void read_choices(const toml_table& t, stroke& s)
     s.fit = read_fit(t);
 }
 
-/// Changes the level of a stroke as level_db says; mirrors, scales, turns and moves it as the keys for that
-/// say. A stroke with a speed keeps it.
+/// Applies level_db to a stroke; mirrors, scales, turns and moves it as the other keys require. A stroke with
+/// a speed keeps it.
 void place_stroke(const toml_table& t, stroke& s)
 {
-    constexpr bounds levels_db{-120.0, 0.0}; // a file makes a stroke weaker than asked for, never stronger
+    constexpr bounds levels_db{-120.0, 0.0}; // a file can make a stroke weaker, never stronger
     constexpr bounds scales{0.0, 1e6, true};
     s.choices.level_db += t.number("level_db", levels_db).value_or(0.0);
     const auto about = t.place("about_mm");
@@ -230,20 +230,20 @@ void place_stroke(const toml_table& t, stroke& s)
     });
 }
 
-/// The pace of a stroke in a file.
+/// Pace of a stroke in a file.
 struct pace_keys {
     std::optional<double> duration_s = {};
-    std::optional<double> speed_mm_s = {}; ///< the one speed
-    double intensity = 1.0;                ///< the one intensity
+    std::optional<double> speed_mm_s = {}; ///< constant speed
+    double intensity = 1.0;                ///< constant intensity
     movement moves = {};                   ///< easing, lists and pauses
-    std::string_view uneven = {};          ///< the first key that makes it uneven; empty: none
+    std::string_view uneven = {};          ///< first key that makes it uneven; empty: none
 
-    /// Returns the seconds for a length, if the file gives them.
+    /// Returns the seconds for a length, if the file has a time.
     std::optional<double> time_s(double length_mm) const
     {
         return speed_mm_s ? length_mm / *speed_mm_s : duration_s;
     }
-    /// Returns the mean speed that a stroke keeps when it is fitted; none where the file gives its time.
+    /// Returns the mean speed that a stroke keeps when it is fitted; none if the file has a time.
     std::optional<double> mean_speed_mm_s(double length_mm) const
     {
         return moves.speed_mm_s.empty() ? speed_mm_s : length_mm / time_at_speeds_s(moves, length_mm);
@@ -288,7 +288,7 @@ trajectory make_motion(const toml_table& t, std::string_view kind, const path& w
     m.duration_s = keys.time_s(way.length_mm());
     if (!m.duration_s && m.speed_mm_s.empty())
         m.duration_s = usual_s;
-    // A speed, and a preset's own time, are of the movement: pauses come on top.
+    // A speed, or a preset's own time, applies to the movement: pauses come on top.
     if (m.duration_s && !keys.duration_s)
         for (const rest& r : m.rests)
             *m.duration_s += r.time_s;
@@ -320,7 +320,7 @@ path read_arc(const toml_table& t)
     return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
-// Reads a recording, in its own time unless the file gives another. Adds remarks to `warnings`.
+// Reads a recording, with its own times unless the file has a duration. Adds remarks to `warnings`.
 trajectory read_timed(const toml_table& t, const pace_keys& keys, double intensity_max,
                       std::vector<std::string>& warnings)
 {
@@ -359,7 +359,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
 {
     const std::string_view kind = t.one_of(join_keys(kinds));
     if (t.has("stroke"))
-        t.one_of({kind, "stroke"}); // refuses two
+        t.one_of({kind, "stroke"}); // throws for two
     const pace_keys keys = read_pace(t);
     stroke s{.name = t.text("name").value_or(std::move(name)), .speed_mm_s = keys.speed_mm_s};
     s.sound.carrier_hz = t.number("carrier_hz", bounds_of::carrier_hz);
@@ -396,8 +396,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
     return s;
 }
 
-/// Strokes that are one entry of the file: their starts count from one another, and the first's is the
-/// entry's.
+/// Strokes of an entry of the file. Their starts count from one another; the first start is the entry's.
 struct file_entry {
     std::vector<stroke> strokes = {};
     double lead_s = 0.0; ///< from the entry's start to that of its first stroke
@@ -409,8 +408,8 @@ void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
     s.anchor = {from, static_cast<unsigned>(back)}; // at most most_strokes
 }
 
-/// Places a stroke after the last `back` strokes. Right after the last one it gets no number: that is exact
-/// to the frame.
+/// Makes a stroke start after the last `back` strokes. Right after the last one it gets no start time, which
+/// is exact to the frame.
 void follow(stroke& s, double wait_s, std::size_t back)
 {
     if (wait_s == 0.0 && back == 1) {
@@ -427,10 +426,11 @@ void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
         t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("use at most {}", most_strokes));
 }
 
-/// Strokes one after the other as the keys start_s and start_from of their tables say.
+/// Strokes in the order of the keys start_s and start_from of their tables.
 class sequence {
 public:
-    /// `in_group`: starts count from a group's start, not from that of the whole file.
+    /// Makes an empty sequence. `in_group`: starts count from a group's start, not from that of the whole
+    /// file.
     explicit sequence(bool in_group) noexcept : in_group_(in_group) {}
 
     /// Adds the entry of table `t`.
@@ -450,7 +450,7 @@ private:
     {
         start_from_kind from = t.kind<start_from_kind>("start_from").value_or(start_from_kind::piece);
         const bool begins = all_.strokes.empty();
-        if (begins) // whatever it counts from, there is nothing before
+        if (begins) // nothing comes before it, whatever it counts from
             from = start_from_kind::piece;
         const double least_s = from == start_from_kind::piece ? 0.0 : -longest_stroke_s;
         const auto start_s = t.number("start_s", {least_s, longest_stroke_s});
@@ -526,7 +526,7 @@ file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const 
     return std::move(all).take();
 }
 
-// Reads strokes that are placed, made weaker and repeated together.
+// Reads strokes that are placed, weakened and repeated together.
 file_entry read_group(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
@@ -538,7 +538,7 @@ file_entry read_group(const toml_table& t, const std::string& name, const readin
     file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1);
     auto fit = read_fit(t);
     if (fit)
-        fit->group = t.where().line; // no other group of the file begins there
+        fit->group = t.where().line; // unique: no other group of the file begins there
     for (stroke& s : e.strokes) {
         place_stroke(t, s);
         if (fit && s.fit)

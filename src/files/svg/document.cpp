@@ -17,7 +17,7 @@
 namespace tactor::detail {
 namespace {
 
-/// Larger numbers are nonsense in any unit.
+/// Largest number that makes sense in any unit.
 constexpr double max_user_units = 1e9;
 
 std::string tidy(std::string_view text)
@@ -36,7 +36,7 @@ void for_each_declaration(std::string_view css, F f)
         const auto* known =
             std::find(svg_properties.begin(), svg_properties.end(), tidy(item.substr(0, colon)));
         if (item.starts_with('&'))
-            f(svg_display, item); // an entity, which may hide
+            f(svg_display, item); // an entity, whose text may hide the element
         else if (known != svg_properties.end() && colon != std::string_view::npos)
             f(static_cast<std::size_t>(known - svg_properties.begin()), item.substr(colon + 1));
         at = end + 1;
@@ -176,7 +176,7 @@ std::vector<outline> points(const element& e, bool closed)
     return {std::move(o)};
 }
 
-// Draws from three o'clock clockwise, as SVG has it.
+// Draws an ellipse from three o'clock clockwise, as SVG does.
 std::vector<outline> ellipse(const element& e, double rx, double ry)
 {
     if (rx == 0.0 || ry == 0.0)
@@ -187,7 +187,7 @@ std::vector<outline> ellipse(const element& e, double rx, double ry)
     return {std::move(o)};
 }
 
-// Draws from the left end of the upper side clockwise.
+// Draws a rectangle from the left end of the upper side clockwise.
 std::vector<outline> rectangle(const element& e)
 {
     const double left = e.length("x");
@@ -314,7 +314,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
         fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");
     for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
         note_other_file(n, "<?xml-stylesheet?>");
-    // A search that finds nothing visits all, and not by recursion. Of two with one id the first counts.
+    // Visits all nodes without recursion if it finds nothing. If two have the same id, the first counts.
     tree_.find_node([this](pugi::xml_node n) {
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
             ids_.try_emplace(id, n);
@@ -427,8 +427,8 @@ void svg_document::note_other_file(pugi::xml_node n, std::string_view what) cons
          "drawing)");
 }
 
-// Rules are nearly always paint, which does not decide what plays; Illustrator hides layers by their class.
-// Refuses other selectors that hide: it is not known what, and that must not play.
+// Reads rules of <style>. They nearly always only paint, which does not decide what plays, but Illustrator
+// hides layers by their class. Refuses other selectors that hide, because it cannot tell what they hide.
 void svg_document::note_rules(pugi::xml_node style)
 {
     has_rules_ = true;

@@ -37,21 +37,21 @@ struct svg_view_box {
     double height = 0.0;
 };
 
-/// Reads a length. Like all readers of values here, throws value_fault.
+/// Reads a length. Throws value_fault, as do all readers of values here.
 svg_length parse_svg_length(std::string_view text);
 svg_view_box parse_svg_view_box(std::string_view text);
-/// Reads a list of transforms in small letters, also with the deg and px of a style. A px is a user unit, as
-/// in browsers.
+/// Reads a list of transforms in small letters, also with the units deg and px, as in styles. A px is a user
+/// unit, as in browsers.
 affine parse_svg_transform(std::string_view text);
 
-/// A fault for which an element is left out. The other elements play.
+/// A fault because of which an element is left out. The other elements play.
 struct left_out {
     std::optional<std::size_t> offset; ///< in the document
     std::string why;
-    std::string hint; ///< one for each kind of fault
+    std::string hint; ///< the same for each fault of a kind
 };
 
-/// Properties that decide what plays and where, or what a browser shows.
+/// Properties that decide which elements play and where, or that browsers show.
 inline constexpr std::array<std::string_view, 30> svg_properties{
     // Followed:
     "fill", "stroke", "opacity", "fill-opacity", "stroke-opacity", "stroke-width", "display", "visibility",
@@ -61,13 +61,14 @@ inline constexpr std::array<std::string_view, 30> svg_properties{
     // Not followed in styles; attributes of these names are geometry, or mean nothing:
     "-webkit-transform", "translate", "rotate", "scale", "animation", "animation-name", "width", "height",
     "x", "y", "cx", "cy", "r", "rx", "ry", "d"};
-inline constexpr std::size_t svg_paints = 6;      ///< those before only paint
-inline constexpr std::size_t svg_display = 6;     ///< "display"
-inline constexpr std::size_t svg_visibility = 7;  ///< "visibility"
-inline constexpr std::size_t svg_followed = 9;    ///< those before are followed
-inline constexpr std::size_t svg_attributes = 14; ///< those before are presentation attributes
+inline constexpr std::size_t svg_paints = 6;     ///< number of properties at the beginning that only paint
+inline constexpr std::size_t svg_display = 6;    ///< "display"
+inline constexpr std::size_t svg_visibility = 7; ///< "visibility"
+inline constexpr std::size_t svg_followed = 9;   ///< number of properties at the beginning that are followed
+inline constexpr std::size_t svg_attributes =
+    14; ///< number of properties at the beginning that are presentation attributes
 
-/// The svg_properties of one element: of its attributes, and of its own style, which wins.
+/// The svg_properties of one element, from its attributes and from its own style, which wins.
 class svg_style {
 public:
     explicit svg_style(pugi::xml_node n);
@@ -81,7 +82,8 @@ private:
 
 class svg_document {
 public:
-    /// Reads nothing outside the text. \throws error (bad_input) for what is not well-formed.
+    /// Parses a document. Reads nothing outside the text.
+    /// \throws error (bad_input) if it is not well-formed.
     svg_document(std::string_view text, const std::string& name);
 
     pugi::xml_node root() const { return tree_.document_element(); }
@@ -117,8 +119,8 @@ public:
         }
     }
 
-    /// Returns `parse` of the text of an attribute or property; nothing where it is empty, and where it
-    /// cannot be read, which is noted: browsers ignore it, too.
+    /// Returns `parse` of the text of an attribute or property. Returns nothing if it is empty, and if it
+    /// cannot be read: notes that, because browsers ignore it, too.
     template <class F>
     auto follow(pugi::xml_node n, std::string_view name, std::string_view text, F parse) const
         -> std::optional<decltype(parse(text))>
@@ -131,14 +133,15 @@ public:
         }
     }
 
-    /// Reads a length in user units, of which a millimetre has `per_mm`; 0 if it is missing. \throws left_out
+    /// Reads a length in user units, of which a millimetre has `per_mm`; 0 if it is missing.
+    /// \throws left_out
     double length(pugi::xml_node n, const char* attribute, double per_mm) const;
 
     /// Reads a number from low to high.
     std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
 
-    /// Adds a warning: the place, `text` and `end`. Of several with one key the first counts the others,
-    /// behind `more`.
+    /// Adds a warning: the place, `text` and `end`. If several have the same key, only the first is shown; it
+    /// counts the others after `more`.
     void note(std::optional<std::size_t> offset, std::string_view key, std::string text, const char* more,
               const char* end) const;
     void note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why = {}) const;
@@ -162,11 +165,11 @@ private:
 
     std::string_view text_;
     const std::string& name_;
-    std::string buffer_; ///< the tree lives in it
+    std::string buffer_; ///< the tree points into it
     pugi::xml_document tree_;
     std::unordered_map<std::string_view, pugi::xml_node> ids_;
     bool has_rules_ = false;
-    std::unordered_set<std::string_view> hidden_; ///< classes; the tree has their names
+    std::unordered_set<std::string_view> hidden_; ///< classes; views of names in the tree
     mutable std::map<std::string, noted, std::less<>> notes_;
 };
 
@@ -176,8 +179,9 @@ std::string_view svg_tag(pugi::xml_node n);
 /// Returns true for the tags that svg_shape() takes.
 bool is_svg_shape(std::string_view tag) noexcept;
 
-/// Returns the subpaths of a shape in user units, of which a millimetre has `per_mm`; none for a shape that
-/// SVG does not draw (no data, a radius or a side of 0). \throws error (bad_input), left_out
+/// Returns the subpaths of a shape in user units, of which a millimetre has `per_mm`. Returns none for a
+/// shape that SVG does not draw (no data, a radius or a side of 0).
+/// \throws error (bad_input), left_out
 std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, double per_mm);
 
 } // namespace tactor::detail

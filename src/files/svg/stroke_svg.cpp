@@ -35,27 +35,27 @@ using detail::svg_view_box;
 using detail::translation;
 using pugi::xml_node;
 
-// <use> can multiply a small file without end.
+// Most nested elements: <use> can multiply a small file without end.
 constexpr unsigned deepest = 100;
 constexpr std::size_t most_elements = 1'000'000;
 constexpr std::size_t most_vertices = 20'000'000;
 constexpr double highest_carrier_hz = 20000.0;
 
-// Properties that an element inherits from those round it.
+// Properties that an element inherits from its ancestors.
 struct scope {
     affine to_mm;
     std::optional<double> speed_mm_s;
     double intensity = 1.0;
-    bool visible = true; ///< visibility, which those inside may set anew; unlike display
+    bool visible = true; ///< visibility, which children may set anew, unlike display
     std::optional<double> carrier_hz;
     easing_kind easing = easing_kind::linear;
     bool filled = true;
     bool outlined = false;
-    bool clear = false; ///< an opacity of 0, of its own or round it
+    bool clear = false; ///< an opacity of 0, its own or an ancestor's
     bool fill_clear = false;
     bool stroke_clear = false;
     bool stroke_thin = false; ///< a stroke-width of 0
-    unsigned depth = 0;       ///< elements round this one
+    unsigned depth = 0;       ///< number of ancestors
 
     bool is_painted() const noexcept
     {
@@ -126,8 +126,8 @@ public:
     }
 
 private:
-    // Returns the scope inside the root. A document with a size in physical units is as large as it says. In
-    // any other, one user unit is one millimetre and coordinates are as they stand.
+    // Returns the scope inside the root. A document with a size in physical units has that size. In any
+    // other, one user unit is one millimetre and coordinates stay unchanged.
     scope root_scope(xml_node n, const svg_style& style)
     {
         const auto width = read_side(n, style, "width");
@@ -155,8 +155,8 @@ private:
         return s;
     }
 
-    // Returns a side of the drawing: of its style where that says a physical one, else of its attribute;
-    // nothing for a part of the window, in per cent.
+    // Returns the width or height of the drawing: of its style if that has a physical unit, else of its
+    // attribute. Returns nothing for a part of the window, in per cent.
     std::optional<svg_length> read_side(xml_node n, const svg_style& style, const char* name) const
     {
         const auto read = [&](std::string_view text) {
@@ -236,7 +236,7 @@ private:
             return note_no_shape(n);
         const std::string_view tag = svg_tag(n);
         const svg_style style(n);
-        // A browser does not show what needs an extension.
+        // A browser does not show elements that need an extension.
         if (is_hidden(n, style) || n.attribute("requiredExtensions"))
             return note_hidden(n);
         note_unfollowed(n, style);
@@ -269,7 +269,8 @@ private:
         doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), ", and", "");
     }
 
-    // Notes an element that draws in browsers although it is no shape. Those of other programs have a prefix.
+    // Notes an element that browsers draw although it is not a shape. Elements of other programs have a
+    // prefix.
     void note_no_shape(xml_node n) const
     {
         const std::string_view tag = svg_tag(n);
@@ -296,7 +297,7 @@ private:
                   ", nor of", ": the element counts as hidden");
     }
 
-    // Returns true if display is "none", or not understood, which is noted.
+    // Returns true if display is "none". Also returns true, with a note, if display is not understood.
     bool is_hidden(xml_node n, const svg_style& style) const
     {
         const std::string_view display = style.value("display");
@@ -313,7 +314,7 @@ private:
     void inherit(xml_node n, const svg_style& style, scope& s) const
     {
         const std::string_view transform = style.value("transform");
-        if (n == doc_.root() && !transform.empty()) // about the middle of the page in browsers
+        if (n == doc_.root() && !transform.empty()) // browsers apply it about the middle of the page
             doc_.note_unfollowed(n, "transform");
         else if (const auto own = doc_.follow(n, "transform", transform, detail::parse_svg_transform))
             s.to_mm = s.to_mm * *own;
@@ -385,13 +386,13 @@ private:
             doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
                            "a scale of 0 or a skew of 90 degrees leaves no drawing");
         std::vector<path> paths;
-        std::size_t look = 0; // equal for equal shapes in equal places
+        std::size_t look = 0; // hash: equal for equal shapes in equal places
         for (outline& o : outlines) {
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
             outline placed = mapped(std::move(o), s.to_mm);
-            // Looks the place up only for an error: that reads the whole file before it.
+            // Finds line and column only for an error: it scans the file up to here.
             const std::string what =
                 absurd_coordinate(placed) ? fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)) : "";
             for (const point p : placed.vertices) {
@@ -413,7 +414,7 @@ private:
         add(n, s, paths);
     }
 
-    // Takes out the subpaths that are points. Where all are, a duration makes them taps.
+    // Removes the subpaths that are points. If all are points, a duration makes them taps.
     void keep_drawn(xml_node n, std::vector<path>& paths)
     {
         const auto is_point = [](const path& p) { return p.length_mm() == 0.0; };
@@ -426,7 +427,7 @@ private:
                            "it draws a point"});
     }
 
-    // Adds a shape. Its subpaths share its duration by their lengths.
+    // Adds a shape. Its subpaths share its duration in proportion to their lengths.
     void add(xml_node n, const scope& s, const std::vector<path>& paths)
     {
         const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);
