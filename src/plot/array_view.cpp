@@ -20,12 +20,12 @@ namespace tactor::plot {
 namespace {
 
 constexpr double legend_height = 13.0;
-constexpr double least_spacing = 3.6; // of bursts on the page, pt
+constexpr double least_spacing = 3.6; // least distance of bursts on the page, pt
 constexpr std::size_t always_shown = 24;
-// Most bursts that are drawn; if there are more, or they would overlap, every n-th is drawn.
+// Most bursts that a picture shows. If there are more, or they would overlap, it shows every n-th.
 constexpr std::size_t most_shown_bursts = 120;
-constexpr double close_pitch = 24.0; // of tactors on the page, pt
-constexpr double taller = 0.3;       // of the width
+constexpr double close_pitch = 24.0; // distance of tactors on the page that counts as close, pt
+constexpr double taller = 0.3;       // most additional height, as a part of the width
 constexpr std::size_t few_paths = 20;
 constexpr double places_per_s = 30.0; // of the target in an animated picture
 constexpr double most_places = 600.0;
@@ -49,12 +49,12 @@ fineness fineness_for(std::size_t shown) noexcept
 constexpr double farthest_tactor_label = 3.0; // pt: farther away a label has lost its tactor
 constexpr double arrow_length = 4.6;
 constexpr double arrow_half_width = 2.1;
-constexpr double arrow_every = 75.0;    // pt along the path
+constexpr double arrow_every = 75.0;    // distance of arrows along the path, pt
 constexpr std::size_t most_arrows = 60; // in a picture
 constexpr double farthest_number = 7.0;
-constexpr double same_start = 1.0;      // pt
+constexpr double same_start = 1.0;      // distance of starts that count as one place, pt
 constexpr double farthest_label = 20.0; // from a start or end, pt
-constexpr std::size_t most_marked = 60; // strokes with marked ends
+constexpr std::size_t most_marked = 60; // most strokes whose ends are marked
 
 // Looks of tactors, by index.
 struct tactor_looks {
@@ -139,7 +139,7 @@ public:
                                            {"y0", fmt::format("{:.9g}", frame_.origin.y)},
                                            {"stride", fmt::format("{}", stride_)}}});
         const tactor_looks looks = find_looks();
-        for (const stroke& s : scene_.strokes) // before what is lighter: obstacles are limited
+        for (const stroke& s : scene_.strokes) // first, before lighter obstacles: their number is limited
             paths_.push_back(path_on_page(frame_, s.motion));
         for (const auto& parts : paths_)
             for (const std::vector<spot>& part : parts)
@@ -175,7 +175,7 @@ public:
     }
 
 private:
-    // Fits the array; makes it higher if tactors would be too close on the page to be numbered.
+    // Fits the array. Makes it higher if tactors would be too close on the page for numbers.
     static array_frame fit(const scene& s, box at_most, double highest)
     {
         const extent shown = shown_extent(s.tactors, s.strokes);
@@ -188,7 +188,7 @@ private:
         return fit_array(s.tactors, shown, at_most);
     }
 
-    // Returns n, so that one burst in n is drawn.
+    // Returns n: the picture shows every n-th burst.
     std::size_t stride() const
     {
         const std::size_t n = std::max<std::size_t>(1, time_.bursts.size());
@@ -203,7 +203,7 @@ private:
     // Finds the numbers that stand in their circles: a circle has space, and nothing lies on it.
     tactor_looks find_looks() const
     {
-        // Distance at which a mark touches a number: of dots, and of the larger rings and squares of ends.
+        // Distance at which a mark touches a number, for dots and for the larger rings and squares of ends.
         struct mark_on_page {
             spot at;
             double reach;
@@ -239,7 +239,8 @@ private:
                  burst_colour(time_, time_.bursts[i]));
     }
 
-    // Returns the colour of a join. Grey for several strokes: their colours would mix to those of none.
+    // Returns the colour of a join. Grey for several strokes, because their colours would mix to other
+    // colours.
     colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
 
     // Returns true if most of a stroke's path lies on an earlier one that looks different.
@@ -291,14 +292,14 @@ private:
     {
         const group all(canvas_, {.id = "paths"});
         const double width = paths_.size() == 1 ? 0.7 : paths_.size() <= few_paths ? 1.2 : 0.5;
-        std::size_t next = 0; // repeats lie on what is drawn already
+        std::size_t next = 0; // repeats lie on strokes that are already drawn
         for (std::size_t i = 0; i < paths_.size(); ++i) {
             if (time_.looks[i] != next)
                 continue;
             ++next;
             style look{.stroke = time_.several() ? stroke_colour(time_.looks[i]) : ink, .width = width};
             if (paths_.size() <= few_paths && lies_on_another(i))
-                look.dash = 3.0; // the other shows through
+                look.dash = 3.0; // the other stroke shows through
             for (const std::vector<spot>& part : paths_[i])
                 canvas_.poly(part, false, look, {.kind = "path", .title = scene_.strokes[i].name});
         }
@@ -345,7 +346,7 @@ private:
         }
     }
 
-    // In an animated picture: discs on the tactors that play, and the target on its way.
+    // Draws an animated picture's discs on the tactors that play, and the target on its way.
     void draw_playing()
     {
         const group all(canvas_, {.id = "playing"});
@@ -376,8 +377,8 @@ private:
         }
     }
 
-    // Writes start and end next to those marks; for several strokes, the number of each at its start. Returns
-    // a note on labels without space; empty: all have space.
+    // Writes "start" and "end" next to their marks. For several strokes, writes the number of each at its
+    // start. Returns a note on labels without space; empty: all have space.
     std::string label_strokes()
     {
         if (scene_.strokes.size() == 1) {
@@ -446,7 +447,7 @@ private:
         return {at.x - r, at.y - r, 2.0 * r, 2.0 * r};
     }
 
-    // Returns the time near `wanted` at which an arrow covers least.
+    // Returns the time near `wanted` at which an arrow covers the least.
     double clear_time(const trajectory& motion, double wanted, double range) const
     {
         constexpr int tries = 40;
@@ -485,7 +486,7 @@ private:
                      true, {.fill = ink, .stroke = white, .width = 0.4}, {.kind = "direction"});
     }
 
-    // Draws arrowheads on a path of so many, where they cover least.
+    // Draws arrowheads on one of `strokes` paths, where they cover least.
     void draw_arrows(const trajectory& motion, std::size_t strokes)
     {
         const auto wanted = std::max(1L, std::lround(motion.length_mm() * frame_.scale / arrow_every));

@@ -101,7 +101,8 @@ void draw_track(canvas& c, const track& t, const style& look)
 
 void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
 {
-    constexpr double share = 0.65; // of the circles of an array by itself: panels lie close together
+    constexpr double share =
+        0.65; // size of circles, relative to a picture of the array alone: panels lie close together
     const double radius = share * f.radius;
     const double number = share * f.number;
     for (std::size_t i = 0; i < g.tactors.tactors.size(); ++i) {
@@ -139,14 +140,14 @@ void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const
     }
 }
 
-// Returns the place of the array in a panel; the scale is the same in all panels of one size.
+// Returns the place of the array in a panel; all panels of one size have the same scale.
 array_frame panel_frame(const panel_ground& g, box where)
 {
     return fit_array(g.tactors, g.shown, where, {8.0, 8.0}); // panels have no labels
 }
 
 // Draws a panel into the upper part of a box: the target, and the predicted percept in the look of its
-// algorithm. Returns the height taken.
+// algorithm. Returns the height that it took.
 double draw_panel(canvas& c, const panel_ground& g, const comparison_row& p, const style& look, box where)
 {
     const std::string algorithm(to_string(p.algorithm));
@@ -277,7 +278,7 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_r
             speeds.bands.push_back(make_band(p, look));
     }
     y += tallest;
-    if (first) { // the scale is the same in all panels
+    if (first) { // all panels have the same scale
         draw_scale_bar(c, panel_frame(g, {where.x, y, width, std::min(width, 260.0)}),
                        {where.x, y + scale_height / 2.0});
         y += scale_height;

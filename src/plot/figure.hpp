@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Whole pictures: of strokes with their views, of predicted percepts, and of bars and curves; what they say
-/// of a plan.
+/// Whole pictures: of strokes with their views, of predicted percepts, and of bars and curves; the
+/// descriptions of a plan in them.
 #pragma once
 
 #include <cstddef>
@@ -58,7 +58,7 @@ struct bar {
     std::vector<double> values = {};                     ///< values with the height as their mean: a dot each
 };
 
-/// Bars of one look: a bar in each group.
+/// Bars with the same look, one in each group.
 struct bar_series {
     std::string name = {}; ///< empty: not in the legend
     std::vector<bar> bars = {};
@@ -72,8 +72,8 @@ struct bar_panel {
     std::optional<double> level = {}; ///< a dashed line, such as chance
     std::vector<std::string> groups = {};
     std::vector<bar_series> series = {}; ///< each has as many bars as there are groups
-    /// Number of groups, from the first, over which a thin line joins a series' values of one place in
-    /// bar::values. In each other group it joins those of all series.
+    /// Number of groups at the beginning in which a thin line joins the values of one series that have the
+    /// same place in bar::values. In each other group the line joins the values of all series.
     std::size_t joined = 0;
 };
 

@@ -16,15 +16,15 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double two_columns = 120.0 * pt_per_mm; // of panels, from this width on
+constexpr double two_columns = 120.0 * pt_per_mm; // width from which panels stand in two columns
 constexpr double panel_height = 150.0;
-constexpr double labels_height = 24.0; // names of the groups, and the legend
+constexpr double labels_height = 24.0; // height of the names of the groups and the legend
 constexpr double between = 14.0;
-constexpr double bars_share = 0.72; // of a group's width
+constexpr double bars_share = 0.72; // part of a group's width for its bars
 
-constexpr double names_length = 40.0; // at most, of a name that stands upright
+constexpr double names_length = 40.0; // greatest length of an upright name
 
-// Colours of methods, in order. A few differ in lightness too; more get the colours of strokes.
+// Colours of methods, in order. They differ in lightness, too; more methods get the colours of strokes.
 constexpr std::array<colour, 4> fills{light_grey, blue, orange, dark_grey};
 
 colour fill_colour(std::size_t i, std::size_t count)
@@ -50,7 +50,7 @@ double value_step(const bar& b, double width)
     return 0.7 * width / static_cast<double>(b.values.size());
 }
 
-// Returns the places of values side by side in their order, so that equal ones are seen.
+// Returns the places of values, side by side in their order, so that equal values stay visible.
 std::vector<spot> place_values(const bar& b, const scale& y, double x, double width)
 {
     std::vector<spot> places;

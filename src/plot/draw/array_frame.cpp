@@ -17,7 +17,7 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_obstacles = 4000; // more do not change the places in a crowded picture
+constexpr std::size_t most_obstacles = 4000; // more would not change the places in a crowded picture
 constexpr double refused = 1e6; // cost of a place for a label on a tactor, on a label or off the page
 
 // Directions in order of preference: below, right, left, above, then the corners; y down.
@@ -27,8 +27,8 @@ struct direction {
 };
 constexpr std::array<direction, 8> directions{
     {{0, 1}, {1, 0}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
-constexpr double farther = 1.5;  // pt, from ring to ring of places
-constexpr double clearly = 1.25; // nearer than any other by this factor
+constexpr double farther = 1.5;  // distance of two rings of places, pt
+constexpr double clearly = 1.25; // factor by which a label's own site must be nearer than any other
 
 double overlap_area(box a, box b) noexcept
 {
@@ -43,14 +43,14 @@ double distance(box b, spot s) noexcept
                       std::max({b.y - s.y, s.y - b.bottom(), 0.0}));
 }
 
-constexpr double largest_pitch = 100.0; // pt: neighbours are not farther apart on the page
+constexpr double largest_pitch = 100.0; // largest distance of neighbours on the page, pt
 constexpr double lone_tactor_mm = 20.0; // shown around a tactor without neighbours
 constexpr std::size_t most_path_points = 20000;
 constexpr double largest_number = 7.0; // pt
 constexpr double least_number = 5.2;
-constexpr double rim = 0.4; // between a number and its circle
+constexpr double rim = 0.4; // space between a number and its circle
 constexpr double largest_radius = 7.0;
-constexpr double largest_share = 0.28; // of the distance of neighbours, for a circle's radius
+constexpr double largest_share = 0.28; // largest radius of a circle, as a part of the distance of neighbours
 
 double pitch_mm(const array& a)
 {

@@ -14,10 +14,10 @@
 
 namespace tactor::plot {
 
-/// Keeper of the taken places. Finds for each label the place at which it covers least.
+/// Chooser of places for labels: it finds the place at which a label covers the least.
 class label_placer {
 public:
-    /// Labels stay inside `area`.
+    /// Starts with no place taken. Labels stay inside `area`.
     explicit label_placer(box area) : area_(area) {}
 
     /// Weight of a tactor or label, on which no label may lie.
@@ -58,11 +58,11 @@ struct extent {
 
 /// Map from the skin, mm, to the page, with the same scale along x and y.
 struct array_frame {
-    double scale = 1.0;  ///< pt to the mm
+    double scale = 1.0;  ///< pt for each mm
     spot origin = {};    ///< place of 0, 0 mm
-    box area = {};       ///< of the array, margins included
+    box area = {};       ///< area of the array, margins included
     double pitch = 0.0;  ///< distance of neighbours, pt
-    double radius = 5.0; ///< of a tactor's circle, pt
+    double radius = 5.0; ///< radius of a tactor's circle, pt
     double number = 7.0; ///< size of the numbers in the circles, pt; 0: there is no space
 
     spot operator()(point p) const noexcept { return {origin.x + scale * p.x_mm, origin.y + scale * p.y_mm}; }
@@ -71,7 +71,8 @@ struct array_frame {
 /// Returns the extent of the array and of the strokes near it.
 extent shown_extent(const array& a, const std::vector<stroke>& strokes);
 
-/// Fits the extent into the upper middle of a box, as large as possible. `space`: for labels around it, pt.
+/// Fits the extent into the upper middle of a box, as large as possible. `space`: room for labels around it,
+/// pt.
 array_frame fit_array(const array& a, const extent& shown, box at_most, spot space = {17.0, 14.0});
 
 /// Returns the path on the page, in parts inside the frame's area. The number of points is bounded.

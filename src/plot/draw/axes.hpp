@@ -26,15 +26,15 @@ struct scale {
 struct ticks {
     double step = 1.0;
     std::vector<double> at = {};
-    bool logs = false; ///< values are decimal logarithms, and labels are of their numbers
+    bool logs = false; ///< values are decimal logarithms; labels show the numbers themselves
 
     /// Returns the label of a value, with as many decimals as the step needs.
     std::string label(double v) const;
 };
 /// Returns at most `most` ticks in lo ... hi, and at least one if lo <= 0 <= hi.
 ticks nice_ticks(double lo, double hi, std::size_t most);
-/// Returns at most `most` ticks at round numbers whose decimal logarithms are in lo ... hi; from a decade on
-/// at 1, 2 and 5 times the powers of ten, or at these alone.
+/// Returns at most `most` ticks at round numbers whose decimal logarithms are in lo ... hi; over a decade and
+/// more, at 1, 2 and 5 times the powers of ten, or only at these.
 ticks log_ticks(double lo, double hi, std::size_t most);
 
 inline constexpr double small_text = 6.0; ///< pt, the least at one print column
@@ -78,7 +78,7 @@ struct chart_band {
 
 struct chart {
     std::string id = {};
-    box where = {};    ///< of the whole chart, its labels and legend included
+    box where = {};    ///< area of the whole chart, with labels and legend
     double x_to = 1.0; ///< from 0, s
     double y_to = 1.0; ///< from 0
     std::string y_title = {};
@@ -100,19 +100,19 @@ std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 /// Returns the distance of a point from the segment between two others, pt.
 double distance(spot p, spot a, spot b) noexcept;
 
-inline constexpr double note_height = 8.0; ///< of a line, pt
+inline constexpr double note_height = 8.0; ///< height of a line, pt
 
 /// Returns the parts that are not empty, with a separator between them.
 std::string join(const std::vector<std::string>& parts, std::string_view separator);
 
 /// Draws a text in at most `most_lines` small lines, from the upper edge of a box down. Returns the height
-/// taken.
+/// that it took.
 double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind);
 
 /// Draws the notes that are not empty in the same way.
 double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines);
 
-/// Draws a title and a text under it, from the upper edge of a box down. Returns the height taken.
+/// Draws a title and a text under it, from the upper edge of a box down. Returns the height that it took.
 double draw_heading(canvas& c, const std::string& title, std::string_view text, box where);
 
 } // namespace tactor::plot

@@ -22,7 +22,7 @@ namespace tactor::plot {
 namespace {
 
 constexpr std::size_t most_instants = 24; // of `continuous`, shown as positions
-constexpr std::size_t looked_at = 4000;   // instants of `continuous` at which playing tactors are looked up
+constexpr std::size_t looked_at = 4000;   // instants of `continuous` that are searched for playing tactors
 
 // Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for other strokes.
 std::string find_repeated_name(const std::string& name)
@@ -138,14 +138,14 @@ std::string make_label(const array& a, const std::vector<unsigned>& tactors, boo
                     : fmt::format("{}", tactors.front());
 }
 
-constexpr std::size_t most_starts = 60; // more are not legible
+constexpr std::size_t most_starts = 60; // more would not be legible
 constexpr double aside = 2.0;           // distance of a number from its start
 
 constexpr double row_height = 8.5;
 constexpr double swatch = 8.0;
-constexpr double gap = 3.0;           // between swatch and name
-constexpr double column_gap = 10.0;   // at least, between columns
-constexpr double most_of_width = 0.5; // for an entry if there are several
+constexpr double gap = 3.0;           // gap between swatch and name
+constexpr double column_gap = 10.0;   // least gap between columns
+constexpr double most_of_width = 0.5; // widest entry, as a part of the width, if there are several
 constexpr std::size_t most_rows = 12;
 
 // A line of the legend: a stroke, or all its repeats.
@@ -274,7 +274,7 @@ std::vector<std::vector<spot>> outline(const std::vector<column_range>& columns,
         below.push_back(above.back());
         std::vector<spot>& shape = shapes.emplace_back(simplify(above, 0.02));
         const std::vector<spot> lower = simplify(below, 0.02);
-        if (lower.size() > 2) // else it is the line of 0
+        if (lower.size() > 2) // otherwise it is the line of 0
             shape.insert(shape.end(), lower.rbegin(), lower.rend());
     }
     return shapes;
@@ -295,7 +295,7 @@ std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, dou
     std::map<double, std::vector<std::size_t>> numbers; // by x
     for (std::size_t i = 0; i < t.starts_s.size(); ++i)
         numbers[std::round(x(t.starts_s[i]) * 10.0) / 10.0].push_back(i + 1);
-    std::string word = "stroke "; // for the first
+    std::string word = "stroke "; // only in front of the first number
     double free = 0.0;
     std::size_t left_out = 0;
     for (auto i = numbers.begin(); i != numbers.end(); ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Contents of a picture in one time: an array, strokes and their plans; the rows of diagrams over that time,
-/// one for each tactor that plays or for several if there are very many; the starts of strokes above the
-/// rows, and the legend of strokes.
+/// Contents of a picture with a common time: an array, strokes and their plans; rows of diagrams over this
+/// time, one for each tactor that plays (or for several tactors, if there are very many); the starts of
+/// strokes above the rows, and the legend of strokes.
 #pragma once
 
 #include <deque>
@@ -24,7 +24,7 @@ namespace tactor::plot {
 /// Contents of a picture. Its parts must live as long.
 struct scene {
     const array& tactors;
-    std::string name; ///< of the whole
+    std::string name; ///< name of the whole scene
     const std::vector<stroke>& strokes;
     const std::vector<placed_plan>& plans; ///< one for each stroke
     const score* sound = nullptr;          ///< for the waveform
@@ -34,7 +34,7 @@ struct scene {
 
 /// A burst in the time of the scene; for `continuous`, an instant.
 struct shown_burst {
-    std::size_t number = 0; ///< in the scene, from 0
+    std::size_t number = 0; ///< its number in the scene, from 0
     std::size_t stroke = 0;
     double from_s = 0.0;
     double to_s = 0.0;
@@ -42,11 +42,11 @@ struct shown_burst {
     const burst* what = nullptr;
 };
 
-/// Bursts of a scene in one time. The scene's plans must live as long.
+/// Bursts of a scene, in a common time. The scene's plans must live as long.
 struct timeline {
-    std::vector<double> starts_s = {};   ///< of each stroke
-    std::vector<double> ends_s = {};     ///< of each stroke, its last burst included
-    std::vector<std::size_t> looks = {}; ///< of each stroke, from 0; repeats share one
+    std::vector<double> starts_s = {};   ///< start of each stroke
+    std::vector<double> ends_s = {};     ///< end of each stroke, its last burst included
+    std::vector<std::size_t> looks = {}; ///< look of each stroke, from 0; repeats share a look
     double total_s = 0.0;
     std::vector<shown_burst> bursts = {};
     std::vector<unsigned> playing = {}; ///< tactors that play, ascending
@@ -73,7 +73,7 @@ colour burst_colour(const timeline& t, const shown_burst& b) noexcept;
 
 struct lane {
     std::vector<unsigned> tactors = {};
-    std::string label = {}; ///< "4", "4 (7)" if channels are other numbers, "100-103"
+    std::string label = {}; ///< "4", "4 (7)" if channels have other numbers, "100-103"
 };
 
 inline constexpr double highest_level = 11.0; ///< pt
@@ -81,8 +81,8 @@ inline constexpr double highest_level = 11.0; ///< pt
 struct lanes {
     std::vector<lane> rows = {};
     std::vector<int> row_by_tactor = {}; ///< -1: does not play
-    std::size_t levels = 1;              ///< of each row: one for each of simultaneous strokes
-    double height = 0.0;                 ///< of one level, pt
+    std::size_t levels = 1;              ///< levels of each row, one for each simultaneous stroke
+    double height = 0.0;                 ///< height of one level, pt
     std::string heading = {};            ///< above the labels
     double label_width = 0.0;            ///< pt
 
@@ -92,7 +92,7 @@ struct lanes {
     double all_height() const noexcept { return top(rows.size()); }
 
     /// Makes levels as high as possible in `space` pt, up to `highest` pt. Returns false if even the lowest
-    /// take more.
+    /// levels need more.
     bool fit(double space, double highest = highest_level);
 };
 
@@ -124,8 +124,8 @@ double starts_height(const timeline& t);
 /// numbers of all that start there. Returns a note on starts without space; empty: none.
 std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, double top, double bottom);
 
-/// Draws, for a scene of several strokes, the number, colour and name of each, repeats together, in columns
-/// from the upper edge of a box. Returns the height taken; 0 for one stroke. `colours`: the picture has
+/// Draws number, colour and name of each stroke of a scene with several, in columns from the upper edge of a
+/// box. Repeats share an entry. Returns the height that it took; 0 for one stroke. `colours`: the picture has
 /// colours of strokes.
 double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours);
 

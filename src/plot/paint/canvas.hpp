@@ -15,7 +15,7 @@
 
 namespace tactor::plot {
 
-/// A colour that colour-blind people and black-and-white printers can distinguish from the others here.
+/// A colour that stays distinct from the other colours here for colour-blind people and in black and white.
 struct colour {
     std::uint8_t r = 0;
     std::uint8_t g = 0;
@@ -73,8 +73,8 @@ struct box {
 };
 
 inline constexpr double pt_per_mm = 72.0 / 25.4;
-inline constexpr double margin = 5.0;       ///< of every figure, pt
-inline constexpr double loop_pause_s = 0.8; ///< of an animated picture, before it begins again
+inline constexpr double margin = 5.0;       ///< margin of every figure, pt
+inline constexpr double loop_pause_s = 0.8; ///< pause of an animated picture before it begins again
 
 struct style {
     std::optional<colour> fill = {};
@@ -95,7 +95,7 @@ struct text_style {
 };
 
 /// Description of an element for programs and screen readers: id, class, title and data-* attributes of SVG.
-/// PNG and PDF do not have it.
+/// Only SVG has it.
 struct mark {
     std::string id = {};
     std::string kind = {};
@@ -103,12 +103,12 @@ struct mark {
     std::vector<std::pair<std::string, std::string>> data = {};
 };
 
-/// Part of an animated picture's loop in which something is seen, and its way meanwhile. SVG only: the other
-/// formats leave out what has one.
+/// Part of an animated picture's loop in which an element is visible, and its way meanwhile. SVG only: the
+/// other formats leave the element out.
 struct animation {
     double from = 0.0;             ///< fraction of the loop, 0 to 1
     double to = 1.0;               ///< above `from`
-    std::vector<spot> places = {}; ///< passed at even intervals; empty: it stays
+    std::vector<spot> places = {}; ///< places at even intervals; empty: the element stays
 };
 
 namespace item {
@@ -148,7 +148,7 @@ struct text {
 };
 } // namespace item
 
-/// Later elements lie on earlier ones.
+/// A picture. Later elements lie on earlier ones.
 struct canvas {
     using element = std::variant<item::group_begin, item::group_end, item::line, item::poly, item::rect,
                                  item::circle, item::text>;

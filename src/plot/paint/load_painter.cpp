@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// to_png() and to_pdf() of the tool and of Python's extension, each of which compiles this file: by the
+// to_png() and to_pdf() of the tool and of Python's extension, each of which compiles this file. They use the
 // module, which is loaded for the first picture that needs it.
 #include <array>
 #include <filesystem>
@@ -19,8 +18,8 @@
 namespace tactor::plot {
 namespace {
 
-// Places of the module, from the folder of tool or extension: as Meson installs it, and as it was built. The
-// environment cannot change them.
+// Places of the module, relative to the folder of tool or extension: the installed one and the one in the
+// build folder. The environment cannot change them.
 constexpr std::array places{TACTOR_PAINTERS};
 
 // Returns the folder of tool or extension. $ORIGIN would be the folder of a sanitizer's dlopen().

@@ -201,7 +201,7 @@ private:
     double loop_s_ = 0.0;
 };
 
-// Returns how a format keeps a SHA-256.
+// Returns the writer of a format's SHA-256.
 detail::hash_note write_hash(file_format format)
 {
     return [format](std::string_view digits) {

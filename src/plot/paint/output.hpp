@@ -45,7 +45,7 @@ std::string to_pdf(const canvas& c);
 /// Returns the bytes of a file in a format; `dpi` is for PNG. \throws error as above.
 std::string to_bytes(const canvas& c, file_format format, unsigned dpi);
 
-/// Resolution of PNG where nobody asks for another.
+/// Resolution of PNG by default.
 inline constexpr unsigned usual_dpi = 300;
 
 /// Throws the error that save() would throw about an existing file. Call it when all input is read, before

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// The module that paints PNG and PDF. Cairo brings some twenty libraries, which would slow down each start
-/// of the tool. Tool and module are of one build: the version is in the module's name.
+/// of the tool. Tool and module must be from the same build, so the module's name contains the version.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct painting {
     std::string bytes = {};
     bool no_memory = false;
     std::optional<error_kind> failed = {};
-    std::string what = {}, why = {}, hint = {}; ///< of a failure
+    std::string what = {}, why = {}, hint = {}; ///< parts of the error after a failure
 };
 
 /// Functions that the module exports as tactor_painter.
