@@ -22,7 +22,7 @@
 namespace tactor::session {
 namespace {
 
-// Returns the PCM's name. One from an array file, which others may have written, can only name a device.
+// Returns the PCM's name. A name from an array file, which others may have written, can only name a device.
 std::string pcm_name(const settings& s, const output_settings& out)
 {
     if (s.pcm || !out.pcm)
@@ -129,7 +129,7 @@ void list_members(Io& io, const device_list& d)
             [](auto& inner, const gpio_chip_info& c, std::size_t) { chip_members(inner, c); });
 }
 
-// Adds what only the array can tell: a tactor that does not reach the device, or a smaller array that fits.
+// Adds facts that depend on the array: a tactor that does not reach the device, or a smaller array that fits.
 void look_behind(const array& a, alsa_options wanted, pcm_info& p)
 {
     if (!p.opened)
@@ -203,7 +203,7 @@ double latency_ms(const stream_setup& s)
 
 std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made)
 {
-    // Rounding to whole frames is not worth a sentence.
+    // Relative difference that rounding to whole frames may make.
     constexpr double tolerance = 1.05;
     if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
         return {};
@@ -252,8 +252,8 @@ std::unique_ptr<sink> open_device(const alsa_options& o, const array& a)
 std::string settle_server(const std::string& pcm)
 {
     std::string server = read_route(pcm).server;
-    // Channels have no places to PipeWire's ALSA plugin beyond those of loudspeakers: it would mix nine of
-    // them down to what it takes the card for, as a rule to two.
+    // PipeWire's ALSA plugin gives places only to the channels of loudspeakers. It would mix nine channels
+    // down to its idea of the card, usually two.
     if (server == "PipeWire")
         ::setenv("PIPEWIRE_ALSA", "{ stream.dont-remix = true }", 0);
     return server;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The PCM that a session plays on: its name, its opening, the limits of the array on it, and sound servers
-/// in between; and the list of all devices.
+/// The PCM on which a session plays: its name, opening, limits and sound servers in between; and the list of
+/// all devices.
 #pragma once
 
 #include <memory>
@@ -26,12 +26,12 @@ bool names_device(const settings& s, const environment& e);
 /// Says on standard error that the session plays to "null", if nothing names a PCM.
 void tell_of_no_device(const settings& s, const environment& e);
 
-/// Returns the PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names
-/// one. \throws error (bad_input) where an array file says more than the name of a device.
+/// Returns the options to open the PCM with these channels at that rate, Hz; "null" if nothing names a PCM.
+/// \throws error (bad_input) if an array file has more than the name of a device.
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
                             unsigned channels, unsigned rate);
 
-/// Returns `l` with the options in place of its values.
+/// Returns `l` with its values replaced by those of the options.
 drive_limits limits_over(const stream_options& asked, drive_limits l);
 
 /// Returns the limits: the options, else [limits], else the defaults.
@@ -43,32 +43,32 @@ std::string latency_warning(std::optional<double> asked_ms, const stream_setup& 
 /// Returns the time that the buffer holds, ms.
 double latency_ms(const stream_setup& s);
 
-/// Returns a hint for a PCM that has fewer channels than `o` asks for: the largest built-in array that fits;
+/// Returns a hint for a PCM that has fewer channels than `o` requests: the largest built-in array that fits;
 /// or, if `a` needs fewer, the channel that a marker or a plan adds to it. Empty: none.
 std::string find_fit(alsa_options o, const array& a);
 
-/// Opens like open_alsa() for this array; if the PCM has too few channels, the hint says what fits.
+/// Opens like open_alsa() for this array; if the PCM has too few channels, the hint names what fits.
 std::unique_ptr<sink> open_device(const alsa_options& o, const array& a);
 
-/// Returns the sound server between this process and a PCM; empty: none. Sets PipeWire's variable of this
-/// process, if it is unset, so that each channel goes to the output of its number without mixing. Call it
-/// before there are threads and before the PCM is opened.
+/// Returns the sound server between this process and a PCM; empty: none. Sets an unset variable of PipeWire
+/// in this process, so that each channel goes to the output with its number without mixing. Call it before
+/// there are threads and before the PCM is opened.
 std::string settle_server(const std::string& pcm);
 
 /// Hint for a sound server in the way.
 inline constexpr const char* server_cure =
     "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
 
-/// Warns on standard error of the sound server in between, if there is one.
+/// Warns on standard error of a sound server in between, if any.
 void warn_of_server(const std::string& server, const char* cure = server_cure);
 
-/// Returns true if anybody may feel a PCM: it does not end in PCMs of type null alone.
+/// Returns true if a PCM may be felt: it does not end only in PCMs of type null.
 bool is_felt(const std::string& pcm);
 
 /// Returns the effects that a server in between may have.
 std::string server_note(const std::string& server);
 
-/// A remark about a stream that is or may be felt, and a hint.
+/// A remark about a possible effect on the stream, and a hint.
 struct device_note {
     std::string text;
     const char* cure;
@@ -78,16 +78,17 @@ struct device_note {
 /// unknown routes (except those through a server: server_note()).
 std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
 
-/// Devices that there are, and how play would open one.
+/// Existing devices, and the options with which play would open one.
 struct device_list {
     std::string array_name;
-    alsa_options wanted;            ///< as play would open it
-    bool pcm_is_configured = false; ///< by -D or a file; else `wanted` stands on the default
+    alsa_options wanted;            ///< options with which play would open it
+    bool pcm_is_configured = false; ///< a user or a file named the PCM; false: `wanted` has the default
     std::vector<pcm_info> pcms;
     std::vector<gpio_chip_info> chips;
 };
 
-/// Looks at all devices, for what the settings ask for. \throws error.
+/// Examines all devices for the needs of the settings.
+/// \throws error.
 device_list look_for_devices(const settings& s, const environment& e);
 
 /// Returns one object of schema tactor-devices/1.

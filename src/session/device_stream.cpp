@@ -27,7 +27,7 @@ stream_policy::time later(stream_policy::time t, double s)
 
 class lent_line final : public enable_line {
 public:
-    /// `switched`: called with what the line is now.
+    /// Lends a line. `switched` is called with its new state.
     explicit lent_line(std::shared_ptr<enable_line> l, std::function<void(bool on)> switched = {})
         : line_(std::move(l)), switched_(std::move(switched))
     {
@@ -73,7 +73,7 @@ stream_policy::act stream_policy::step(time now)
     return phase_ == phase::open ? step_open(now) : phase_ == phase::shut ? step_shut(now) : act::nothing;
 }
 
-// Time begins with the first call.
+// Returns true once `after_s` has passed since the first call for this wait.
 bool stream_policy::is_due(time now, double after_s)
 {
     again_ = due_ = due_.value_or(later(now, after_s));
@@ -100,7 +100,7 @@ stream_policy::act stream_policy::step_open(time now)
 {
     if (broken_ || closing_)
         return act::close;
-    // An opening proves little: a full disk or a loose cable shows with the first periods.
+    // A successful opening proves little: a full disk or a loose cable shows only with the first periods.
     if (proves_ && is_due(now, times_.proof_s))
         run();
     if (!proves_ && !busy_ && times_.idle_stop_s > 0.0 && is_due(now, times_.idle_stop_s)) {
@@ -170,7 +170,7 @@ void stream_policy::mute(bool is)
 void stream_policy::set_busy(bool is)
 {
     if (std::exchange(busy_, is) != is && !proves_ && phase_ == phase::open)
-        due_.reset(); // of the idle stop
+        due_.reset(); // ends the idle stop
 }
 
 void stream_policy::end()
@@ -189,7 +189,7 @@ void stream_policy::set(stream_state s, std::string reason)
 
 void add_stats(player_stats& sum, const player_stats& more)
 {
-    constexpr std::ptrdiff_t most_xrun_lengths = 64; // as player_stats::xrun_s has of one stream
+    constexpr std::ptrdiff_t most_xrun_lengths = 64; // the same as player_stats::xrun_s has for one stream
     const bool first = sum.periods == 0;
     sum.ring_low_water = first ? more.ring_low_water : std::min(sum.ring_low_water, more.ring_low_water);
     sum.realtime = more.realtime && (first || sum.realtime);
@@ -299,7 +299,7 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
 struct device_stream::outcome {
     bool closes = false;
     double proof_s = 0.0;
-    std::unique_ptr<tactor::player> player = {}; ///< that was opened, or is to be closed
+    std::unique_ptr<tactor::player> player = {}; ///< player that was opened, or that is to be closed
     std::exception_ptr failure = {};
     std::string why = {};
     player_stats last = {};
@@ -325,11 +325,11 @@ device_stream::~device_stream()
 void device_stream::finish() noexcept
 {
     try {
-        outcome_.reset(); // its player calls back
+        outcome_.reset(); // its player's handlers refer to this
         end();
         step();
         work_here();
-    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): it has ended
+    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): the player has ended
     }
 }
 
@@ -414,7 +414,7 @@ void device_stream::close()
 {
     outcome_->player->stop();
     outcome_->last = outcome_->player->stats();
-    outcome_->player.reset(); // reports what is left; it holds the device and borrows the lines
+    outcome_->player.reset(); // sends the last reports; the player holds the device and borrows the lines
 }
 
 void device_stream::settle()

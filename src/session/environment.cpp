@@ -47,8 +47,8 @@ std::string find_config(const settings& s)
     return {};
 }
 
-// Adds what an array file says. Output, amplifier and sync are the file's where it has them, because they
-// belong to its array; of two ceilings the lower holds.
+// Adds the contents of an array file. Its output, amplifier and sync replace others, because they belong to
+// its array; the lower of two ceilings applies.
 void use_array_file(setup& config, const setup& file)
 {
     config.array = file.array;
@@ -63,14 +63,15 @@ void use_array_file(setup& config, const setup& file)
         config.output.pcm_included = true;
     }
     prefer(config.output.rate, file.output.rate);
-    // The channel count belongs to the map: one array's count says nothing of another's.
+    // The channel count belongs to the map: the count of one array has no meaning for another.
     config.output.channels = file.output.channels;
     prefer(config.output.period_frames, file.output.period_frames);
     prefer(config.output.periods, file.output.periods);
     prefer(config.amplifier, file.amplifier);
     prefer(config.sync, file.sync);
     config.limits = detail::join_limits(config.limits, file.limits);
-    static_cast<void>(options::read_serve(config.serve)); // an error of the one is not hidden by the other
+    static_cast<void>(
+        options::read_serve(config.serve)); // so that neither file hides the errors of the other
     static_cast<void>(options::read_serve(file.serve));
     detail::join_serve(config.serve, file.serve);
     for (const written_value& d : file.defaults)
@@ -117,7 +118,7 @@ const files::plan_file* read_plans(const settings& s, environment& e)
     return first;
 }
 
-// Renders a plan as it was rendered before, unless an option differs; [defaults] do not count.
+// Renders a plan as it was first rendered, unless an option differs. [defaults] do not count.
 void use_plan_sound(const files::plan_file& f, settings& s)
 {
     options::wishes kept;
@@ -130,7 +131,7 @@ void use_plan_sound(const files::plan_file& f, settings& s)
     s.render.marker_s = f.render.marker_s;
 }
 
-// Its error lists the presets.
+// Returns a preset. The error for another name lists the presets.
 array named_array(const std::string& name)
 {
     try {
@@ -151,10 +152,10 @@ bool same_places(const array& a, const array& b)
            });
 }
 
-// Returns true for the name of an array, not of a file.
+// Returns true for the name of a preset, not of a file.
 bool names_preset(const std::string& name)
 {
-    std::error_code unknown; // such as for a name that no file can have
+    std::error_code unknown; // for example, a name that no file can have
     return is_preset(array_presets(), name) ||
            (!fs::exists(name, unknown) && name.find_first_of("./") == std::string::npos);
 }
@@ -180,10 +181,10 @@ array find_array(const settings& s, environment& e, const files::plan_file* plan
     if (planned == nullptr)
         return preset_array(usual_array);
     e.plan_channels = planned->render.channels;
-    return planned->tactors; // with the settings that its array file had when the plan was made
+    return planned->tactors; // with the settings of its array file when the plan was made
 }
 
-// A configuration's marker channel may meet another file's array.
+// Checks that a configuration's marker channel does not meet a tactor of another file's array.
 void check_sync_channel(const environment& e)
 {
     if (!e.config.sync)
@@ -203,7 +204,7 @@ void check_sync_channel(const environment& e)
 double farthest(const plan& p, double hz)
 {
     const auto away = [hz](double f) { return std::abs(f - hz); };
-    // For a recording along the path the course has the rate of its repetition.
+    // For a recording along the path the course contains its repetition rate.
     if (p.course.empty() || p.wave.kind == waveform_kind::recording)
         return p.carrier_hz;
     return std::max_element(

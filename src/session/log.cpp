@@ -44,7 +44,8 @@ bool is_log(std::string_view text)
     return true;
 }
 
-// An array file named by mistake must not grow lines of log.
+// Returns true for an empty file or a log: lines must not be appended to an array file that was named by
+// mistake.
 bool may_be_appended_to(int fd)
 {
     std::array<char, 32> begin{};
@@ -52,7 +53,7 @@ bool may_be_appended_to(int fd)
     return n == 0 || (n > 0 && is_log({begin.data(), static_cast<std::size_t>(n)}));
 }
 
-// Cuts off half a line, in which the next log would begin, if nobody else has written since.
+// Cuts off half a line, unless another process has written since. The next log would begin in it.
 void take_back(int fd, ssize_t written)
 {
     const off_t end = ::lseek(fd, 0, SEEK_CUR);
@@ -83,7 +84,7 @@ session_log::session_log(bool verbose, std::string file) : verbose_(verbose), fi
 
 void session_log::open()
 {
-    // No link is followed, and no pipe is waited for.
+    // Follows no link, and does not wait for a pipe.
     fd_ = detail::owned_fd(
         ::open(file_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
     const int code = errno;
@@ -125,7 +126,7 @@ void session_log::write(log_kind k, std::string_view text)
     const int code = n < 0 ? errno : ENOSPC;
     if (n > 0)
         take_back(fd_.get(), n);
-    // The stroke goes on: a log that ends early is no reason to stop it.
+    // The stroke continues: a log that ends early is not a reason to stop it.
     say(stderr, "tactor: warning: {}: {}: the log ends here\n", shown(file_), std::strerror(code));
     fd_.close();
 }

@@ -13,21 +13,23 @@
 
 namespace tactor::session {
 
-/// Returns the text of a line about a stroke that has ended: its name, when its first sample was at the DAC
-/// (UTC and CLOCK_MONOTONIC), how it ended, and how much of it was played at `rate`, Hz.
+/// Returns the text of a line about a stroke that has ended: its name, the time of its first sample at the
+/// DAC (UTC and CLOCK_MONOTONIC), the way in which it ended, and the part that was played at `rate`, Hz.
 std::string stroke_text(std::string_view name, const stroke_report& r, unsigned rate);
 
-/// "2026-03-01T09:30:00.125Z warning xrun 1: ...": UTC, kind, text. Outlives the player that writes to it.
+/// A log with lines of UTC, kind and text: "2026-03-01T09:30:00.125Z warning xrun 1: ...". Outlives the
+/// player that writes to it.
 class session_log {
 public:
     /// Writes to standard error if `verbose`, or to the journal with level and time; appends to a file unless
-    /// its name is empty. \throws error: bad_input for a name that is a link, no regular file, or a
-    /// file that holds something else; runtime for what the system refuses.
+    /// its name is empty.
+    /// \throws error: bad_input for a link, a file that is not regular, and a file with other contents;
+    ///         runtime if the system refuses.
     session_log(bool verbose, std::string file);
     session_log(const session_log&) = delete;
     session_log& operator=(const session_log&) = delete;
 
-    /// Empty without --verbose and --log.
+    /// Returns the log function; empty without --verbose and --log.
     log_function function();
 
 private:

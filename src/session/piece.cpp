@@ -65,7 +65,7 @@ void place_strokes(piece& p, const layout& faces, const options::wishes& o)
         p.strokes = std::move(fitted.strokes);
         p.fit = fitted.placed;
     }
-    // Times count where a stroke ends up.
+    // The time depends on the final length of a stroke.
     for (stroke& k : p.strokes)
         set_pace(k, o);
 }

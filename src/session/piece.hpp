@@ -17,20 +17,22 @@ namespace tactor::session {
 
 using files::piece;
 
-/// Reads strokes from a text of a kind: "stroke" (the name of a preset or a shape), "path" (SVG path data),
-/// "toml", "csv" or "svg". `named` stands for the text in errors. \throws error (bad_input).
+/// Reads strokes from a text of one of these kinds: "stroke" (the name of a preset or a shape), "path" (SVG
+/// path data), "toml", "csv" or "svg". `named` stands for the text in errors.
+/// \throws error (bad_input).
 std::vector<stroke> read_strokes(std::string_view kind, const std::string& text, const std::string& named,
                                  const options::wishes& o);
 
-/// Fits the strokes that ask for it and, where the options do, all of them together; then sets their paces.
+/// Fits the strokes that request it, and all together if the options do; then sets their paces.
 /// \throws error (bad_input).
 void place_strokes(piece& p, const layout& faces, const options::wishes& o);
 
-/// Plans stroke i of a piece, which has plans of those before. \throws error (bad_input).
+/// Plans stroke i of a piece, which has the plans of earlier strokes.
+/// \throws error (bad_input).
 void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, const options::wishes& o);
 
-/// Returns how much weaker than asked for a score of so many strokes is, and where they meet, with marks;
-/// empty: it is as strong as asked for.
+/// Returns a text, with marks, on how much weaker than requested a score of these strokes is and where they
+/// meet; empty if it is as strong as requested.
 std::string weakening_text(const weakening& w, std::size_t strokes);
 
 } // namespace tactor::session

@@ -19,7 +19,7 @@
 namespace tactor::session {
 namespace {
 
-constexpr int settled_ms = 10; // more than one turn of the audio thread takes
+constexpr int settled_ms = 10; // longer than one turn of the audio thread
 constexpr int longest_ms = 60'000;
 
 int milliseconds_until(std::optional<device_stream::time> t, int most_ms)
@@ -158,7 +158,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
     player& p = *stream_.current();
     for (;;) {
         if (const auto report = p.wait(playing_, std::chrono::seconds(0))) {
-            // The loss of the device is reported after the strokes that it interrupted.
+            // The report of a lost device comes after those of the strokes that it interrupted.
             if (report->state == state_kind::interrupted)
                 wait_for(-1, settled_ms);
             return *report;

@@ -29,28 +29,29 @@ struct run_facts {
     void check_amplifier() const;
 };
 
-/// Time between two looks of a drawing at a stroke that plays: 25 a second.
+/// Time between two updates of a drawing while a stroke plays: 25 a second.
 inline constexpr int frame_ms = 40;
 
 /// Changes the parts of a stream: tests have devices of their own.
 using stream_source = std::function<void(stream_parts&)>;
 
-/// Look at a stroke that goes on.
+/// Request for the next call while a stroke plays.
 struct look {
-    int most_ms = 1000;  ///< the next one comes after so long,
-    int descriptor = -1; ///< or when this can be read
+    int most_ms = 1000;  ///< time until the next call at the latest,
+    int descriptor = -1; ///< or when this descriptor is readable
 };
 
 class play_session {
 public:
-    /// Opens lines and device, settles real time and starts the stream. \throws error.
+    /// Opens lines and device, sets up real time and starts the stream.
+    /// \throws error.
     play_session(const alsa_options& device, const stream_options& o, const environment& e,
                  const stream_source& source = {});
     play_session(const play_session&) = delete;
     play_session& operator=(const play_session&) = delete;
 
     const stream_setup& setup() const noexcept { return stream_.setup(); }
-    /// Options of the constructor.
+    /// Returns the options of the constructor.
     const stream_options& asked() const noexcept { return options_; }
 
     /// Hands a score to the stream. With stream_options::arm it waits for the trigger instead of `start`.
@@ -60,21 +61,23 @@ public:
     /// to the stream once that frame is known, and the next submit() takes it. Null: none follows. `s` lives
     /// as long as it is named.
     void follow_with(const score* s, std::uint64_t frames) noexcept;
-    /// Begins a stroke that points move. \throws error.
+    /// Begins a live stroke.
+    /// \throws error.
     live_stroke begin(const live_options& o);
-    /// Follows what was submitted or begun to its end, or until a signal comes, see signal(), and looks at it
-    /// by `each`, if any, again and again. \throws what `each` throws.
+    /// Follows the stroke to its end, or until a signal comes; see signal(). Calls `each`, if any, again and
+    /// again.
+    /// \throws exceptions of `each`.
     stroke_report follow(const std::function<look()>& each = {});
     /// Returns the stroke's frame at the DAC; nothing while it does not sound.
     std::optional<std::uint64_t> stroke_frame() const;
-    /// Fades out what plays.
+    /// Fades out the stroke.
     void cancel();
-    /// Writes to the log what became of a stroke.
+    /// Logs the end of a stroke.
     void log_end(std::string_view name, const stroke_report& r);
 
-    /// Returns true if the device is gone, or failed: nothing can be played until reopen().
+    /// Returns true if the device is gone or has failed; nothing plays until reopen().
     bool lost() const { return stream_.current() == nullptr || stream_.current()->ended().has_value(); }
-    /// Returns true while it waits for a lost device.
+    /// Returns true if it waits for lost devices.
     bool waits() const noexcept { return options_.reopen_s > 0.0; }
     /// Waits for the device, up to stream_options::reopen_s. Returns false if it did not come back, a signal
     /// came, or the amplifier may be on. \throws error (bad_input) for a device that cannot be opened.
@@ -84,24 +87,26 @@ public:
     /// come.
     bool wait_for(int descriptor, int timeout_ms = -1, int also = -1);
 
-    /// Position of the stream in frames, from 0 after each opening.
+    /// Returns the position of the stream in frames, from 0 after each opening.
     player_position position() const;
     /// Returns player::drive_levels_s() of the stream that runs.
     std::vector<double> drive_levels_s() const;
-    /// Counters of all streams up to now.
+    /// Returns the counters of all streams up to now.
     player_stats stats() const { return stream_.stats(); }
     bool locked_memory() const noexcept { return locked_; }
 
-    /// The signal that asked to end, or 0.
+    /// Returns the signal that requested the end, or 0.
     int signal() const noexcept { return signal_; }
 
-    /// Ends the stream in silence, warns of tactors that limits cut off, and returns what came of it.
+    /// Ends the stream in silence, warns of tactors that limits cut off, and returns facts for the report.
     run_facts finish();
 
 private:
     stream_parts make_parts(alsa_options device, const stream_source& source);
-    /// Logs why the device could not be opened, if so. \throws error (bad_input) if it never can be.
+    /// Logs the failure of opening the device, if any.
+    /// \throws error (bad_input) if it can never be opened.
     void check_failure();
+    /// Hands the following score to the stream, if the first frame of this stroke is known.
     void submit_follower();
 
     stream_options options_;

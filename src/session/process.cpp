@@ -34,7 +34,7 @@ namespace {
 
 volatile std::sig_atomic_t ending_signal = 0;
 
-// Runs in a signal's handler: makes system calls only.
+// Ends the process from a signal's handler, so it only makes system calls.
 extern "C" void end_now(int)
 {
     constexpr char text[] = "tactor: the device does not answer: ended anyway\n";
@@ -42,12 +42,12 @@ extern "C" void end_now(int)
     _exit(interrupt::status(ending_signal));
 }
 
-// For stacks of threads and what is allocated later: with MCL_FUTURE all of it counts, and beyond the limit
+// Memory for stacks of threads and later allocations. With MCL_FUTURE all memory counts, and beyond the limit
 // allocations fail.
 constexpr std::uint64_t reserve_bytes = 32U << 20;
 
-/// Returns true for memory that the audio thread runs in; `self` is the program's own file, which contains
-/// the library. Other libraries use memory only for the pages in use, which are locked when they come.
+/// Returns true for memory in which the audio thread runs. `self` is the program's own file, which contains
+/// the library. Other libraries need only pages in use, which are locked when they are loaded.
 bool is_needed(std::string_view mapped, std::string_view self)
 {
     if (mapped.empty() || mapped == "[heap]" || mapped == "[stack]" || mapped == self)
@@ -58,7 +58,7 @@ bool is_needed(std::string_view mapped, std::string_view self)
                        [file](std::string_view name) { return file.starts_with(name); });
 }
 
-/// Brings in what is mapped now, so that the audio thread meets no page fault.
+/// Loads the mapped pages now, so that the audio thread has no page faults.
 void populate()
 {
     std::error_code none;
@@ -77,7 +77,7 @@ void populate()
     }
 }
 
-/// Returns why not; empty: all memory is locked.
+/// Locks all memory. Returns the reason of a failure; empty: success.
 std::string lock_own_memory()
 {
     if (const auto most = probe_realtime_rights().lockable_bytes) {
@@ -111,14 +111,15 @@ void limit_runaway_threads()
 
 namespace fs = std::filesystem;
 
-// A pipe of the shell's, <(...) or /dev/stdin, has its other end already.
+// Returns true for a named pipe. A pipe of the shell, <(...) or /dev/stdin, already has its other end.
 bool is_named_pipe(const std::string& file)
 {
     std::error_code ignored;
     return fs::is_fifo(fs::symlink_status(file, ignored));
 }
 
-// A folder has no text. A terminal, or a pipe that this process writes to, would be read for ever.
+// Refuses a folder, which has no text, and a terminal or a pipe to which this process writes, because reading
+// would never end.
 void refuse_unreadable(const std::string& file)
 {
     struct stat s {};

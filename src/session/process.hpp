@@ -10,8 +10,8 @@
 
 namespace tactor::session {
 
-/// Blocks SIGINT, SIGTERM, SIGHUP and SIGQUIT in this thread, and so in those that it starts, and receives
-/// them through a descriptor. Make it before any thread.
+/// Receiver of SIGINT, SIGTERM, SIGHUP and SIGQUIT through a descriptor. It blocks them in this thread, and
+/// so in the threads that this one starts. Make it before any thread.
 class interrupt {
 public:
     /// \throws error (runtime).
@@ -20,11 +20,11 @@ public:
     interrupt(const interrupt&) = delete;
     interrupt& operator=(const interrupt&) = delete;
 
-    /// Readable when a signal has come.
+    /// Returns a descriptor that is readable when a signal has come.
     int descriptor() const noexcept { return fd_; }
-    /// Returns the signal that has come, or 0. Does not wait. From the first signal on the program has
-    /// `grace_s` to end by itself: then it is ended with that signal's status, since a device may hang for
-    /// good in the library that drives it. The amplifier's holder switches off when the program is gone.
+    /// Returns the signal that has come, or 0. Does not wait. After the first signal the program has
+    /// `grace_s` to end by itself. Then it is killed with that signal's status, because a device may hang for
+    /// ever in the library that drives it. The amplifier's holder switches off when the program is gone.
     int poll() noexcept;
     /// Ignores all further signals: this process is already ending.
     void was_the_last() noexcept { last_ = true; }
@@ -38,38 +38,40 @@ private:
     sigset_t before_{};
 };
 
-/// Locks all memory of the process, now and to come, and lets the kernel end the process if a real-time
-/// thread runs for 0.2 s without a pause: it would block a computer with one core for good. Call it before
-/// threads are made and after the last fork. Returns true if memory is locked. \throws error (not_available)
-/// if it is not, and `required`.
+/// Locks all present and future memory of the process, and lets the kernel end the process if a real-time
+/// thread runs for 0.2 s without a pause. Such a thread would block a computer with one core for ever. Call
+/// it before threads are made and after the last fork. Returns true if memory is locked.
+/// \throws error (not_available) if it is not, and `required`.
 bool settle_realtime(bool required);
 
-/// Returns how much settle_realtime() would lock now, with what threads will need.
+/// Returns the number of bytes that settle_realtime() would lock now, including those for threads.
 std::uint64_t memory_to_lock();
 
-/// Lets the heap give back what is freed, for a process that lives long and whose clients come and go: large
-/// blocks are mapped one by one. Call it after settle_realtime(), which keeps all.
+/// Lets the heap return freed memory, for a long-lived process whose clients come and go: large blocks are
+/// mapped one by one. Call it after settle_realtime(), which keeps all memory.
 void give_memory_back();
 
 /// Warns on standard error if the audio thread has no real-time priority or its memory is not locked.
 void warn_of_rights(bool realtime, bool locked);
 
-/// Says on standard error that the tool waits for a program that writes to a named pipe; call it before a
-/// file is read. \throws error (bad_input) for a folder, a terminal, and a pipe or file that this program
-/// itself writes to.
+/// Prints on standard error that the tool waits for a program that writes to a named pipe. Call it before a
+/// file is read.
+/// \throws error (bad_input) for a folder, a terminal, and a pipe or file that this program itself writes to.
 void check_readable(const std::string& file);
 
 /// Returns true if a name is one of this process's standard output (/dev/stdout, /dev/fd/1).
 bool is_standard_output(const std::string& file);
 
-/// Refuses standard input that cannot be read, for an errno. \throws error: bad_input if it is closed or a
-/// folder, else runtime.
+/// Refuses unreadable standard input, for an errno.
+/// \throws error: bad_input if it is closed or a folder, else runtime.
 [[noreturn]] void refuse_standard_input(int code);
 
-/// Refuses standard input that cannot be read, before anything else is done. \throws error as above.
+/// Refuses unreadable standard input, before any other work.
+/// \throws error as above.
 void check_standard_input();
 
-/// Says on standard error that the tool waits for a program that reads a named pipe. Else nothing.
+/// Prints on standard error that the tool waits for a program that reads a named pipe; nothing for other
+/// files.
 void tell_of_pipe_to_write(const std::string& file);
 
 } // namespace tactor::session

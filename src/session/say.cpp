@@ -21,7 +21,7 @@ constexpr std::size_t usual_columns = 80;
 constexpr std::size_t least_columns = 40;
 constexpr std::size_t most_columns = 200;
 
-// Characters of East Asia take two columns, and fmt's padding counts them so.
+// Counts columns. East Asian characters take two, as in fmt's padding.
 std::size_t count_columns(std::string_view s)
 {
     const std::size_t padded = 2 * s.size();
@@ -33,7 +33,7 @@ std::size_t count_blanks(std::string_view line, std::size_t at)
     return std::min(line.find_first_not_of(' ', at), line.size()) - at;
 }
 
-// Parts of a line, which two blanks or more separate.
+// Parts of a line, separated by two or more blanks.
 struct line_parts {
     std::size_t hang = 0;   ///< column of the last part in the left half, else of the first word
     std::size_t beyond = 0; ///< place in the line of the only part in the right half; 0: none, or several
@@ -42,7 +42,7 @@ struct line_parts {
 line_parts find_parts(std::string_view line, std::size_t width)
 {
     line_parts p;
-    unsigned count = 0; // in the right half
+    unsigned count = 0; // parts in the right half
     for (std::size_t at = 0; at < line.size();) {
         const std::size_t word = at + count_blanks(line, at);
         if (word == line.size())
@@ -78,7 +78,7 @@ void append_line(std::string& all, std::string_view line, std::size_t hang, std:
     }
 }
 
-// Breaks a line. The only part in its right half goes below.
+// Breaks a line. Moves the only part in its right half below.
 void append_parts(std::string& all, std::string_view line, std::size_t width)
 {
     constexpr std::size_t deeper = 2;
@@ -146,7 +146,7 @@ std::string with_levels(const std::string& lines, log_kind k)
 
 std::atomic<int> first_output_error = 0;
 
-// The stream itself remembers that it failed, not why.
+// Remembers why a stream failed; the stream itself only remembers that it did.
 void keep_error(std::FILE* to, bool arrived)
 {
     int none = 0;

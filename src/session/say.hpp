@@ -19,22 +19,22 @@ namespace tactor::session {
 /// cursor or worse, become escapes such as \x1b or \n.
 std::string shown(std::string_view name);
 
-/// Prints text, escaped as above but for line ends, and on a terminal wrapped at words to its width. Never
-/// throws for what cannot be written: standard error that is gone (2>&-, a full disk) does not decide whether
-/// the work was done, and main() looks after standard output. To the journal each line goes with its level:
-/// `kind`, or a warning's where it begins "tactor: warning: ".
+/// Prints text, escaped as above except for line ends, and wrapped at words on a terminal. Never throws if
+/// writing fails: a closed standard error (2>&-, a full disk) does not decide if the work was done, and
+/// main() checks standard output. In the journal each line gets its level: `kind`, or that of a warning if it
+/// begins with "tactor: warning: ".
 void say_text(std::FILE* to, std::string_view text, log_kind kind = log_kind::info);
 
-/// Hands what was printed on standard output to its reader, and never throws, like say_text().
+/// Flushes standard output. Never throws, like say_text().
 void flush_output();
 
-/// Returns the errno of the first write to standard output by these that failed, else 0.
+/// Returns the errno of the first failed write to standard output by these functions, else 0.
 int output_error();
 
 /// Returns true if systemd reads this stream for its journal.
 bool goes_to_journal(std::FILE* to);
 
-/// Prints text on standard output at once, because somebody reads along.
+/// Prints text on standard output at once, for a person who reads along.
 void show(std::string_view text);
 
 /// Shows each line of a text, broken at words even without a terminal.
@@ -46,23 +46,23 @@ void say(std::FILE* to, fmt::format_string<T...> format, T&&... values)
     say_text(to, fmt::format(format, std::forward<T>(values)...));
 }
 
-/// Says on standard error why the program ends.
+/// Prints on standard error why the program ends.
 template <typename... T>
 void say_error(fmt::format_string<T...> format, T&&... values)
 {
     say_text(stderr, fmt::format(format, std::forward<T>(values)...), log_kind::error);
 }
 
-/// Returns the columns that a line printed to `to` may have: its terminal's, from 40 to 200, less one. Where
-/// `to` is no terminal, or one that does not know its size, 79.
+/// Returns the number of columns that a line printed to `to` may have: that of its terminal, from 40 to 200,
+/// less one; 79 if `to` is not a terminal or the terminal does not know its size.
 std::size_t line_width(std::FILE* to);
 
-/// Breaks text at blanks so that no line has more than `width` columns where that can be. `first` stands
-/// before the first line, as many blanks before the others.
+/// Breaks text at blanks, so that lines have at most `width` columns if possible. `first` begins the first
+/// line; as many blanks begin the others.
 std::string wrapped(std::string_view first, std::string_view text, std::size_t width = line_width(stdout));
 
-/// Breaks each line of `text` like wrapped(). A line goes on below its last column of words, as in a table
-/// or a list of options, or below its own beginning. If that column lies in the right half of the width, its
+/// Breaks each line of `text` like wrapped(). A line continues below its last column of words, as in a table
+/// or a list of options, or below its own beginning. If that column is in the right half of the width, its
 /// words go below the others.
 std::string wrap_lines(std::string_view text, std::size_t width);
 

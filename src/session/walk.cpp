@@ -10,7 +10,7 @@
 namespace tactor::session {
 namespace {
 
-// Long enough to be felt by anyone, apart enough to be told from a fault that hums.
+// Duration that everybody feels, with pauses that distinguish it from a humming fault.
 constexpr double burst_s = 0.15;
 constexpr double onset_s = 0.25;
 constexpr unsigned bursts = 3;
@@ -51,7 +51,8 @@ std::vector<placed_plan> walk_plans(const array& a, double carrier_hz)
 walk_verdict judge(const array& a, const walk_answers& felt)
 {
     walk_verdict v;
-    std::vector<std::vector<std::size_t>> driven(a.tactors.size()); // tactors driven when this one was felt
+    std::vector<std::vector<std::size_t>> driven(
+        a.tactors.size()); // tactors that were driven when this one was felt
     for (std::size_t i = 0; i < felt.size(); ++i)
         if (felt[i])
             driven[*felt[i]].push_back(i);
