@@ -45,7 +45,7 @@ guard_settings make_guards(const drive_limits& l, unsigned rate)
 
 std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept
 {
-    // A drive at the limit may exceed it by an ulp or two of sin(): it is limited, but does not count.
+    // A drive at the limit may exceed it by an ulp or two of sin(): it is limited, but not counted.
     const double counted = limit * (1.0 + 1e-9);
     std::uint64_t changed = 0;
     for (unsigned i = 0; i < n; ++i)
@@ -147,7 +147,7 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
             sum[j] += c.envelope[j];
     keep(channels);
     std::uint64_t changed = 0;
-    bool squeezed = true; // in the frame before, so let_ is known
+    bool squeezed = true; // state in the previous frame, so let_ is known
     for (unsigned j = 0; j < n; ++j) {
         step(sum[j]);
         const double headroom = most_ / (gain_ * gain_);
@@ -179,9 +179,9 @@ void power_guard::silence(std::uint64_t frames) noexcept
 namespace {
 
 constexpr double fade_s = 0.02;
-constexpr double pause_s = 0.001; // longer than a sine stays at zero
+constexpr double pause_s = 0.001; // a sine stays at zero for less
 constexpr double counted = least_counted_drive * least_counted_drive;
-constexpr double rounding = 1e-6; // of a level, frames
+constexpr double rounding = 1e-6; // rounding error of a level, frames
 
 } // namespace
 
@@ -235,7 +235,7 @@ void drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t t
 
 void drive_guard::close(cell& c) const noexcept
 {
-    // While it fades in its gain is low already, so less of the fade is left.
+    // A channel that still fades in has a low gain already, so less of the fade remains.
     const std::int64_t done = std::clamp<std::int64_t>(c.opens_at + fade_ - c.at, 0, fade_);
     c.closed_at = c.at - done;
     add(c, fade_ - done);
@@ -313,7 +313,7 @@ void drive_guard::raise(std::size_t channel, std::uint64_t clock, double level_s
     c.level = level;
     if (closed) {
         open_later(c);
-    } else if (level > limit_ - 1.0 && rests) { // it is silent, so nothing fades out
+    } else if (level > limit_ - 1.0 && rests) { // the channel is silent, so nothing fades out
         c.closed_at = now - fade_;
         open_later(c);
     } else if (level > limit_ - 1.0) {

@@ -20,7 +20,7 @@ namespace tactor::synth {
 struct guard_settings {
     double power = std::numeric_limits<double>::infinity(); ///< greatest sum of squared envelopes
     double drive_frames = 0.0;                              ///< longest drive; 0: drive time is not counted
-    double leak = 1.0; ///< frames of drive time that a frame of rest takes away
+    double leak = 1.0; ///< frames of drive time that one frame of rest removes
     unsigned rate = 48000;
 };
 
@@ -55,25 +55,25 @@ struct powered_channel {
     const double* envelope = nullptr; ///< squared; in each frame at least the square of the sample
 };
 
-/// Limits the sum over the channels of the squared envelopes, and with it that of x^2, in every frame,
-/// without a click: the gain of all follows the envelopes, not the waves, and takes about 10 ms. If an
-/// envelope rises faster, its rise waits for the headroom that the gain makes: channels that already sound
-/// are never cut off, and one that begins fades in. The gain returns with a time constant of 50 ms. State
-/// changes frame by frame, so block sizes make no difference.
+/// Guard that limits the sum of the squared envelopes over the channels (and so that of x^2) in every frame,
+/// without a click: the common gain follows the envelopes, not the waves, and takes about 10 ms. If an
+/// envelope rises faster, it waits for the headroom that the gain makes. Sounding channels are never cut off,
+/// and one that begins fades in. The gain returns with a time constant of 50 ms. State changes frame by
+/// frame, so block sizes make no difference.
 class power_guard {
 public:
     /// Makes a guard. `most`: greatest sum of squares; infinite: no limit. `reach`: greatest sum that the
     /// channels could reach.
     power_guard(std::size_t channels, double most, double reach, unsigned rate);
 
-    /// Returns true if it can ever act.
+    /// Returns true if the guard can ever act.
     bool on() const noexcept { return on_; }
     /// Returns true if a block that cannot exceed this sum of squares passes unchanged.
     bool passes(double sum_of_squares) const noexcept
     {
         return !on_ || (held_ <= most_ && gain_ >= 1.0 && sum_of_squares <= most_ * (1.0 - 1e-12));
     }
-    /// Call it after a block that passes: the squared envelopes of its last frame matter to the next block.
+    /// Notes a block that passes, because the squared envelopes of its last frame matter to the next block.
     void passed(std::span<const powered_channel> channels, unsigned n) noexcept;
     /// Scales n frames of the channels, at most block_frames. Returns the number of changed frames.
     std::uint64_t apply(std::span<const powered_channel> channels, unsigned n) noexcept;
@@ -92,9 +92,9 @@ private:
     double decay_;
     double blend_;
     double held_;       ///< greatest recent sum; never below most_
-    double near_ = 1.0; ///< after the first stage of smoothing
+    double near_ = 1.0; ///< gain after the first stage of smoothing
     double gain_ = 1.0; ///< gain of all channels
-    /// By channel: squared envelope of the frame before, as far as it passed, without gain_.
+    /// Squared envelope of each channel in the previous frame, as far as it passed, without gain_.
     std::vector<double> let_;
     std::vector<double> other_; ///< exchanged with let_ from block to block
 };
@@ -103,10 +103,10 @@ private:
 /// tactor.
 inline constexpr double least_counted_drive = 0.01 * (1.0 + 1e-9);
 
-/// Drive time as a bucket a channel: its level rises while the channel is driven and leaks while it rests. A
-/// frame that would bring it above the limit closes the channel: it is faded out, and opens again when the
-/// level is at half of the limit. Counts on its own clock, frames since the start; nothing depends on block
-/// sizes.
+/// Guard of drive time, with a bucket for each channel: its level rises while the channel is driven and leaks
+/// while it rests. A frame that would raise the level above the limit closes the channel. It fades out, and
+/// opens again when the level is at half of the limit. Counts on its own clock, frames since the start;
+/// nothing depends on block sizes.
 class drive_guard {
 public:
     /// Makes a guard. Without guard_settings::drive_frames it is off and counts nothing.
@@ -125,8 +125,8 @@ public:
     void follow(std::size_t channel, std::uint64_t clock, const double* envelope, unsigned n) noexcept;
     /// Returns true if such a block must be changed. Known once its drive has been counted.
     bool acts(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept;
-    /// Applies the resulting gain to the block, and to the squared envelope from the block's frame `known`
-    /// on.
+    /// Applies the resulting gain to the block, and, from the block's frame `known` on, to the squared
+    /// envelope.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
                unsigned known) noexcept;
     /// Returns the number of changed drives: cut short, or silent because their channel was closed. A drive
@@ -135,8 +135,8 @@ public:
 
     /// Returns the frames in which a channel was driven so far; 0 while the guard is off.
     std::uint64_t driven(std::size_t channel) const noexcept { return on() ? cells_[channel].driven : 0; }
-    /// Raises a channel to a level, s, that others have driven it to. A level at the limit closes the channel
-    /// from the block on that begins with frame `clock`.
+    /// Raises a channel to a level, s, to which others have driven it. A level at the limit closes the
+    /// channel, beginning with the block at frame `clock`.
     void raise(std::size_t channel, std::uint64_t clock, double level_s) noexcept;
 
 private:

@@ -20,9 +20,9 @@ struct channel_samples {
 
 /// Writes n (at most block_frames) interleaved frames of `channels` channels: gain * x for a channel in
 /// `sounding` (in order of channel), else zero. Integers are the value times 2^(bits - 1), rounded to the
-/// nearest with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1. Readers that divide by 2^(bits - 1), as
-/// libsndfile does, get the value back. Only 1.0 does not fit; it becomes the greatest integer. Float is the
-/// nearest float. Never writes a negative zero.
+/// nearest with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1. A reader that divides by 2^(bits - 1),
+/// such as libsndfile, restores the value. Only 1.0 does not fit; it becomes the greatest integer. Float is
+/// the nearest float. Never writes a negative zero.
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
                 std::byte* out) noexcept;
 

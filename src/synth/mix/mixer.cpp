@@ -25,7 +25,7 @@ namespace {
 // A channel in the current block.
 struct strip {
     alignas(64) block sum;
-    const double* lone = nullptr; // only one voice so far: its carrier, with `gain`, in place of the sum
+    const double* lone = nullptr; // carrier of the only voice so far, which with `gain` replaces the sum
     double gain = 1.0;
     double limit = 0.0;
     double peak = 0.0;     // greatest sum of the voices
@@ -50,8 +50,7 @@ struct strip {
     }
     // Returns the greatest possible squared envelope.
     double most() const noexcept { return limit * limit * power; }
-    // Takes a further voice. Waves other than sines add up by their amplitudes, unless they are the same
-    // wave.
+    // Adds a further voice. Waves other than sines add up by their amplitudes, unless they are the same wave.
     void join(const voice& v) noexcept
     {
         steady = false;
@@ -82,7 +81,7 @@ struct crest {
     bool touched = false;
 };
 
-// A score that will fade or, without a number of a fade, be cut.
+// A score that will fade or, without a fade, be cut.
 struct leaver {
     std::uint32_t score = 0;
     std::int32_t fade = fades::none;
@@ -123,7 +122,8 @@ TACTOR_CLONES void add_length(unsigned n, double* x, double* y, double* reach, d
     }
 }
 
-// The mixer's state and work. It is local to this file, so that the compiler joins what is called once.
+// The mixer's state and work. It is local to this file, so that the compiler can inline functions that are
+// called once.
 struct channel_mixer {
     channel_mixer(std::span<const double> limits, format_kind f, std::size_t capacity,
                   const guard_settings& g)
@@ -206,7 +206,7 @@ struct channel_mixer {
     carrier_block carrier;
     power_guard power;
     drive_guard duty;
-    std::vector<aligned_block> envelopes; // squared, by channel; empty if not needed
+    std::vector<aligned_block> envelopes; // squared envelope of each channel; empty if not needed
     std::vector<powered_channel> powered;
     std::vector<crest> crests;                              // by channel
     std::vector<std::pair<double, std::uint32_t>> carriers; // cycles per frame, index among the active
@@ -596,8 +596,8 @@ void channel_mixer::guard_power(bool together, unsigned n) noexcept
     power_limited += power.apply(powered, n);
 }
 
-// Replaces the envelope of channels on which carriers beat by that at the crests: a gain that followed the
-// beat would be audible. Carriers of one frequency add up with their phases.
+// Replaces the envelope of channels on which carriers beat by their crests: a gain that followed the beat
+// would be felt. Carriers of one frequency add up with their phases.
 void channel_mixer::find_beats(unsigned from, unsigned n) noexcept
 {
     list_carriers();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The mixer: it takes drives and gives interleaved frames. The offline renderer and the audio thread use it.
+/// The mixer: it turns drives into interleaved frames. The offline renderer and the audio thread use it.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ struct mixer_counts {
     std::uint64_t drives_cut = 0; ///< drives cut short or silenced, because a channel was driven for too long
 };
 
-/// Sums drives, limits each channel, converts and interleaves. Frames count from 0 or from the last reset().
-/// After construction nothing allocates, throws or blocks. The cost of a block is bounded by the channels and
-/// the drives that sound in it.
+/// Mixer that sums drives, limits each channel, converts and interleaves. Frames count from 0 or from the
+/// last reset(). After construction nothing allocates, throws or blocks. The cost of a block is bounded by
+/// the channels and the drives that sound in it.
 class mixer {
 public:
     /// Makes a mixer. `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the
@@ -38,8 +38,8 @@ public:
     /// Returns the number of drives that can be added now.
     std::size_t available() const noexcept;
 
-    /// Adds a drive. Drives may come in any order. A drive whose start has passed begins at once, in its
-    /// middle (with the right phase). Returns false without adding it if there is no space; try again later.
+    /// Adds a drive. Drives may come in any order. A late drive begins at once, at its present place and
+    /// phase. Returns false without adding it if there is no space; try again later.
     bool add(const drive_event& e) noexcept;
 
     /// Renders the next frames. Samples depend on the drives only, not on block sizes.
@@ -51,16 +51,16 @@ public:
     /// already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
 
-    /// Leads the factor of all drives of a score, those to come too, linearly to `gain` (0 ... 1), within
-    /// `ramp` frames from the next one on; until then it is 1. The limits still count with the drives' full
-    /// amplitudes where they look at amplitudes alone. Returns false if 512 scores have one already.
+    /// Moves the factor of a score's present and future drives linearly to `gain` (0 ... 1) within `ramp`
+    /// frames from the next one on; before the first call it is 1. Limits that use only amplitudes still see
+    /// the full ones. Returns false if 512 scores have a factor already.
     bool set_gain(std::uint32_t score, double gain, std::uint32_t ramp) noexcept;
     /// Forgets the factor of a score that has ended.
     void forget_gain(std::uint32_t score) noexcept;
 
-    /// Returns the frames in which a channel was driven so far; 0 where drive time is not counted.
+    /// Returns the number of frames in which a channel was driven so far; 0 if drive time is not counted.
     std::uint64_t driven(std::size_t channel) const noexcept;
-    /// Raises a channel to a level of drive time, s, that others have driven it to, from the next frame on.
+    /// Raises a channel's level of drive time to that of others, s, from the next frame on.
     void raise(std::size_t channel, double level_s) noexcept;
 
     /// Drops everything at once. Drive times still count.
@@ -72,7 +72,7 @@ public:
     std::uint64_t position() const noexcept;
     /// Returns the number of drives that wait or sound.
     std::size_t size() const noexcept;
-    /// Returns what the limits changed so far.
+    /// Returns the counts of the limits so far.
     mixer_counts counts() const noexcept;
 
 private:

@@ -32,7 +32,7 @@ void fill(oscillator_table& t, double cycles_per_frame) noexcept
     }
 }
 
-/// Sines and cosines of the multiples of table_frames in a block, in whole vectors.
+/// Sines and cosines at the multiples of table_frames in a block, in whole vectors.
 struct base_angles {
     static constexpr std::size_t vector = 8;
     static constexpr std::size_t most = (block_frames / table_frames + vector) / vector * vector;

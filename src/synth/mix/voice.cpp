@@ -12,7 +12,7 @@
 namespace tactor::synth {
 namespace {
 
-// Returns the place of the first of a fixed number of fades that holds the test.
+// Returns the index of the first of a fixed number of fades for which the test is true.
 template <class Fades, class Test>
 std::int32_t first(const Fades& all, Test test) noexcept
 {
@@ -144,7 +144,7 @@ void voice_list::retire(std::uint64_t by) noexcept
 
 void score_gain::apply(std::uint64_t frame, unsigned n, double* samples) const noexcept
 {
-    if (is_over(frame)) { // as nearly always
+    if (is_over(frame)) { // the usual case
         for (unsigned j = 0; j < n; ++j)
             samples[j] *= to;
         return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Voices of the mixer: drives in its form, the order in which they wait and sound, and their carriers with
+/// Voices of the mixer: its form of drives, their order while they wait and sound, and their carriers with
 /// window, fade and gain.
 #pragma once
 
@@ -34,8 +34,8 @@ struct voice_drive {
     }
 };
 
-/// A voice of the mixer. Frames are the stream's. `phase`, `stroke_place` and `window_place` are those of
-/// frame 0 of the stream, modulo 2^64, so voices of one carrier have equal ones wherever they start.
+/// A voice of the mixer. Frames are the stream's. `phase`, `stroke_place` and `window_place` are values at
+/// frame 0 of the stream, modulo 2^64, so that voices of one carrier have equal values wherever they start.
 struct voice {
     std::uint64_t start = 0;
     std::uint64_t end = 0;
@@ -47,7 +47,7 @@ struct voice {
     burst_window window = {};
     std::uint32_t score = 0;
     std::int32_t fade = -1;
-    std::uint32_t drives = 0;      ///< number of `drive`
+    std::uint32_t drives = 0;      ///< number of used elements of `drive`
     std::uint32_t points = 0;      ///< number of points of `line`, which replaces `drive`; 0: no line
     const timbre* sound = nullptr; ///< null: a sine
     union {
@@ -211,9 +211,9 @@ struct score_gain {
 /// A fixed number of factors. Scores without one have the factor 1.
 class score_gains {
 public:
-    /// Returns the factor of a score that is not 1 for ever after a frame; null: it is.
+    /// Returns the factor of a score unless it stays 1 from this frame on; then null.
     const score_gain* find(std::uint32_t score, std::uint64_t frame) const noexcept;
-    /// Leads the factor of a score to `to`, from frame `at` on. Returns false if all are in use.
+    /// Moves the factor of a score to `to`, from frame `at` on. Returns false if all are in use.
     bool set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept;
     void forget(std::uint32_t score) noexcept;
     /// Ends all ramps: each factor takes its final value.
@@ -230,7 +230,7 @@ private:
     }
 
     std::array<score_gain, 512> gains_{};
-    std::size_t used_ = 0; ///< the first so many
+    std::size_t used_ = 0; ///< number of factors in use
 };
 
 struct fade {

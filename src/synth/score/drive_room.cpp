@@ -12,14 +12,15 @@ namespace {
 
 constexpr double strict = least_counted_drive / 2.0;
 
-/// Drive time that a piece adds to a channel, in frames. Its level after the piece is the greater of two: the
-/// level before plus `sum`, and `rested`, which it has if the channel had rested. So are the levels within.
+/// Drive time that a piece adds to a channel, in frames. The level after the piece is the greater of two: the
+/// earlier level plus `sum`, and `rested`, the level after the piece on a rested channel. The same holds
+/// within the piece.
 struct need {
     double sum = 0.0;
     double most = 0.0; ///< greatest of the sums within the piece
     double rested = 0.0;
     double most_rested = 0.0;
-    std::uint64_t until = 0; ///< frame of the piece
+    std::uint64_t until = 0; ///< frame of the piece at which it counts
 
     void drive(std::uint64_t from, std::uint64_t to, double leak) noexcept
     {
@@ -100,7 +101,7 @@ void drive_room::resume(std::span<const double> levels_s)
 void drive_room::close(std::uint64_t clock)
 {
     for (level& l : levels_)
-        l = {1.5 * limit_, clock}; // at the limit when they open
+        l = {1.5 * limit_, clock}; // the level is at the limit when the guard opens the channel
 }
 
 void drive_room::played(const score& s, std::uint64_t clock)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Limits on drive time and power as they concern a whole score: the time that it must wait so that no drive
-/// is cut, and whether its power is limited.
+/// Limits on drive time and power for a whole score: the wait after which no drive is cut, and a test if its
+/// power is limited.
 #pragma once
 
 #include <cstddef>
@@ -16,22 +16,22 @@ namespace tactor::synth {
 
 /// Levels of drive time of an array that plays pieces, as in the mixer's drive_guard, but a little stricter:
 /// a drive counts from its first frame to its last, and from half the amplitude on. So the guard does not cut
-/// a piece that has room here, unless another program drives the array, too. Control side, one thread at a
-/// time.
+/// a piece for which this has room, unless another program also drives the array. Control side, one thread at
+/// a time.
 class drive_room {
 public:
     /// \throws error (bad_input) for impossible limits.
     drive_room(std::size_t channels, const drive_limits& l, unsigned rate);
 
-    /// Returns the frames that a piece must wait from frame `clock` on; none if it would be cut even on a
-    /// rested array.
+    /// Returns the frames that a piece must wait from frame `clock` on; nothing if the guard would cut it
+    /// even on a rested array.
     std::optional<std::uint64_t> wait(const score& s, std::uint64_t clock) const;
 
     /// Begins with these levels, s, at frame 0; nothing for channels beyond.
     void resume(std::span<const double> levels_s);
 
-    /// Takes all channels for closed by the guard at a frame, which opens them at half of the limit:
-    /// something drove them that is not known here.
+    /// Marks all channels as closed by the guard at a frame, which opens them at half of the limit, because
+    /// an unknown program drove them.
     void close(std::uint64_t clock);
 
     /// Adds a score that was played from this frame on. Scores come in order of time.
@@ -54,8 +54,8 @@ private:
     unsigned rate_;
 };
 
-/// Returns true if the score's own limit on power changes its samples. Renders it, unless its tactors all at
-/// their loudest would stay below the limit.
+/// Returns true if the score's own limit on power changes its samples. Renders the score, unless its tactors
+/// together stay below the limit even at their loudest.
 bool power_acts(const score& s);
 
 } // namespace tactor::synth

@@ -13,7 +13,7 @@ namespace tactor::synth {
 
 struct timbre;
 
-/// A window that falls in as many frames as it rises in.
+/// Value of drive_event::release that means "the same as `ramp`".
 inline constexpr std::uint32_t as_ramp = ~std::uint32_t{0};
 
 inline constexpr unsigned drives_per_event = 4;
@@ -45,7 +45,7 @@ struct channel_line {
 struct drive_event {
     std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
     std::uint64_t phase_frame = 0;   ///< carrier frame at `start`
-    std::uint64_t phase_origin = 0;  ///< of a timbre: the stroke's frame at which its phase begins
+    std::uint64_t phase_origin = 0;  ///< timbre only: the stroke's frame at which its phase begins
     double cycles_per_frame = 0.0;   ///< carrier / rate
     std::uint64_t ramp_position = 0; ///< place of `start` in the window
     std::uint64_t window = 0;        ///< frames of the whole burst (or of the continuous stroke)
@@ -53,10 +53,11 @@ struct drive_event {
     std::uint32_t release = as_ramp; ///< frames in which the window falls
     std::uint32_t length = 0;        ///< frames
     envelope_kind shape = envelope_kind::raised_cosine;
-    std::uint32_t score = 0;       ///< the submitted score it belongs to
-    std::uint32_t drives = 0;      ///< how many of `drive` are used
-    std::uint32_t points = 0;      ///< how many of `line`, which is there in place of `drive`; 0: it is not
-    const timbre* sound = nullptr; ///< lives until the score is over; none: a sine
+    std::uint32_t score = 0;  ///< submitted score to which it belongs
+    std::uint32_t drives = 0; ///< number of used elements of `drive`
+    std::uint32_t points =
+        0; ///< number of used elements of `line`, which replaces `drive`; 0: `drive` counts
+    const timbre* sound = nullptr; ///< lives until the score is over; null: a sine
     union {
         std::array<channel_drive, drives_per_event> drive{};
         channel_line line;

@@ -12,10 +12,10 @@
 namespace tactor::synth {
 namespace {
 
-/// Fine enough for 0.2 %, and exact (one frame a step) for the default ramp at up to 48 kHz.
+/// Steps of a ramp: fine enough for 0.2 %, and exact (one frame a step) for the default ramp at up to 48 kHz.
 constexpr std::uint32_t ramp_steps = 64;
 
-/// Returns the next frame after `at` where this member's window is not linear any more, or its start if it is
+/// Returns the next frame after `at` at which this member's window stops being linear; its start if that is
 /// to come.
 std::uint64_t next_break(const item_member& m, std::uint64_t at) noexcept
 {
@@ -32,8 +32,7 @@ std::uint64_t next_break(const item_member& m, std::uint64_t at) noexcept
     return m.start + std::min(m.length, fall + ((k - fall) / fall_step + 1) * fall_step);
 }
 
-/// Returns the amplitude at frame `at` of the members that sound up to it or from it on: those that hold
-/// `inside`.
+/// Returns the amplitude at frame `at` of the members that sound at frame `inside`.
 double amplitude(const item_member* first, const item_member* last, std::uint64_t inside, std::uint64_t at,
                  overlap_kind rule, envelope_kind shape) noexcept
 {
@@ -69,9 +68,9 @@ struct joined_stretch {
     double to = 0.0;
 };
 
-/// Returns the stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end
-/// of a member, and within ramps to the next 64th of the ramp. All members before `first` have ended; moves
-/// it on.
+/// Returns the stretch from frame `at` on whose amplitude is treated as linear: up to the next start or end
+/// of a member, and within ramps up to the next 64th of the ramp. Moves `first` past the members that have
+/// ended.
 joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
                             std::uint64_t at, overlap_kind rule, envelope_kind shape) noexcept
 {
@@ -93,7 +92,7 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 }
 
 /// Returns the frame of control point k of a stroke of `length` frames, from its start. Points beyond the end
-/// are at it.
+/// count as at the end.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept
 {
     return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
@@ -162,7 +161,7 @@ void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
     event_.ramp_position = start - item_->start;
     event_.window = item_->length;
     event_.ramp = item_->ramp;
-    // Joined bursts have their members' envelopes already.
+    // Joined bursts already contain their members' envelopes.
     event_.release = item_->kind == item_kind::joined
                          ? 0
                          : release_frames(score_->envelope, score_->rate, item_->length, item_->ramp);
@@ -177,7 +176,7 @@ void expander::add(std::uint32_t tactor, double from, double to) noexcept
     event_.drive[event_.drives++] = {t.gain * from, t.gain * to, t.channel};
     if (!score_->measured.empty()) {
         channel_drive& d = event_.drive[event_.drives - 1];
-        const double level = score_->equalised(tactor, item_->plan, item_->start); // that of its beginning
+        const double level = score_->equalised(tactor, item_->plan, item_->start); // level at its beginning
         d.from *= level;
         d.to *= level;
     }
@@ -241,7 +240,7 @@ void expander::continuous_event()
     draw(c.rows[next_++]);
 }
 
-/// Draws a tactor between the control points, up to where it has come down to zero.
+/// Adds a tactor's events between the control points, up to the point at which it is zero.
 void expander::draw(const control_points::row& r) noexcept
 {
     const control_points& c = *points_;
@@ -290,8 +289,8 @@ void expander::take_sample(std::uint64_t step)
     curve_access::of(*score_->plans[item_->plan].plan.curve).sample(step, c.seen, c.now);
 }
 
-/// Moves on to the next control points; false at the end. Where this throws, it is called again, and goes on
-/// with the point that is missing.
+/// Moves on to the next control points; false at the end. After an exception, call it again: it continues
+/// with the missing point.
 bool expander::next_points()
 {
     control_points& c = *points_;
@@ -338,7 +337,7 @@ event_source::event_source(const score& s)
     heap_.reserve(expanders_.size());
 }
 
-/// Lets every item begin that may have the next event.
+/// Begins every item that may have the next event.
 void event_source::begin_items()
 {
     const std::deque<item>& items = part_->list.items;
@@ -360,14 +359,14 @@ void event_source::begin_items()
     }
 }
 
-/// Takes the first event off the heap.
+/// Moves the first event's expander on in the heap.
 void event_source::move_on()
 {
     expander* e = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), later);
     try {
         e->advance();
-    } catch (...) { // it still has that event
+    } catch (...) { // the expander still has that event
         std::push_heap(heap_.begin(), heap_.end(), later);
         throw;
     }
@@ -380,7 +379,7 @@ void event_source::move_on()
     }
 }
 
-/// Takes an expander back that is done.
+/// Returns a finished expander to the spare ones.
 void event_source::release(expander* e) noexcept
 {
     free_expanders_.push_back(e);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The drives of a score, one after the other: an expander gives those of an item.
+/// The drives of a score in order. An expander makes those of one item.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace tactor::synth {
 /// A continuous stroke at a few control points.
 struct control_points {
     void reserve(std::size_t tactors);
-    /// Takes the drives of `now` as those of point number i.
+    /// Stores the drives of `now` as those of point i.
     void add(std::size_t i) noexcept;
 
     struct row {
@@ -30,8 +30,8 @@ struct control_points {
     std::vector<row> rows; ///< by tactor
     std::array<std::uint16_t, points_per_line> frame{};
     std::size_t count = 0;
-    burst now;         ///< the latest of them
-    bool open = false; ///< more of them are to come
+    burst now;         ///< latest of the points
+    bool open = false; ///< more points are to come
     detail::same_tactors seen;
 };
 
@@ -39,8 +39,8 @@ struct control_points {
 /// advance() may throw std::bad_alloc, and continue when they are called again.
 class expander {
 public:
-    /// Begins an item. `points` is for a continuous one; not to be shared while this expander is in use.
-    /// Events start `shift` frames later than in the score.
+    /// Begins an item. `points` is for a continuous one, and must not be shared while this expander is in
+    /// use. Events start `shift` frames later than in the score.
     void begin(const score::impl& s, std::size_t item_number, control_points* points,
                std::uint64_t shift = 0);
 
@@ -94,9 +94,9 @@ private:
     void begin_items();
     void release(expander* e) noexcept;
 
-    // Items that have begun are expanders in a heap; the score knows how many that are at most.
+    // Each item that has begun has an expander in a heap. The score knows their greatest number.
     std::shared_ptr<const score::impl> piece_;
-    const score::impl* part_; ///< whose items come: the piece itself, or a part of a joined one
+    const score::impl* part_; ///< score whose items come next: the piece itself, or a part of a joined one
     std::uint64_t shift_ = 0; ///< frame of the piece at which the part begins
     std::size_t next_part_ = 0;
     std::vector<expander> expanders_;
@@ -105,7 +105,7 @@ private:
     std::vector<control_points*> free_points_;
     std::vector<expander*> heap_;
     std::size_t next_item_ = 0;
-    bool popped_ = false; ///< the first event of the heap
+    bool popped_ = false; ///< the heap's first event has been taken
 };
 
 } // namespace tactor::synth

@@ -27,15 +27,15 @@ inline std::uint64_t frame_at(double seconds, double rate) noexcept
     return static_cast<std::uint64_t>(std::floor(seconds * rate + 0.5 + 1e-6));
 }
 
-/// Returns true if a carrier crosses zero at both ends of a burst, `from` and `to`, in half cycles of it.
+/// Returns true if a carrier crosses zero at both ends of a burst; `from` and `to` are in half cycles.
 inline bool between_zeros(double from, double to) noexcept
 {
     const auto on_zero = [](double at) { return std::abs(at - std::round(at)) <= half_cycle_tolerance; };
     return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
 }
 
-/// Returns the ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s`
-/// when the burst begins. Both times are the exact ones, not those rounded to whole frames.
+/// Returns the requested ramp, or else the default one of a burst. The carrier has run for `carrier_s` when
+/// the burst begins. Both times are exact, not rounded to whole frames.
 inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
                            double carrier_hz) noexcept
 {
@@ -46,17 +46,17 @@ inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, doubl
     return smooth ? 0.0 : default_ramp_s;
 }
 
-/// Returns the ramp with which a burst, or a continuous stroke, rises where its envelope does not give one.
+/// Returns the ramp with which a burst or a continuous stroke rises if its envelope has no attack.
 double plain_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept;
 
-/// Frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
+/// Returns the frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
 inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t length) noexcept
 {
     return static_cast<std::uint32_t>(std::min({frame_at(ramp_s, rate), length / 2, longest_event}));
 }
 
-/// Frames in which a burst of `length` rises; `ramp_s` is used where its envelope has no attack. Ramps that
-/// do not fit are shortened in the same ratio.
+/// Returns the frames in which a burst of `length` frames rises. `ramp_s` applies if its envelope has no
+/// attack. Ramps that do not fit are shortened in the same ratio.
 inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,
                                    std::uint64_t length) noexcept
 {
@@ -72,7 +72,7 @@ inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, doubl
                  longest_event));
 }
 
-/// Frames in which the burst falls.
+/// Returns the frames in which the burst falls.
 inline std::uint32_t release_frames(const burst_envelope& e, double rate, std::uint64_t length,
                                     std::uint32_t attack) noexcept
 {

@@ -45,7 +45,7 @@ score join_scores(const std::vector<placed_score>& parts)
         all->frames = std::max(all->frames, p.start + one.frames);
         all->open_items = std::max(all->open_items, one.open_items);
         all->open_continuous = std::max(all->open_continuous, one.open_continuous);
-        all->open_events += one.open_events; // those of two parts meet where one follows at once
+        all->open_events += one.open_events; // events of two parts meet if one follows at once
         if (one.parts.empty())
             all->parts.push_back({detail::access::shared(p.score), p.start});
         for (const score_part& inner : one.parts)
@@ -74,7 +74,8 @@ score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, u
     code->marker = channel;
     code->frames = s->frames;
     code->open_items = code->open_events = 2; // a bit may begin where another ends
-    code->parts.push_back({std::move(s), 0}); // a part: its plan is none of the score's
+    code->parts.push_back(
+        {std::move(s), 0}); // added as a part, because its plan is not one of the score's plans
     return detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(code)));
 }
 

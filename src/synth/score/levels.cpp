@@ -28,7 +28,7 @@ namespace tactor::synth {
 
 namespace {
 
-/// Throws error (bad_input) with the tactor's line in the array file and number, why and hint.
+/// Throws error (bad_input) with the tactor's number and its line in the array file.
 [[noreturn]] void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
                                 std::string_view hint)
 {
@@ -39,8 +39,8 @@ namespace {
     throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
 }
 
-// Returns a tactor's level, dBFS. Without a threshold it is full scale, so that check_peaks() finds its
-// drives.
+// Returns a tactor's level, dBFS. A tactor without a threshold gets full scale, so that check_peaks() finds
+// its drives.
 double level_db(const array& a, std::size_t i, const render_options& o)
 {
     const tactor_spec& t = a.tactors[i];
@@ -114,22 +114,22 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 
 namespace {
 
-/// Part of a level that comes from the last digits.
+/// Part of a level within which differences are only rounding.
 constexpr double last_digits = 1e-9;
 
-/// At a frame, a tactor's possible amplitude changes.
+/// A change of a tactor's possible amplitude at a frame.
 struct change {
     std::uint64_t frame;
     double by;
-    double plain; // the same without the tactor's level
+    double plain; // change without the tactor's level
     std::size_t tactor;
 
     /// Orders by frame. At the same frame, changes downwards come first.
     bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
 };
 
-/// The greatest amplitude of each tactor, summed over the items that may sound at once. Items arrive by
-/// start, so the heap holds only the changes of those that sound.
+/// Greatest amplitude of each tactor, summed over the items that may sound at once. Items arrive by start, so
+/// the heap holds only the changes of sounding items.
 class sweep {
 public:
     explicit sweep(std::size_t tactors)
@@ -142,8 +142,8 @@ public:
     {
     }
 
-    /// `from`: as heard_from(). `amplitude`: 1 is the level asked for. `factor` is that for the threshold at
-    /// the carrier.
+    /// Adds an item. `from`: as heard_from(). `amplitude`: 1 is the requested level. `factor`: for the
+    /// threshold at the carrier.
     void note(std::size_t tactor, const item& it, std::uint64_t from, double amplitude, double gain,
               double factor)
     {
@@ -162,7 +162,7 @@ public:
     /// Ends the sweep.
     void end() { pass(UINT64_MAX); }
     const std::vector<double>& peaks() const noexcept { return peaks_; }
-    /// Returns the greatest sum on any tactor; 1 is the level asked for.
+    /// Returns the greatest sum on any tactor; 1 is the requested level.
     double plain_peak() const { return *std::max_element(plain_peaks_.begin(), plain_peaks_.end()); }
 
     /// Returns the level of each tactor's loudest item.
@@ -201,7 +201,7 @@ private:
     std::vector<double> factors_;
 };
 
-// Returns the greatest amplitude of a joined item; 1 is the level asked for.
+// Returns the greatest amplitude of a joined item; 1 is the requested level.
 double joined_peak(const score::impl& s, std::size_t number)
 {
     double peak = 0.0;
@@ -214,7 +214,8 @@ double joined_peak(const score::impl& s, std::size_t number)
     return peak / (std::abs(s.tactors[it.tactor].gain) * s.equalised(it.tactor, it.plan, it.start));
 }
 
-/// Sums what the items may reach; `exact`: also where the intensity of a continuous stroke is a bound.
+/// Sums the possible amplitudes of the items. `exact`: also for continuous strokes whose intensity is a
+/// bound.
 sweep sweep_items(const score::impl& s, bool exact)
 {
     sweep all(s.tactors.size());
@@ -234,7 +235,7 @@ sweep sweep_items(const score::impl& s, bool exact)
             if (peaks.empty())
                 peaks = continuous_peaks(p, s.tactors.size());
             for (std::size_t k = 0; k < peaks.size(); ++k) {
-                const double factor = s.most_equalised(k, it.plan); // at the carrier that needs most
+                const double factor = s.most_equalised(k, it.plan); // at the carrier with the greatest factor
                 all.note(k, it, from, peaks[k], std::abs(s.tactors[k].gain), factor);
             }
             break;
@@ -255,7 +256,7 @@ sweep sweep_items(const score::impl& s, bool exact)
     return all;
 }
 
-/// `factor`: as sweep::factors().
+/// Checks the peak of a tactor. `factor`: as sweep::factors().
 void check(const array& a, std::size_t i, double peak, double factor, const render_options& o)
 {
     const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
@@ -278,7 +279,7 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
         fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
 }
 
-/// Refuses drives that cannot be rendered. A curve has them in order of tactor.
+/// Refuses drives that cannot be rendered. Those of a curve are already in order of tactor.
 void check_drives(const burst& b, std::size_t tactors)
 {
     for (const drive& d : b.drives)
@@ -323,8 +324,8 @@ std::vector<double> continuous_peaks(const plan& p, std::size_t tactors)
 
 namespace {
 
-/// Returns the level of each tactor, after sums that exceed a tactor's limit were weakened, unless something
-/// exceeds it alone.
+/// Weakens sums that exceed a tactor's limit, unless an item exceeds it alone. Returns the level of each
+/// tactor.
 std::vector<double> weaken_sums(const std::shared_ptr<score::impl>& made, const array& a, const sweep& all)
 {
     std::vector<double> peaks;
@@ -360,7 +361,7 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
         return std::none_of(s.unmeasured.begin(), s.unmeasured.end(),
                             [&](std::size_t i) { return peaks[i] > 0.0; });
     };
-    // Nearly always the intensities say that all is well, and hours need not be looked through.
+    // The intensities nearly always show that all levels are right, so samples of hours need not be read.
     sweep all = sweep_items(s, false);
     const bool weakens = o.together == together_kind::weaken;
     if (weakens && all.plain_peak() > 1.0 + last_digits && weaken_to_level(made))
@@ -382,12 +383,12 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
 
 namespace {
 
-/// Time constants after which an actuator has its strength, but for 0.7 %.
+/// Number of time constants after which an actuator lacks 0.7 % of its strength.
 constexpr double enough_rises = 5.0;
 /// Least amplitude of an added burst, of full scale (-100 dB).
 constexpr double least_boost = 1e-5;
 
-/// Returns what a window adds to a lag in frames from ... to - 1, at frame `to`.
+/// Returns the contribution, at frame `to`, of a window's frames from ... to - 1 to a lag.
 double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
 {
     const double decay = std::exp(-1.0 / rise);
@@ -397,7 +398,7 @@ double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to,
     return y;
 }
 
-/// Strength that an actuator reaches in a burst, by the model of a first-order lag: 1 - e^(-t / rise_s) of a
+/// Model of the strength that an actuator reaches in a burst, a first-order lag: 1 - e^(-t / rise_s) of a
 /// steady vibration after t.
 class lag {
 public:
@@ -410,15 +411,15 @@ public:
         of_release_ = window_share(w, attack, w.length, rise);
     }
 
-    /// Returns the part of a strength that is left after so many frames.
+    /// Returns the remaining part of a strength after `frames`.
     double decay(double frames) const noexcept { return std::exp(-frames / rise_); }
-    /// Returns the strength reached `frames` after the burst's begin, if strength 1 is asked for; not for
-    /// times before the end of its attack.
+    /// Returns the strength reached `frames` after the burst's start, if strength 1 is requested. Only for
+    /// times after its attack.
     double risen(double frames) const noexcept
     {
         return 1.0 - (1.0 - after_attack_) * decay(frames - attack_);
     }
-    /// Returns the same at the end of a burst of so many frames, after its release.
+    /// Returns the strength at the end of a burst of `frames`, after its release.
     double fallen(double frames) const noexcept
     {
         return risen(frames - release_) * decay(release_) + of_release_;
@@ -429,16 +430,16 @@ private:
     double attack_;
     double release_;
     double after_attack_;
-    double of_release_; ///< what the release itself adds
+    double of_release_; ///< contribution of the release itself
 };
 
 /// State of a tactor after its latest drive.
 struct motion {
     std::uint64_t until = 0; ///< end of the drive
-    double strength = 0.0;   ///< of the actuator at that time, as an amplitude of drives
+    double strength = 0.0;   ///< strength of the actuator at that time, as an amplitude of drives
 };
 
-/// A boost: how long and how strong, in amplitudes of drives.
+/// A boost: its length, and its strength in amplitudes of drives.
 struct boost {
     std::uint64_t length = 0;
     double amplitude = 0.0;
@@ -506,7 +507,7 @@ private:
         m.until = it.end();
     }
 
-    /// Returns the shortest burst of whole half cycles that is enough, or the longest that fits.
+    /// Returns the shortest burst of whole half cycles that suffices, or the longest that fits.
     boost find_boost(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
                      double headroom, double rise_s) const
     {

@@ -60,7 +60,7 @@ double greatest_sum(const burst& b)
 struct placed_burst {
     const burst* source;
     double to_s;
-    std::uint64_t from; ///< frame of the plan
+    std::uint64_t from; ///< frame of the plan at which it starts
     std::uint64_t to;
 };
 
@@ -76,12 +76,12 @@ std::vector<placed_burst> sort_bursts(std::span<const burst> bursts, unsigned ra
             all.push_back(placed);
     }
     const auto earlier = [](const placed_burst& a, const placed_burst& b) { return a.from < b.from; };
-    if (!std::is_sorted(all.begin(), all.end(), earlier)) // planners leave them in order
+    if (!std::is_sorted(all.begin(), all.end(), earlier)) // planners return them in order
         std::stable_sort(all.begin(), all.end(), earlier);
     return all;
 }
 
-/// The latest bursts of one tactor of which each overlaps with one before it. They arrive by start.
+/// Latest bursts of one tactor, each of which overlaps with an earlier one. They arrive by start.
 class run {
 public:
     /// Returns true if the burst continues the run; if not, it begins another one.
@@ -99,7 +99,7 @@ private:
     double end_s_ = 0.0;
 };
 
-/// Places the bursts of one plan. A bit for each drive says whether it overlaps with another one on its
+/// Placer of the bursts of one plan. A bit for each drive is set if it overlaps with another one on its
 /// tactor and is joined with it.
 class placer {
 public:
@@ -115,7 +115,7 @@ public:
     {
     }
 
-    /// Returns the frame at which they end.
+    /// Places the bursts and returns the frame at which they end.
     std::uint64_t place()
     {
         find_joined();
@@ -129,7 +129,7 @@ private:
     void find_joined()
     {
         std::vector<run> runs(tactors_);
-        std::vector<std::size_t> latest(tactors_); // drive of each tactor
+        std::vector<std::size_t> latest(tactors_); // latest drive of each tactor
         for (const placed_burst& s : bursts_) {
             end_ = std::max(end_, start_ + s.to);
             for (const drive& d : s.source->drives) {
@@ -144,7 +144,7 @@ private:
         }
     }
 
-    /// Items of bursts that overlap on a tactor, by start and then by tactor.
+    /// Appends items of bursts that overlap on a tactor, by start and then by tactor.
     void append_joined()
     {
         std::vector<run> runs(tactors_);
@@ -190,7 +190,7 @@ private:
         members.clear();
     }
 
-    /// Appends the drives that are in no run, burst by burst, in order of tactor.
+    /// Appends the drives that do not overlap, burst by burst, in order of tactor.
     void append_bursts()
     {
         std::vector<drive> single;

@@ -157,7 +157,7 @@ std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
     return most;
 }
 
-/// Mostly they are in order; sorting needs space for half of them again.
+/// Sorts items unless they are in order, as mostly: sorting needs half as much memory again.
 void sort_by_start(std::deque<item>& items)
 {
     const auto earlier = [](const item& x, const item& y) { return x.start < y.start; };
@@ -172,7 +172,7 @@ void measure(score::impl& s)
         return (drives + synth::drives_per_event - 1) / synth::drives_per_event;
     };
     const auto end = [](const item& it) { return it.end(); };
-    // A burst shorter than the longest event is through as soon as it has begun.
+    // A burst shorter than the longest event has been passed on as soon as it has begun.
     const auto walked = [](const item& it) {
         return it.kind == item_kind::burst && it.length <= synth::longest_event ? it.start : it.end();
     };
@@ -181,16 +181,16 @@ void measure(score::impl& s)
     s.open_continuous =
         most_open(items, end, [&](const item& it) { return std::size_t{is_continuous(it) ? 1U : 0U}; });
     s.open_events = most_open(items, end, [&](const item& it) {
-        return is_continuous(it)             ? s.tactors.size() // a line for each
+        return is_continuous(it)             ? s.tactors.size() // a line for each tactor
                : it.kind == item_kind::burst ? events(it.count)
                                              : std::size_t{1};
     });
 }
 
-/// Returns the carrier of a plan at a time of it.
+/// Returns the carrier of a plan at a time.
 double hz_at(const plan& p, double t_s)
 {
-    // For a recording along the path the course holds its repetition rate.
+    // For a recording along the path the course contains its repetition rate.
     if (p.course.empty() || p.wave.kind == waveform_kind::recording)
         return p.carrier_hz;
     const auto after = std::upper_bound(p.course.begin(), p.course.end(), t_s,
@@ -205,7 +205,7 @@ double hz_at(const plan& p, double t_s)
 
 } // namespace
 
-/// A score in the making.
+/// A score that is being made.
 struct score_builder::impl {
     impl(const array& tactors, const render_options& options) : a(tactors), o(options)
     {
@@ -228,8 +228,8 @@ struct score_builder::impl {
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
 
-    /// Returns the frame at which the next plan starts, from its time: the frames of the plans before it
-    /// would add up their rounding.
+    /// Returns the frame at which the next plan starts. Computes it from the time: the frames of earlier
+    /// plans would add up their rounding.
     std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor)
     {
         const double at_s = times.start(start_s, anchor);
@@ -243,7 +243,7 @@ struct score_builder::impl {
         return synth::place_bursts(bursts, first, p, number(), start, a.tactors.size(), o, s->list);
     }
 
-    /// Ends a plan whose bursts are placed.
+    /// Completes a plan whose bursts are placed.
     void close(plan p, std::optional<double> start_s, const start_anchor& anchor, std::uint64_t start,
                std::uint64_t bursts_end)
     {
@@ -293,7 +293,7 @@ void score_builder::add(const layout& l, const stroke& s, const plan_options& o)
 
 score score_builder::take()
 {
-    // First, so that no half of a score is left behind where memory runs out or levels are refused.
+    // Takes the contents first, so that no partial score remains if memory runs out or levels are refused.
     const auto done = std::exchange(impl_, std::make_unique<impl>(impl_->a, impl_->o));
     score::impl& s = *done->s;
     const render_options& o = done->o;

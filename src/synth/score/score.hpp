@@ -42,21 +42,21 @@ enum class item_kind : std::uint8_t {
     marker,     ///< a stroke's beginning or a code's bit, on a channel without a tactor
 };
 
-/// A stretch of one carrier. Frames of the score. Ten hours are half a million of them: no byte is idle.
+/// A stretch of one carrier, in frames of the score. Ten hours have half a million of them, so it is compact.
 struct item {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
-    std::uint64_t first = 0; ///< of its drives (burst) or members (joined)
+    std::uint64_t first = 0; ///< index of its first drive (burst) or member (joined)
     std::uint32_t count = 0;
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
-    std::uint16_t tactor = 0; ///< of a joined one; of a marker, the channel
+    std::uint16_t tactor = 0; ///< joined: the tactor; marker: the channel
     item_kind kind = item_kind::burst;
     std::uint64_t end() const noexcept { return start + length; }
 };
 static_assert(sizeof(item) == 40);
 
-/// Items of a score by start, and what they refer to.
+/// Items of a score by start, with their drives and members.
 struct item_list {
     // Deques grow without being copied: a copy would take half as much memory again.
     std::deque<item> items;
@@ -78,23 +78,23 @@ namespace tactor {
 inline namespace v0 {
 
 struct score::impl {
-    std::vector<placed_plan> plans;                           ///< without their bursts, which are the items
-    std::vector<std::shared_ptr<const synth::timbre>> sounds; ///< of each plan; none: a sine
+    std::vector<placed_plan> plans;                           ///< without bursts, which became the items
+    std::vector<std::shared_ptr<const synth::timbre>> sounds; ///< timbre of each plan; null: a sine
     std::vector<std::uint64_t> starts;
-    std::vector<std::uint64_t> ends;          ///< of each plan
+    std::vector<std::uint64_t> ends;          ///< end of each plan
     std::vector<synth::tactor_level> tactors; ///< by index
     std::vector<std::size_t> unmeasured;      ///< see synth::unmeasured_tactors()
-    std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty where they do not count
+    std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty if they do not count
     std::vector<double> limits;               ///< by channel
-    /// By tactor: greatest level that it is driven with, linear; 0 where it is not driven. A continuous
-    /// stroke counts for all tactors. The boost for a slow actuator's rise is not included.
+    /// Greatest level of each tactor, linear; 0 if it is not driven. A continuous stroke counts for all
+    /// tactors. The boost for a slow actuator's rise is not included.
     std::vector<double> asked;
-    weakening weakened;             ///< in the gains of the tactors
+    weakening weakened;             ///< included in the gains of the tactors
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any
-    double marker_level = 1.0;      ///< of full scale
+    double marker_level = 1.0;      ///< level of markers, as a part of full scale
     synth::item_list list;
-    std::vector<synth::score_part> parts; ///< of a joined score, which has no items of its own; by start
+    std::vector<synth::score_part> parts; ///< parts of a joined score, by start; it has no items itself
     std::uint64_t frames = 0;
     unsigned channels = 0;
     unsigned rate = 0;
@@ -105,7 +105,8 @@ struct score::impl {
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
 
-    /// Returns the factor on a tactor's gain in a frame of the score, for its threshold at the carrier there.
+    /// Returns the factor on a tactor's gain at a frame of the score: for its threshold at the carrier of
+    /// that frame.
     double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
     /// Returns the greatest such factor in a plan.
     double most_equalised(std::size_t tactor, std::uint32_t plan) const;
@@ -118,8 +119,8 @@ namespace tactor::synth {
 
 /// Appends the items of bursts of plan number `plan`, which starts at frame `start`. Bursts that overlap on
 /// one tactor are joined; bursts that only touch are not. `bursts` may be a part of the plan's bursts, from
-/// number `first` on, if nothing sounds just before and after this part. Of the plan only the carrier counts,
-/// of the options only rate, phase and ramp. Returns the frame at which the bursts end.
+/// number `first` on, if nothing sounds just before and after this part. Uses only the carrier of the plan,
+/// and rate, phase and ramp of the options. Returns the frame at which the bursts end.
 /// \throws error (bad_input) for times or amplitudes that are not finite, or for tactors that are not in the
 ///         array.
 std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, const plan& p,

@@ -19,21 +19,20 @@ public:
     explicit sounding_now(const score& s);
 
     /// Returns the amplitude of each tactor in a frame of the score, by index; 1 is the requested intensity.
-    /// Frames do not go back: an earlier frame than the last one counts as the last one. Valid until the next
-    /// call.
+    /// Frames must ascend; an earlier one counts as the latest. Valid until the next call.
     const std::vector<double>& at(std::uint64_t frame);
 
 private:
     score score_;
     event_source source_;
     std::uint64_t latest_ = 0;
-    std::vector<drive_event> open_; ///< begun and not over
+    std::vector<drive_event> open_; ///< drives that have begun and are not over
     std::vector<double> energy_;    ///< by channel, at full level
     std::vector<double> levels_;
 };
 
-/// Least and greatest sample of each channel, found as fast as samples are made: ranges over all interleaved
-/// frames that are added.
+/// Least and greatest sample of each channel over all added interleaved frames, found as fast as samples are
+/// made.
 class sample_ranges {
 public:
     explicit sample_ranges(std::size_t channels);
@@ -52,7 +51,7 @@ public:
 
 private:
     std::size_t channels_;
-    std::size_t abreast_; ///< frames that are compared next to each other, in whole vectors
+    std::size_t abreast_; ///< frames that are compared together, in whole vectors
     std::vector<float> low_;
     std::vector<float> high_;
 };

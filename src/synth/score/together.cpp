@@ -16,9 +16,9 @@
 namespace tactor::synth {
 namespace {
 
-/// Least number of parts of a ramp whose ends are looked at: fine enough for a millionth of a peak.
+/// Least number of parts of a ramp at whose ends it is sampled: fine enough for a millionth of a peak.
 constexpr std::uint32_t ramp_parts = 1024;
-constexpr double same_peak = 1e-9; // part of a peak: what is so little above it is the same
+constexpr double same_peak = 1e-9; // part of a peak by which equal peaks may differ
 
 bool starts_at_zero(const waveform& w) noexcept
 {
@@ -32,7 +32,7 @@ void raise_peak(tactor_peak& peak, double to, std::uint64_t at) noexcept
     peak.level = std::max(peak.level, to);
 }
 
-/// Events that sound, with what they drive.
+/// Events that sound, with their channels.
 class envelope_walk {
 public:
     explicit envelope_walk(const std::shared_ptr<const score::impl>& s)
@@ -138,12 +138,12 @@ private:
         return e.ramp > 0 || at_zero;
     }
 
-    /// Looks at frames in which the same events sound, and none of them bends.
+    /// Samples frames in which the same events sound and none of them bends.
     void look(std::uint64_t from, std::uint64_t to)
     {
         collect(from);
         std::uint64_t step =
-            std::max<std::uint64_t>(1, to - 1 - from); // where all is linear, the ends say it
+            std::max<std::uint64_t>(1, to - 1 - from); // if all is linear, the ends are enough
         for (const part& p : parts_) {
             if (driven_[p.tactor] > 1) {
                 const burst_window w = p.event->window();
@@ -166,7 +166,7 @@ private:
         add_up(to - 1);
     }
 
-    /// Lists what may be heard, by tactor.
+    /// Lists the parts that may be felt, by tactor.
     void collect(std::uint64_t from)
     {
         parts_.clear();
@@ -208,11 +208,11 @@ private:
     std::vector<open_event> open_;
     std::vector<part> parts_;
     std::vector<tactor_peak> peaks_;
-    std::vector<unsigned> driven_;     ///< how many parts a tactor has
-    std::vector<const timbre*> rough_; ///< those that do not start at zero
+    std::vector<unsigned> driven_;     ///< number of parts of each tactor
+    std::vector<const timbre*> rough_; ///< timbres that do not start at zero
 };
 
-/// Returns true if a continuous plan drives a tactor at a time of it, or just before or after.
+/// Returns true if a continuous plan drives a tactor at a time, or just before or after.
 bool drives_at(const plan& p, double t_s, std::size_t tactor)
 {
     const auto last = static_cast<double>(p.curve->size() - 1);
@@ -282,7 +282,7 @@ void weaken_to_limits(score::impl& s, const std::vector<tactor_peak>& peaks,
 bool weaken_to_level(const std::shared_ptr<score::impl>& made)
 {
     score::impl& s = *made;
-    // In multiples of the level asked for: a tactor's gain, or its threshold at a carrier, comes with that.
+    // Counts in multiples of the requested level; gains and thresholds of tactors come on top.
     const std::vector<tactor_level> levels = s.tactors;
     for (tactor_level& t : s.tactors)
         t.gain = 1.0;

@@ -23,8 +23,8 @@
 namespace tactor::synth {
 namespace {
 
-/// Points in a period of the highest harmonic. Interpolation between them is off by -89 dB of that harmonic,
-/// and far less for lower ones.
+/// Number of points in a period of the highest harmonic. Interpolation between them is off by -89 dB of that
+/// harmonic, and far less for lower ones.
 constexpr std::size_t points_a_period = 32;
 
 /// Margin for a peak between two points, and for rounding.
@@ -68,8 +68,8 @@ std::size_t points_for(std::size_t harmonics)
     return std::bit_ceil(points_a_period * std::max<std::size_t>(harmonics, 2));
 }
 
-/// Least peak after filtering, relative to 1 to 2: less is rounding, and would become as loud as a real
-/// signal.
+/// Least peak after filtering, for samples with a peak of 1 to 2. A smaller one is rounding, and scaling
+/// would make it as loud as a real signal.
 constexpr double least_peak = 1e-5;
 
 void require_left(double peak, const recording& r)
@@ -81,8 +81,8 @@ void require_left(double peak, const recording& r)
     }
 }
 
-/// Returns the samples around their mean, scaled by a power of 2 to a peak of 1 to 2. In any unit, sums of
-/// them are then finite and as exact as the samples.
+/// Returns the samples around their mean, scaled by a power of 2 to a peak of 1 to 2. Sums of them are then
+/// finite and as exact as the samples, whatever the unit.
 std::vector<float> unit_samples(const recording& r)
 {
     std::vector<double> x(r.samples.begin(), r.samples.end());
@@ -133,7 +133,7 @@ double harmonic_amplitude(waveform_kind shape, std::size_t h)
     return h == 1 ? 1.0 : 0.0;
 }
 
-/// Steele's SplitMix64 (OOPSLA 2014).
+/// Returns the next number of Steele's SplitMix64 (OOPSLA 2014).
 std::uint64_t next_random(std::uint64_t& state) noexcept
 {
     std::uint64_t z = state += 0x9E3779B97F4A7C15U;
@@ -207,7 +207,7 @@ complex unit(double turns)
     return {v.cos, v.sin};
 }
 
-// Multiplies. The library's multiplication checks for infinities.
+// Multiplies without the library's checks for infinities.
 complex times(complex a, complex b)
 {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
@@ -276,10 +276,10 @@ wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
 }
 
 /// Returns one cycle of recorded samples, with at most `harmonics` harmonics, without its mean, and with a
-/// peak of 1. Throws error (bad_input) if nothing is left.
+/// peak of 1. Throws error (bad_input) if no signal remains.
 wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
 {
-    // The highest harmonic of an even number of samples has no phase.
+    // The highest harmonic of an even number of samples has no phase, so it is dropped.
     const std::size_t own = std::max<std::size_t>((r.samples.size() - 1) / 2, 1);
     harmonics = std::min(harmonics, own);
     const spectrum c = fourier_coefficients(unit_samples(r), harmonics + 1);
@@ -314,7 +314,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
 }
 
 /// Returns a recording in its own time at another rate; its peak is 1, and its mean 0. Throws error
-/// (bad_input) if nothing is left.
+/// (bad_input) if no signal remains.
 wave_samples recorded_loop(const recording& r, unsigned rate)
 {
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
@@ -343,15 +343,14 @@ double wave_power(const wave_samples& x) noexcept
 /// Most harmonics of a cycle: in a slow cycle nothing above them is felt.
 constexpr std::size_t most_harmonics = 4096;
 
-/// Most timbres that strokes of one score share. Strokes beyond it have their own.
+/// Most timbres that strokes of one score share. Further strokes have their own.
 constexpr std::size_t most_places = 64;
 
 /// Most frames of a recording at the rate of the stream: 32 MB.
 constexpr double most_loop_frames = 8388608.0;
 
-/// A modulation that is no farther from a harmonic, Hz, multiplies it into a displacement that stands still
-/// or follows the difference: it heats the actuator and presses on the skin, and nobody feels it as a
-/// vibration.
+/// Least distance of a modulation from a harmonic, Hz. A nearer one gives a displacement that stands still or
+/// changes slowly: it heats the actuator and presses on the skin, and nobody feels it as a vibration.
 constexpr double least_beat_hz = 5.0;
 
 /// Least amplitude of a harmonic that counts, as a part of the peak.
@@ -404,7 +403,8 @@ std::pair<double, double> carrier_range(const plan& p)
     return {low->hz, high->hz};
 }
 
-/// Refuses a modulation at a harmonic of the carrier, or which a varying carrier's harmonic passes.
+/// Refuses a modulation at a harmonic of the carrier, or at a frequency that a varying carrier's harmonic
+/// passes.
 void refuse_displacement(const timbre& t, const plan& p)
 {
     const auto [low_hz, high_hz] = carrier_range(p);

@@ -12,8 +12,8 @@ namespace tactor::synth {
 
 namespace {
 
-/// Computes the turns of a carrier in n frames from the stroke's frame `first` on. Gets the part by value, so
-/// that the compiler knows that no write to `out` changes it.
+/// Computes the turns of a carrier in n frames from the stroke's frame `first` on. Takes the part by value,
+/// so that the compiler knows that writing to `out` does not change it.
 void turn(course_part p, double first, unsigned n, double* out) noexcept
 {
     const double from = first - p.start;

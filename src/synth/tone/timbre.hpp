@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Wave of a drive other than a sine. It is made before anything sounds, and then only read. The audio thread
-/// gets a pointer, and the side that hands over the drives keeps it until they are over.
+/// gets a pointer; the side that hands over the drives keeps the wave until they are over.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct timbre {
     };
     form_kind form = form_kind::sine;
     std::shared_ptr<const wave_samples> samples = {};
-    double cycles_per_frame = 0.0;        ///< without a course
+    double cycles_per_frame = 0.0;        ///< cycles per frame without a course
     std::vector<course_part> course = {}; ///< in order of start, the first from 0 or before
     double power = 1.0; ///< twice the mean square at peak 1, but at least 1, the square of the peak
     double am_cycles_per_frame = 0.0;
