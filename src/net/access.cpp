@@ -27,7 +27,7 @@ bool within(const ip::address& a, const address_prefix& p)
         return false;
     if (a.is_v4())
         return ip::network_v4(a.to_v4(), bits).network() == ip::network_v4(p.address.to_v4(), bits).network();
-    return ip::network_v6(a.to_v6(), bits).network().to_bytes() == // without the scope
+    return ip::network_v6(a.to_v6(), bits).network().to_bytes() == // drops the scope
            ip::network_v6(p.address.to_v6(), bits).network().to_bytes();
 }
 
@@ -56,7 +56,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
 
 bool same_address(std::string_view a, std::string_view b)
 {
-    // make_address() reads up to a zero, so anything could follow.
+    // make_address() stops at a zero byte, so anything could follow it.
     if (a.find('\0') != std::string_view::npos)
         return false;
     boost::system::error_code none;

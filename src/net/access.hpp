@@ -12,7 +12,7 @@
 
 namespace tactor::net {
 
-/// Returns the IPv4 address of an IPv4 address within IPv6; any other address unchanged.
+/// Returns the IPv4 address that an IPv6 address contains; other addresses unchanged.
 boost::asio::ip::address plain(const boost::asio::ip::address& a);
 
 /// Addresses that begin with the same bits.
@@ -29,8 +29,8 @@ address_prefix parse_prefix(const std::string& text, const std::string& what);
 bool is_accepted(const boost::asio::ip::address& from, const std::vector<address_prefix>& peers);
 
 /// Returns true if a Host header means this server: localhost or the very address of the connection, each
-/// with its port, or one of `allowed` ("pi.lan" or "pi.lan:4003"). A page whose name was made to point here
-/// has another name. `local`: "127.0.0.1:4003" or "[::1]:4003".
+/// with its port, or one of `allowed` ("pi.lan" or "pi.lan:4003"). A foreign page whose name was made to
+/// point here has another name. `local`: "127.0.0.1:4003" or "[::1]:4003".
 bool host_is_ours(std::string_view host, std::string_view local, const std::vector<std::string>& allowed);
 
 /// Returns true if an Origin header means this server: http://HOST, or http or https with one of `allowed`.

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 
 constexpr std::chrono::seconds linger{1};
 
-// Large messages of a peer that wait. It is not read any further with so many.
+// Most large messages of a peer that wait. With that many it is not read any further.
 constexpr unsigned most_large = 4;
 
 constexpr std::size_t chunk_bytes = 16U << 10;
@@ -64,7 +64,7 @@ void connection::handle_large(std::string text)
         read();
 }
 
-// Returns true if more is to be read.
+// Continues after a message. Returns true if more is to be read.
 bool connection::handled(bool go_on)
 {
     if (closed_ || finishing_)
@@ -114,7 +114,7 @@ void connection::queue(std::string message, bool file)
         return;
     if (!file && waiting_ + message.size() > limits_.waiting_bytes) {
         finishing_ = true;
-        // Does not close here, because the caller may be iterating over all peers.
+        // Closes later, because the caller may be iterating over all peers.
         return asio::post(executor(), [self = shared_from_this()] { self->close(); });
     }
     if (file)
@@ -214,7 +214,7 @@ line_connection::line_connection(socket_type s, const message_limits& l)
 {
 }
 
-// Handles one line at a time, so that other peers have their turn between two.
+// Handles one line at a time, so that other peers have their turn in between.
 void line_connection::read()
 {
     if (!reads())
@@ -248,12 +248,11 @@ void line_connection::read_more()
     if (text_.size() > limits().message_bytes + (may_end ? 1 : 0))
         return fail(connection_fault::too_long);
     if (text_.size() <= chunk_.size() && text_.capacity() > large_message)
-        text_.shrink_to_fit(); // returns the memory of a large message
+        text_.shrink_to_fit(); // frees the memory of a large message
     scanned_ = text_.size();
     if (over_) {
         stop_reading();
-        // Notices that the other end is gone. A Unix socket reports it when the peer closes, TCP when we
-        // write.
+        // Detects that the other end is gone. A Unix socket reports it when the peer closes, TCP on a write.
         socket_.async_wait(socket_type::wait_error,
                            [this, self = shared_from_this()](const boost::system::error_code& e) {
                                if (!e)
@@ -272,7 +271,7 @@ void line_connection::read_more()
         within_memory([&] {
             over_ = e.failed();
             text_.append(chunk_.data(), n);
-            // The end of the input also ends a line: an incomplete one is no JSON, so the peer gets an
+            // The end of the input also ends a line. An incomplete line is not JSON, so the peer gets an
             // error.
             if (over_ && !text_.empty())
                 text_ += line_end;
@@ -302,7 +301,7 @@ void line_connection::write()
 void line_connection::shut()
 {
     boost::system::error_code ignored;
-    // Reads what is left: unread input would turn the last message into a reset.
+    // Reads the remaining input, which would turn the last message into a reset.
     socket_.shutdown(asio::socket_base::shutdown_send, ignored);
     for (std::size_t drained = 0; drained < most_drained && socket_.available(ignored) != 0 && !ignored;)
         drained += socket_.read_some(asio::buffer(chunk_), ignored);
@@ -361,7 +360,7 @@ void listener::take()
         else
             try {
                 taken_(std::move(s));
-            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): the socket closes, others stay
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): this socket closes, others stay
             }
         return start();
     }
@@ -372,8 +371,8 @@ void listener::take()
             turned_away_();
         return start();
     }
-    // Memory ran out, or another process took the spare descriptor. An attempt without a pause would only
-    // take time.
+    // Memory ran out, or another process took the spare descriptor. Trying again at once would only waste
+    // time.
     pause_.expires_after(accept_pause);
     pause_.async_wait([this](const boost::system::error_code& e) {
         if (!e)
@@ -381,7 +380,7 @@ void listener::take()
     });
 }
 
-// Accepts on the spare descriptor, sends the refusal as far as the socket takes it, and closes.
+// Accepts on the spare descriptor, sends as much of the refusal as the socket takes, and closes.
 bool listener::turn_away() noexcept
 {
     keep_spare();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Connections of peers on stream sockets: a listener accepts them, messages come in one by one, others wait
-/// in a bounded queue to be written. One thread: the context's.
+/// Connections of peers on stream sockets: a listener accepts them, incoming messages are handled one by one,
+/// and outgoing messages wait in a bounded queue. One thread: the context's.
 #pragma once
 
 #include <chrono>
@@ -24,10 +24,10 @@
 
 namespace tactor::net {
 
-/// Bytes of a message that is handled in the thread of the sockets. A larger one is given away.
+/// Most bytes of a message that is handled in the thread of the sockets. Larger ones are handed over.
 constexpr std::size_t large_message = 64U << 10;
 
-/// The way to a peer, over a connection of any kind.
+/// Outgoing side of a connection to a peer.
 class peer {
 public:
     peer() = default;
@@ -35,24 +35,25 @@ public:
     peer& operator=(const peer&) = delete;
     virtual ~peer() = default;
 
-    /// Queues a message. Drops a peer that lets too much wait.
+    /// Queues a message. Drops the peer if too many bytes wait.
     virtual void send(std::string message) = 0;
-    /// Queues a message of any size that the peer asked for. Beside it as much may wait as without it.
+    /// Queues a message of any size that the peer requested. It does not count towards the bytes that may
+    /// wait.
     virtual void send_file(std::string message) { send(std::move(message)); }
-    /// Returns true if such a message has not been read yet.
+    /// Returns true if such a message is still queued.
     virtual bool has_file() const { return false; }
-    /// Returns the bytes that the peer has not read, without files.
+    /// Returns the number of queued bytes, without files.
     virtual std::size_t waiting() const = 0;
     /// Stops reading, and closes when everything is written, or after a second.
     virtual void finish() = 0;
-    /// Closes in the same way. `why`, of at most 123 bytes, is for a peer that can be told.
+    /// Closes in the same way. `why`: reason, at most 123 bytes, for peers whose protocol carries one.
     virtual void turn_out(const char* /*why*/) { finish(); }
 };
 
-/// Reason why a connection is given up.
+/// Reason for which a connection is given up.
 enum class connection_fault {
     too_long, ///< a message beyond message_bytes
-    too_slow, ///< no whole message within message_s
+    too_slow, ///< no complete message within message_s
     memory,   ///< there is not enough memory for its input
     gone,     ///< the socket failed
 };
@@ -62,8 +63,8 @@ struct web_reply {
     std::string type = "text/plain; charset=utf-8";
     std::string body = {};
     std::string policy = {}; ///< Content-Security-Policy; empty: the page may load nothing
-    std::string gzip = {};   ///< the body, compressed, for browsers that take it; empty: there is none
-    double after_s = 0.0;    ///< it is sent so late
+    std::string gzip = {};   ///< compressed body, for browsers that accept it; empty: none
+    double after_s = 0.0;    ///< delay before it is sent, s
 };
 
 /// Calls of a connection to its server.
@@ -72,13 +73,13 @@ struct peer_handlers {
     std::function<bool(std::string_view)> message;
     /// Called once, when the socket is closed. The connection may be forgotten.
     std::function<void()> closed;
-    /// Returns true once the first message, which the peer owes, has come. None: any message that is not
+    /// Returns true once the required first message has come. Without this function any message that is not
     /// empty counts.
     std::function<bool()> met = {};
     /// Handles a message above `large_message`, and calls `done` later with the result that `message` would
-    /// return. Smaller ones are handled in the meantime. Owed where a message may be that large.
+    /// return. Smaller messages are handled in the meantime. Required if messages may be that large.
     std::function<void(std::string text, std::function<void(bool)> done)> large = {};
-    /// Lines: the peer sends no more; it may still read.
+    /// Lines: called when the peer sends no more; it may still read.
     std::function<void()> input_ended = {};
     /// Lines: called before the connection closes for any fault but `gone`; send() still works.
     std::function<void(connection_fault)> fault = {};
@@ -86,16 +87,16 @@ struct peer_handlers {
     /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
     /// Bearer".
     std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get = {};
-    /// Browsers: called when a request names another server or comes from another's page.
+    /// Browsers: called when a request names another server or comes from another server's page.
     std::function<void(const std::string& why)> refused = {};
-    /// Browsers: returns true if there is a place for a WebSocket. From then on `message` is called, and
-    /// `closed` is its end.
+    /// Browsers: returns true if a WebSocket may be opened. After that, `message` is called for its messages,
+    /// and `closed` at its end.
     std::function<bool()> upgrade = {};
 };
 
 struct message_limits {
     std::size_t message_bytes = 1U << 20;
-    double message_s = 10.0; ///< for the first message, and for each message to be complete
+    double message_s = 10.0; ///< time for the first message to come, and for each message to be complete
     std::size_t waiting_bytes = 4U << 20;
 };
 
@@ -106,7 +107,7 @@ inline std::chrono::steady_clock::duration steady_seconds(double seconds)
         std::chrono::duration<double>(seconds));
 }
 
-/// The common part of connections of lines and of browsers. Each of them reads and writes a socket.
+/// Common part of the connections of lines and of browsers. Each derived class reads and writes a socket.
 class connection : public peer, public std::enable_shared_from_this<connection> {
 public:
     connection(const boost::asio::any_io_executor& executor, const message_limits& l);
@@ -127,30 +128,30 @@ protected:
 
     /// Begins to read.
     virtual void read_first() { read(); }
-    /// Reads until there is a message, and calls handle() as the last thing.
+    /// Reads until there is a message, then calls handle() as its last act.
     virtual void read() = 0;
     /// Writes the first messages of queued(), and calls wrote().
     virtual void write() = 0;
-    /// Closes in order. Everything is written.
+    /// Closes in order. Called when everything has been written.
     virtual void say_farewell() { close(); }
     /// Closes the socket.
     virtual void shut() = 0;
-    /// Called when no message was complete in time.
+    /// Fails the connection. Called when no message was complete in time.
     virtual void time_out() { fail(connection_fault::too_slow); }
 
-    /// Handles a message, and reads on.
+    /// Handles a message, then continues reading.
     void handle(std::string_view text);
-    /// Gives a large one away, and reads on.
+    /// Hands over a large message, then continues reading.
     void handle_large(std::string text);
     /// Notes that a part of a message has come.
     void message_begins();
     /// Notes that a message is complete.
     void message_ends();
-    /// Notes that the first messages of queued() were written, and writes on.
+    /// Notes that the first messages of queued() were written, and continues writing.
     void wrote(std::size_t messages);
-    /// Writes what waits, or says farewell.
+    /// Continues writing; if nothing waits, closes in order.
     void write_on();
-    /// Tells the peer and closes.
+    /// Tells the peer the fault and closes.
     void fail(connection_fault f);
     void close();
     /// Closes after a second at most.
@@ -177,7 +178,7 @@ protected:
     bool closed() const noexcept { return closed_; }
     bool finishing() const noexcept { return finishing_; }
     bool reads() const noexcept { return reading_ && !closed_; }
-    /// Lets messages wait, or be written.
+    /// Sets whether messages are written, or wait.
     void may_write(bool may) noexcept { may_write_ = may; }
 
 private:
@@ -191,7 +192,7 @@ private:
     std::deque<outgoing> queue_;
     std::size_t waiting_ = 0; ///< bytes in the queue, without files
     std::size_t files_ = 0;
-    unsigned large_ = 0; ///< messages that were given away
+    unsigned large_ = 0; ///< number of large messages that were handed over
     bool armed_ = false;
     bool met_ = false; ///< the first message has come
     bool may_write_ = true;
@@ -201,7 +202,7 @@ private:
     bool closed_ = false;
 };
 
-/// A peer that exchanges lines with the server.
+/// Connection of a peer that exchanges lines with the server.
 class line_connection final : public connection {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
@@ -217,19 +218,19 @@ private:
 
     socket_type socket_;
     std::vector<char> chunk_;
-    std::string text_;        ///< lines that were not handled, and the start of one
+    std::string text_;        ///< lines that have not been handled, and the start of one
     std::size_t begin_ = 0;   ///< start of the next line in it
     std::size_t scanned_ = 0; ///< no line ends between begin_ and this place
     bool over_ = false;       ///< the peer sends no more
 };
 
-/// A listening socket that accepts connections one after the other. When no descriptors are left, it accepts
-/// a client on a spare one, sends a refusal and closes.
+/// A listening socket that accepts one connection after another. Without a free descriptor it accepts a
+/// client on a spare one, sends a refusal and closes.
 class listener {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
-    /// Listens on `fd`, which stays its owner's. `when_full`: refusal when descriptors run out; `turned_away`
+    /// Listens on `fd`, which the caller keeps. `when_full`: refusal when descriptors run out; `turned_away`
     /// is called after it.
     listener(boost::asio::io_context& io, int fd, std::string when_full,
              std::function<void(socket_type)> taken, std::function<void()> turned_away = {});

@@ -66,8 +66,8 @@ std::string process_name(pid_t pid)
     return name.empty() ? fmt::format("process {}", pid) : fmt::format("{}, process {}", name, pid);
 }
 
-// Removes a socket at which no process listens, so that its name is free. Throws if a process does, or for
-// other files.
+// Removes a socket at which no process listens, so that its name is free. Throws if a process listens there,
+// and for other files.
 void make_free(const std::string& path)
 {
     struct stat s {};
@@ -81,7 +81,7 @@ void make_free(const std::string& path)
                     "another file that is not a socket has this name", "choose another name, or remove it");
     const owned_fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const sockaddr_un a = unix_address(path);
-    // EAGAIN: its queue is full, so a process listens.
+    // EAGAIN: the queue is full, so a process listens.
     if (::connect(probe.get(), generic(a), sizeof a) == 0 || errno == EAGAIN) {
         ucred who{};
         socklen_t n = sizeof who;
@@ -108,7 +108,7 @@ bool listens(int fd)
     return option(fd, SO_TYPE) == SOCK_STREAM && option(fd, SO_ACCEPTCONN) == 1;
 }
 
-/// The address of an end of a socket.
+/// Address of one end of a socket.
 struct socket_end {
     sockaddr_storage at{};
     socklen_t size = sizeof(sockaddr_storage);
@@ -132,7 +132,7 @@ struct socket_end {
     }
 };
 
-// Adds the names of these sockets as links in /proc/PID/fd show them.
+// Adds the names of these sockets as they appear in links of /proc/PID/fd.
 void add_sockets(const std::string& table, const std::string& port, bool stream, std::set<std::string>& to)
 {
     constexpr const char* listens = "0A";
@@ -187,7 +187,7 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
     owned_fd fd(::socket(found->ai_family, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const int yes = 1;
     const bool stream = type == SOCK_STREAM;
-    // No SO_REUSEADDR for datagrams: two sockets at one port would take each other's.
+    // No SO_REUSEADDR for datagrams: two sockets at one port would take each other's packets.
     if (!fd || (stream && ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) ||
         ::bind(fd.get(), found->ai_addr, found->ai_addrlen) != 0 ||
         (stream && ::listen(fd.get(), SOMAXCONN) != 0))
@@ -229,7 +229,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const sockaddr_un a = unix_address(path);
     const auto slash = path.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-    // Servers that start at the same time look and bind one after the other.
+    // Makes servers that start at the same time check and bind one after the other.
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!lock) {
         const int code = errno;
@@ -239,7 +239,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
             code);
     }
     constexpr int tries = 200;
-    static_cast<void>(detail::lock_file(lock, tries)); // a process that keeps it is at fault
+    static_cast<void>(detail::lock_file(lock, tries)); // continues even without the lock
     make_free(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     // The name gets the socket's own mode, less the umask: never more than this, not for a moment.

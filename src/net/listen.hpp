@@ -27,10 +27,10 @@ struct host_and_port {
 /// \throws error (bad_input) that names `what`.
 host_and_port parse_host(std::string_view text, const std::string& what);
 
-/// Listens at `path`. Only its user (and with `group` that group, if it exists) can connect, from the first
-/// moment on, under any umask. Replaces a socket that a dead process left there.
-/// \throws error: not_available if a process listens there (which one), bad_input for a file that is no
-///         socket and for names that are too long, runtime for errors of the system.
+/// Listens at `path`. From the first moment on, under any umask, only this user (and the group `group`, if
+/// any) can connect. Replaces the socket of a dead process.
+/// \throws error: not_available with the name of a process that listens there, bad_input for a file that is
+///         not a socket and for names that are too long, runtime for errors of the system.
 owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> group);
 
 /// Listens at each address of a host.
@@ -46,7 +46,7 @@ std::string local_address(int fd);
 /// Returns the address of a socket's peer without its port, as "192.168.1.7" or "fe80::1%eth0"; an IPv4
 /// address within IPv6 as IPv4. Empty: the peer is gone.
 std::string peer_address(int fd);
-/// Returns true if that address is on the loopback interface.
+/// Returns true if the peer is on the loopback interface.
 bool is_loopback(int fd);
 /// Returns true if the socket is of the family AF_UNIX, a stream, and listens.
 bool is_unix_listener(int fd);
@@ -56,8 +56,8 @@ bool is_bound_udp(int fd);
 /// Returns the path to which a Unix socket is bound; empty for none.
 std::string bound_path(int fd);
 
-/// Returns the sockets that systemd handed over, by FileDescriptorName. Takes them from the environment once,
-/// so that children do not inherit them.
+/// Returns the sockets that systemd passed, by FileDescriptorName. Removes them from the environment, so that
+/// children do not inherit them. A second call returns none.
 std::vector<std::pair<std::string, owned_fd>> inherited_sockets();
 
 /// Sends one datagram such as "READY=1" to NOTIFY_SOCKET, if there is one.

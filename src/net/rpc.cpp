@@ -19,8 +19,8 @@ namespace base64 = boost::beast::detail::base64;
 constexpr std::size_t most_id_bytes = 80;
 constexpr std::size_t most_requests = 64; // of a batch
 
-// Replaces numbers that no double holds with null. Null is no number either, but the message can be answered
-// by its id.
+// Replaces numbers beyond the range of double with null. Null is not a number, either, but the message can
+// then be answered by its id.
 std::string without_overflows(std::string_view text)
 {
     std::string out;
@@ -45,7 +45,7 @@ std::string without_overflows(std::string_view text)
 
 struct parsed_text {
     json value;
-    bool too_deep = false; ///< the value is without what nests deeper than allowed
+    bool too_deep = false; ///< parts that nest too deep are missing from the value
 };
 
 // Throws json::exception, after it has filled in too_deep.
@@ -76,7 +76,7 @@ rpc_refusal invalid(json id, std::string why)
 
 bool is_stop(const json& j)
 {
-    const auto method = j.find("method"); // end() of what is no object
+    const auto method = j.find("method"); // end() if it is not an object
     return method != j.end() && *method == "stop";
 }
 
@@ -189,15 +189,14 @@ reply_json result_reply(const json& id, reply_json result)
 
 std::string cut_echo(std::string_view text)
 {
-    constexpr std::size_t most_echoed = 80; // characters
+    constexpr std::size_t most_echoed = 80; // most characters of a word that are repeated
     constexpr std::size_t most = 1000;
     std::string out;
     std::size_t run = 0; // characters since the last blank, or within quotes
     char quote = '\0';
     for (std::size_t i = 0; i < text.size() && out.size() < most; ++i) {
         const char c = text[i];
-        const bool continues =
-            (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; // within a character of UTF-8
+        const bool continues = (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; // inside a UTF-8 character
         if (c == quote || (quote == '\0' && c == ' '))
             run = 0;
         else if (!continues)
@@ -259,7 +258,7 @@ std::optional<std::string> read_base64(std::string_view text)
         return std::nullopt;
     std::string bytes(base64::decoded_size(text.size()), '\0');
     bytes.resize(base64::decode(bytes.data(), text.data(), text.size()).first);
-    // Beast ends at the first character that is none of base64, and ignores bits that no byte has.
+    // Beast stops at the first character that is not base64, and ignores left-over bits.
     std::string again;
     append_base64(again, bytes);
     return again == text ? std::optional(std::move(bytes)) : std::nullopt;

@@ -14,7 +14,7 @@
 
 namespace tactor::net {
 
-/// A received message. Objects are maps, so that a message of many keys takes no quadratic time.
+/// A received message. Objects are maps, so that many keys do not take quadratic time.
 using json = nlohmann::json;
 /// A message to send, in the order in which it is written.
 using reply_json = nlohmann::ordered_json;
@@ -32,8 +32,8 @@ enum rpc_code : int {
     code_no_token = -32003,
 };
 
-/// An error, which becomes an error object with data {kind what why hint}, and with line and column of the
-/// text of that parameter where they are known.
+/// An error, which becomes an error object with data {kind what why hint}, and with line and column in the
+/// parameter's text if they are known.
 struct rpc_fault {
     int code = code_internal;
     std::string kind = {};
@@ -51,7 +51,7 @@ struct rpc_request {
     bool wants_reply = true; ///< false: a notification
 };
 
-/// An element of a message that is no request, and the id for its error.
+/// An element of a message that is not a request, and the id for its error.
 struct rpc_refusal {
     rpc_fault why;
     json id = nullptr;
@@ -60,7 +60,7 @@ struct rpc_refusal {
 struct rpc_message {
     std::vector<std::variant<rpc_request, rpc_refusal>> parts;
     bool batch = false;
-    bool has_stop = false; ///< it is refused as a whole, but asks for a stop
+    bool has_stop = false; ///< the refused message contains a stop, which is obeyed
 };
 
 /// Parses a message: a request, or a batch of at most 64. Never throws because of the text: faults are in the
@@ -68,7 +68,7 @@ struct rpc_message {
 rpc_message parse_rpc(std::string_view text, std::size_t most_nesting = 64);
 
 reply_json result_reply(const json& id, reply_json result);
-/// Shortens a text that a message repeats from a client: words and quoted pieces to 80 characters, all to
+/// Shortens a client's text that a message repeats: words and quoted pieces to 80 characters, the whole to
 /// 1,000.
 std::string cut_echo(std::string_view text);
 /// Returns "what: why (hint)", with repeated text shortened.
@@ -81,7 +81,7 @@ std::string json_line(const reply_json& j);
 
 /// Appends bytes in base64 (RFC 4648, section 4), as messages carry files.
 void append_base64(std::string& to, std::string_view bytes);
-/// Returns the bytes; none if the text is no base64 with its padding.
+/// Decodes base64; nothing if the text is not base64 with its padding.
 std::optional<std::string> read_base64(std::string_view text);
 
 } // namespace tactor::net

@@ -33,10 +33,10 @@ namespace websocket = beast::websocket;
 constexpr std::size_t most_header_bytes = 8U << 10;
 constexpr std::size_t read_at_once = 16U << 10;
 
-// WebSockets of a page: its own, its reloads and a few visitors by mistake.
+// Most WebSockets of a page: its own, its reloads and a few accidental visitors.
 constexpr std::size_t most_visitors = 16;
 constexpr std::size_t most_connections = 32;
-// A message may have a text of 2,000 characters, each up to six bytes in JSON.
+// Limits for messages with a text of 2,000 characters, each up to six bytes in JSON.
 constexpr message_limits page_limits{
     .message_bytes = 16U << 10, .message_s = 10.0, .waiting_bytes = 1U << 20};
 
@@ -45,7 +45,7 @@ std::string_view view(boost::string_view s)
     return {s.data(), s.size()};
 }
 
-// Returns a whole reply.
+// Returns a whole HTTP reply with status 503.
 std::string unavailable(std::string_view why)
 {
     const std::string text = fmt::format("{}, try again later\n", why);
@@ -82,15 +82,15 @@ private:
     std::vector<std::string> allowed_;
     std::string local_;
     socket_type socket_;
-    asio::steady_timer later_; ///< for a reply that is sent late
+    asio::steady_timer later_; ///< delays a reply
     beast::flat_buffer buffer_;
     http::request_parser<http::empty_body> parser_;
     http::response<http::string_body> response_;
     std::optional<websocket::stream<socket_type&>> ws_;
     websocket::close_reason why_{websocket::close_code::going_away};
-    bool answered_ = false;   ///< with a page or a refusal
-    bool looks_ = false;      ///< whether a browser disappeared
-    bool is_reading_ = false; ///< a part of a message
+    bool answered_ = false;   ///< a page or a refusal was sent
+    bool looks_ = false;      ///< pings check that the browser is still there
+    bool is_reading_ = false; ///< a part of a message is being read
 };
 
 web_connection::web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts)
@@ -189,7 +189,7 @@ void web_connection::respond(web_reply r)
         response_.keep_alive(false);
     response_.prepare_payload();
     if (parser_.get().method() == http::verb::head)
-        response_.body().clear(); // the header still gives its length
+        response_.body().clear(); // the header still has its length
     later_.expires_after(steady_seconds(r.after_s));
     later_.async_wait([this, self = shared_from_this()](const beast::error_code& e) {
         if (e || closed())
@@ -207,13 +207,13 @@ void web_connection::upgrade()
     ws_.emplace(socket_);
     look_after(true);
     ws_->read_message_max(limits().message_bytes);
-    // Pings and their answers go between the pieces of a long message: a slow link may take longer than 20 s
-    // for it.
+    // Splits long messages, so that pings and their answers go in between: a slow link may need more than 20
+    // s for a message.
     ws_->auto_fragment(true);
     ws_->write_buffer_bytes(large_message);
     ws_->set_option(websocket::stream_base::decorator(
         [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
-    // A peer that sends a close frame has a second to hang up.
+    // Gives a peer that sends a close frame a second to hang up.
     ws_->control_callback([this](websocket::frame_type kind, boost::string_view) {
         if (kind == websocket::frame_type::close)
             hang_up_soon();
@@ -231,8 +231,8 @@ void web_connection::upgrade()
     });
 }
 
-// Looks every 10 s whether a browser disappeared, or stays within a frame's head; but not while nothing is
-// read, which its answer to a ping would not be either.
+// Checks by pings, every 10 s, that the browser is there and does not stop within a frame's header. Off while
+// nothing is read, because the answers would not be read, either.
 void web_connection::look_after(bool is_read)
 {
     websocket::stream_base::timeout t{};
@@ -256,7 +256,7 @@ void web_connection::read()
                              if (closed())
                                  return;
                              if (e)
-                                 return close(); // Beast has sent the reason, if the peer is there
+                                 return close(); // Beast has sent the reason, if the peer is still there
                              within_memory([this] { received(); });
                          });
 }
@@ -399,7 +399,7 @@ page_server::~page_server()
 void page_server::take(listener::socket_type s)
 {
     if (all_.size() >= most_connections)
-        return turn_away(s.native_handle()); // then the socket closes
+        return turn_away(s.native_handle()); // the socket closes at the end of the scope
     const auto c = connect_browser(io_, std::move(s), page_limits, {});
     if (!c)
         return;

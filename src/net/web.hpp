@@ -22,31 +22,31 @@
 
 namespace tactor::net {
 
-/// Takes an accepted socket, and lets it send small messages without delay. Returns null if the peer is gone.
-/// The connection runs in the context's thread. `allowed_hosts`: as host_is_ours() has them.
+/// Makes a connection of an accepted socket, which then sends small messages without delay. Returns null if
+/// the peer is gone. The connection runs in the context's thread. `allowed_hosts`: as in host_is_ours().
 std::shared_ptr<connection> connect_browser(boost::asio::io_context& io,
                                             boost::asio::generic::stream_protocol::socket accepted,
                                             const message_limits& l, std::vector<std::string> allowed_hosts);
 
-/// A document for browsers, as bundle.py makes it. Its texts live on.
+/// A document for browsers, made by bundle.py. Its texts are never freed.
 struct page_document {
     std::string_view text;
-    std::string_view policy; ///< that its own script and style may run
-    std::string_view gzip;   ///< the text, compressed
+    std::string_view policy; ///< policy that lets its own script and style run
+    std::string_view gzip;   ///< compressed text
 };
 
 /// Makes a document for a browser that calls this server `host`: it may run its own script and style, and
 /// talk to that host only.
 web_reply make_page(const page_document& document, std::string_view host);
 
-/// Sends a browser on this socket the reply that there is no place, as far as the socket takes it.
+/// Sends the browser on this socket as much as it takes of the reply that there is no place.
 void turn_away(int socket);
 
-/// Returns the whole reply to a browser for which no descriptor is left.
+/// Returns the reply to a browser for which no descriptor is free.
 std::string no_descriptors_for_browsers();
 
 /// A server of a document, with a WebSocket to each browser that shows it. Runs on its own thread, which
-/// inherits the signals that its maker has blocked.
+/// inherits the caller's blocked signals.
 class page_server {
 public:
     /// Number of a WebSocket. Numbers are not reused.
@@ -56,13 +56,13 @@ public:
     struct handlers {
         /// Handles a text message. Returns false to close the connection.
         std::function<bool(visitor, std::string_view)> said;
-        /// The visitor is gone.
+        /// Called when the visitor is gone.
         std::function<void(visitor)> left;
     };
 
     /// Starts the server. `listening` is a TCP socket.
     page_server(owned_fd listening, const page_document& document, handlers h);
-    /// Ends all connections when everything is sent, or after a second.
+    /// Closes all connections when everything has been sent, or after a second.
     ~page_server();
     page_server(const page_server&) = delete;
     page_server& operator=(const page_server&) = delete;
@@ -70,13 +70,13 @@ public:
     /// Sends a text. Any thread. Messages to a visitor keep their order; those to a visitor that is gone are
     /// lost.
     void send(visitor to, std::string text);
-    /// Closes the connection after the sent messages. Any thread.
+    /// Closes a connection after the messages sent before. Any thread.
     void finish(visitor v);
 
 private:
     void take(listener::socket_type s);
 
-    // Without the hint of one thread, which would put its own messages behind those of other threads.
+    // No concurrency hint of 1, which would put this thread's messages behind those of other threads.
     boost::asio::io_context io_;
     owned_fd fd_;
     page_document document_;

@@ -4,10 +4,10 @@
 const SVG_NAMES = "http://www.w3.org/2000/svg";
 
 export const by_id = id => document.getElementById(id);
-// Does nothing where the text is the same, for the browser would lay out the page again.
+// Sets a text. Does nothing if it is the same: the browser would lay out the page again.
 export function set_text(id, text) { if (by_id(id).textContent !== text) by_id(id).textContent = text; }
 export const all_of = selector => document.querySelectorAll(selector);
-// Listens to an element, or to that of an id.
+// Listens to an element, which may be an id.
 export function listen(to, event, f, options) { (typeof to === "string" ? by_id(to) : to).addEventListener(event, f, options); }
 export const on_click = (id, f) => listen(id, "click", f);
 export function show_pressed(e, is) { e.setAttribute("aria-pressed", is); }
@@ -26,5 +26,5 @@ export function make(tag, attributes = {}, ...children) {
   return e;
 }
 
-// Shows or hides; SVG has no property for it.
+// Shows or hides an element by its attribute, because SVG has no property for it.
 export function show_only_if(e, yes) { e.toggleAttribute("hidden", !yes); }

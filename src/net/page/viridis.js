@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: MIT
-// Colours of time: the map "viridis" of matplotlib (CC0), cut where it would vanish in the ground.
+// SPDX-License-Identifier: MIT Colours of time: the map "viridis" of matplotlib (CC0), cut at the end that would be invisible on the background.
 
-// 33 colours of the map at even distances; between them it is linear, within 2 of 255.
+// Colours of the map, 33 at even distances; linear interpolation is within 2 of 255.
 const VIRIDIS = [
   "440154 470d60 48186a 482374 472d7b 453681 424086 3f4989 3b528b 375a8d 33638d",
   "2f6a8e 2c728e 297a8e 26818e 23898e 21908c 1f988b 1f9f88 21a685 28ae80 31b57b",
