@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Common to the parts of the extension. They only bind: Python's users see python/tactor/*.py. The
-/// interpreter's lock is given back and taken here, also while the program ends.
+/// Common to the parts of the extension, which only bind: Python's users see python/tactor/*.py. The
+/// interpreter's lock is released and taken here, also while the program ends.
 #pragma once
 
 #include <memory>
@@ -79,7 +79,8 @@ concept named_kind = std::is_enum_v<Kind> && requires(Kind k)
     tactor::to_string(k);
 };
 
-/// A value of a closed set is its name in Python. \throws tactor::error (bad_input) that lists the names.
+/// Conversion of a closed set's value to its name and back.
+/// \throws tactor::error (bad_input) that lists the names.
 template <class Kind>
 struct type_caster<Kind, enable_if_t<named_kind<Kind>>> {
     PYBIND11_TYPE_CASTER(Kind, const_name("str"));
@@ -98,7 +99,7 @@ struct type_caster<Kind, enable_if_t<named_kind<Kind>>> {
     }
 };
 
-/// A struct with tuple_members is a tuple of these in Python.
+/// Conversion of a struct with tuple_members to a tuple and back.
 template <class T>
 struct type_caster<T, enable_if_t<tactor::python::is_tuple<T>>> {
     PYBIND11_TYPE_CASTER(T, const_name("tuple"));
@@ -129,10 +130,11 @@ namespace tactor::python {
 namespace py = pybind11;
 using options::wishes;
 
-/// Calls what may take the interpreter's lock, as all does that runs Python's code. `f` calls C alone and has
-/// no objects, which would be destroyed without the lock. Where a program ends while one of its daemon
-/// threads is in here, Python before 3.14 ends that thread by unwinding its stack; a destructor in between
-/// would end the process by abort(). It waits for the process's end instead, as Python 3.14 has it.
+/// Calls `f`, which may take the interpreter's lock. Every call that runs Python code must go through this.
+/// `f` calls only C and has no objects, which would be destroyed without the lock. If a program ends while
+/// one of its daemon threads is in here, Python before 3.14 ends that thread by unwinding its stack, and a
+/// destructor on the way would end the process by abort(). So this waits for the end of the process instead,
+/// as Python 3.14 does.
 template <class F>
 decltype(auto) in_python(F&& f)
 {
@@ -144,7 +146,7 @@ decltype(auto) in_python(F&& f)
     }
 }
 
-/// Gives the interpreter's lock, which the caller has, to others while it lives.
+/// Releases the interpreter's lock, which the caller has, while an object lives.
 class without_lock {
 public:
     without_lock() : mine_(PyEval_SaveThread()) {}
@@ -159,7 +161,7 @@ private:
     PyThreadState* mine_;
 };
 
-/// Takes the interpreter's lock while it lives. The caller may have it already.
+/// Holds the interpreter's lock while an object lives. The caller may have it already.
 class with_lock {
 public:
     with_lock() : before_(in_python([] { return PyGILState_Ensure(); })) {}
@@ -171,7 +173,8 @@ private:
     PyGILState_STATE before_;
 };
 
-/// Calls a function of Python's. \throws py::error_already_set.
+/// Calls a Python function.
+/// \throws py::error_already_set.
 inline py::object called(const py::object& function, const py::tuple& arguments)
 {
     PyObject* const result = in_python([&] { return PyObject_CallObject(function.ptr(), arguments.ptr()); });
@@ -180,7 +183,7 @@ inline py::object called(const py::object& function, const py::tuple& arguments)
     return py::reinterpret_steal<py::object>(result);
 }
 
-/// An array and, once somebody plans on it, its faces. Immutable for Python.
+/// An array and, once a plan needs them, its faces. Immutable for Python.
 class array_handle {
 public:
     explicit array_handle(array a) : array_(std::move(a)) { validate(array_); }
@@ -208,16 +211,18 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
     return a;
 }
 
-/// Gives doubles to NumPy without a copy, in rows of `columns` (0: a plain row); they cannot be written.
+/// Passes doubles to NumPy without a copy, in rows of `columns` (0: a single row); NumPy cannot write to
+/// them.
 py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns = 0);
 
-/// Sets the options `given`; None sets nothing. For others the [defaults] of `file` count, and in a score its
-/// rate, channels and marker; options that `into.given` has already keep their values. `tactors`: number of
-/// tactors that a phantom model in Python may name. \throws error (bad_input) for impossible values, and for
-/// options that nothing uses.
+/// Sets the options in `given`; None sets nothing. Other options come from the [defaults] of `file`, and for
+/// a score also rate, channels and marker; options that are already set keep their values. `tactors`: number
+/// of tactors that a phantom model in Python may use.
+/// \throws error (bad_input) for impossible values, and for options that nothing uses.
 void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file = nullptr);
 
-/// Takes the options of a player among `given`. \throws error (bad_input).
+/// Sets the options of a player from `given`.
+/// \throws error (bad_input).
 void give_player_options(wishes& into, const py::dict& given);
 
 /// Returns the rows of the table, for src/options/write.py.
@@ -226,14 +231,14 @@ py::list option_rows();
 /// Returns an error of the library with options as keyword arguments: "soa", timing="fit".
 error in_keywords(const error& e);
 
-/// A plan with what it was made of and for, so that it can be recorded, drawn and rendered.
+/// A plan with its stroke, array and sound, so that it can be recorded, drawn and rendered.
 struct plan_handle {
     std::shared_ptr<array_handle> on;
-    session::piece one;                          ///< of one stroke
-    render_options sound = {};                   ///< usual sound
-    std::vector<std::string> sound_options = {}; ///< names of those that were set
+    session::piece one;                          ///< piece of one stroke
+    render_options sound = {};                   ///< default sound of the plan
+    std::vector<std::string> sound_options = {}; ///< names of the sound options that were set
 
-    /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.
+    /// Returns the plan placed at `start_s`. The plan's own start counts from its stroke's anchor.
     placed_plan at(std::optional<double> start_s) const
     {
         const placed_plan& p = placed();
@@ -244,11 +249,12 @@ struct plan_handle {
     const tactor::plan& plan() const noexcept { return placed().plan; }
 };
 
-/// Returns a piece of one stroke, fitted and timed as its file and the options ask. \throws error (bad_input)
-/// where it is part of a group that is fitted as a single picture.
+/// Returns a piece of one stroke, fitted and timed as its file and the options require.
+/// \throws error (bad_input) if the stroke belongs to a group that is fitted as a single picture.
 session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w);
 
-/// Compares arrays. \throws error (bad_input) if the plan is for tactors elsewhere or on other channels.
+/// Compares arrays.
+/// \throws error (bad_input) if the plan is for tactors at other places or on other channels.
 void check_same_array(const plan_handle& p, const array& in_use);
 
 void bind_values(py::module_& m);

@@ -14,7 +14,7 @@ import sysconfig
 import tomllib
 import zipfile
 
-# Needed things (a name of pkg-config's, or a header), Debian's package, and the option to build without.
+# Required libraries: a pkg-config name or a header, the Debian package, and the option that builds without it.
 LIBRARIES = (
     ("Boost", "libboost-dev", None, None, "boost/asio.hpp"),
     ("fmt", "libfmt-dev", None, "fmt", "fmt/format.h"),

@@ -34,7 +34,7 @@ std::string write_keyword(const option& o, std::string_view value)
     return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
 }
 
-// Marks and fields of the library that no option stands for.
+// Marks and fields of the library for which there is no option.
 constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
                                options::own_word{"command:plan", "Plan.write()"},
                                options::own_word{"array=none", "use plan.array"},
@@ -141,7 +141,7 @@ public:
     {
     }
 
-    // The last plan that shares it may be dropped by any thread.
+    // Any thread may drop the last plan that shares this.
     ~own_phantom() override
     {
         const with_lock lock;
@@ -163,7 +163,7 @@ public:
 private:
     py::object model_;
     std::string name_;
-    py::object answer_; ///< asks the model, and looks at what it says
+    py::object answer_; ///< calls the model, and checks its answer
     std::size_t tactors_;
 };
 
@@ -205,7 +205,7 @@ void apply_output(wishes& w, const setup& file)
         w.render.marker_s = file.sync->pulse_s;
 }
 
-// Settles rate, channels and limits of a score. A player has its limits with the stream.
+// Determines rate, channels and limits of a score. A player gets its limits with the stream.
 void settle_score(wishes& w)
 {
     render_options& r = w.render;
@@ -217,7 +217,7 @@ void settle_score(wishes& w)
     r.limits = session::limits_over(s, r.limits.value_or(drive_limits()));
 }
 
-// An option as the manual describes it; its texts have marks.
+// Returns an option as the manual describes it; its texts have marks.
 py::dict manual_entry(const option& o)
 {
     py::list takers;
@@ -276,7 +276,7 @@ py::list option_rows()
             if ((o.where & place) != 0)
                 where.append(name);
         const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
-        std::vector<double> bounds; // none where other values decide
+        std::vector<double> bounds; // none if other values decide
         if (is_number && o.range.empty())
             bounds = {o.allowed.low, o.allowed.high};
         all.append(
@@ -294,7 +294,7 @@ py::list option_rows()
 error in_keywords(const error& e)
 {
     const error said = options::spell(e, by_python);
-    const bool in_file = !e.place().file.empty() || e.place().line != 0; // it has its own words
+    const bool in_file = !e.place().file.empty() || e.place().line != 0; // its message names the place itself
     return in_file ? said : said.with_field(options::spell_field(e.field(), by_python));
 }
 

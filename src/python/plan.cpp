@@ -40,7 +40,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
             p.sound_options.emplace_back(o.name);
     }
     std::optional<without_lock> free;
-    if (!w.plan.custom_phantom) // which takes the lock for each point
+    if (!w.plan.custom_phantom) // a custom model takes the lock for each point
         free.emplace();
     session::plan_stroke(p.one, 0, on->value(), faces, w);
     return p;
@@ -53,7 +53,7 @@ auto member(T tactor::plan::*m)
     return [m](const plan_handle& p) -> const T& { return p.plan().*m; };
 }
 
-// Returns a column of the bursts as they lie in memory.
+// Returns a column of the bursts as a view without a copy.
 template <double burst::*Member>
 py::array_t<double> column(const py::object& self)
 {
@@ -115,7 +115,7 @@ py::tuple samples(const plan_handle& p)
                           to_numpy(std::move(intensities)), to_numpy(std::move(all), tactors));
 }
 
-// Returns the columns of Percept. Places and speeds are NaN where nothing is felt.
+// Returns the columns of Percept. Places and speeds are NaN if nothing is felt.
 py::tuple felt(const plan_handle& p)
 {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -139,7 +139,7 @@ py::tuple felt(const plan_handle& p)
                           to_numpy(std::move(shared)).attr("astype")("bool"));
 }
 
-// Amplitudes of all tactors for a phantom at each of the places.
+// Returns the amplitudes of all tactors for a phantom at each place.
 py::array_t<double> weights(phantom_kind kind, faces_kind of_faces, const array_handle& on,
                             const py::array_t<double, py::array::c_style | py::array::forcecast>& places,
                             double intensity)
@@ -178,8 +178,8 @@ py::dict summary(const plan_handle& p)
                     "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
 }
 
-// Returns the plan for another array with the same places. \throws error where the tactors have other
-// numbers.
+// Returns the plan for another array with the same places.
+// \throws error if the tactors have other numbers.
 plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>& to)
 {
     const auto& from = p.on->value().tactors;
@@ -226,10 +226,11 @@ plan_handle plan_from_json(const std::string& text, const std::string& named)
     return {std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.made), f.render};
 }
 
-// Frames between two looks for Ctrl-C: some 10 ms of work.
+// Number of frames between two checks for Ctrl-C: some 10 ms of work.
 constexpr std::uint64_t frames_at_once = 1 << 18;
 
-// A plan, its start, true if it was made for another array, and this array's file for what it leaves open.
+// A plan, its start, true if it was made for another array, and this array's setup for options that the plan
+// lacks.
 using score_part = std::tuple<std::optional<double>, const plan_handle*, bool, const setup*>;
 
 render_options settle_sound(const plan_handle& p, const py::dict& given, bool elsewhere, const setup* file)
@@ -241,7 +242,7 @@ render_options settle_sound(const plan_handle& p, const py::dict& given, bool el
         for (const std::string& name : p.sound_options)
             w.given.set(index(*options::find(name)));
     take_options(w, given, 0, file);
-    // A plan that was recorded says how many channels it had without a marker.
+    // A recorded plan contains its number of channels without a marker.
     if (w.render.marker_channel && w.render.channels != 0 && !w.channels)
         w.render.channels = std::max(w.render.channels, *w.render.marker_channel + 1);
     return w.render;
@@ -259,7 +260,7 @@ std::string value_text(const std::optional<double>& d)
     return d ? plain_number(*d) : "none";
 }
 
-// Refuses sounds that differ in what a score has once.
+// Refuses sounds that differ in options that a score has only once.
 void check_alike(const render_options& a, const render_options& b)
 {
     const auto check = [](const char* name, const auto& x, const auto& y, auto text) {
@@ -285,7 +286,7 @@ double level_db(const render_options& o)
     return o.sl_db.value_or(o.level_dbfs);
 }
 
-// Returns the sound of them all, at the level of the loudest.
+// Returns the common sound, at the level of the loudest.
 render_options joined(std::span<const render_options> sounds)
 {
     render_options all = sounds.front();
@@ -304,7 +305,7 @@ render_options joined(std::span<const render_options> sounds)
     return all;
 }
 
-// Collects everything but plans and array that changes samples.
+// Collects the values, besides plans and array, that change samples.
 py::tuple recipe(const render_options& o)
 {
     return py::make_tuple(o.rate, o.phase, o.ramp_s, envelope_text(o.envelope), o.envelope.attack_s,
@@ -312,13 +313,13 @@ py::tuple recipe(const render_options& o)
                           o.sl_db.has_value(), o.together);
 }
 
-// Returns all that decides how the plan sounds by itself, as values that Python compares and hashes.
+// Returns the values that decide how the plan sounds alone, for Python to compare and hash.
 py::tuple plan_recipe(const plan_handle& p)
 {
     return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_db(p.sound));
 }
 
-// Makes a score. Each plan keeps its level; the rest is common to them.
+// Makes a score. Each plan keeps its level; other options are common.
 py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& given)
 {
     if (plans.empty())
@@ -345,7 +346,7 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     return py::make_tuple(made, recipe(common) + py::make_tuple(py::tuple(py::cast(levels))));
 }
 
-// Checks for Ctrl-C without the lock: throws what Python's handler raised.
+// Checks for Ctrl-C without the lock: throws an exception of Python's handler.
 void check_signals()
 {
     const with_lock lock;
@@ -358,7 +359,7 @@ class block_renderer {
 public:
     block_renderer(const score& s, format_kind f) : renderer_(s, f), frame_(s.channels() * sample_bytes(f)) {}
 
-    /// Fills memory with frames, which it is a whole number of.
+    /// Fills memory with frames. Its size is a whole number of frames.
     void fill(std::span<std::byte> out)
     {
         while (!out.empty()) {
@@ -467,7 +468,7 @@ void bind_plan(py::module_& m)
                         plan_handle p = plan_from_json(text, "plan");
                         check_same_array(p, on->value());
                         p.one.strokes = {drawn};
-                        if (drawn.anchor != start_anchor{}) { // which a record does not know
+                        if (drawn.anchor != start_anchor{}) { // a record has no anchor
                             p.one.plans.front().start_s = drawn.start_s;
                             p.one.plans.front().anchor = drawn.anchor;
                         }

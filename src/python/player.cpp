@@ -36,8 +36,8 @@ struct log_line {
 
 using event = std::variant<stroke_report, log_line>;
 
-/// Events of a player on their way to a thread of Python's. The player's threads leave them here and never
-/// wait for the interpreter.
+/// Events of a player for a Python thread. The player's threads put them in and never wait for the
+/// interpreter.
 class event_queue {
 public:
     void put(event e)
@@ -45,13 +45,13 @@ public:
         {
             const std::lock_guard lock(mutex_);
             if (std::holds_alternative<log_line>(e) && waiting_.size() >= most_waiting)
-                return; // an unread log; reports are as many as there are strokes
+                return; // drops lines of an unread log; reports are never more than strokes
             waiting_.push_back(std::move(e));
         }
         there_.notify_one();
     }
 
-    /// Ends the queue: no more events come. next() still gives those that wait.
+    /// Ends the queue: no more events come in. next() still returns the waiting ones.
     void close()
     {
         {
@@ -61,7 +61,7 @@ public:
         there_.notify_all();
     }
 
-    /// Waits for the next one; none once it is closed and empty.
+    /// Waits for the next event; none once the queue is closed and empty.
     std::optional<event> next()
     {
         std::unique_lock lock(mutex_);
@@ -88,9 +88,8 @@ bool is_built_in(const array& a)
            detail::array_text(a) == detail::array_text(preset_array(a.name));
 }
 
-// Returns the configuration that applies, with this array; null: with the configuration's. A preset is the
-// configuration's array where that has its places. Fills in rate and format from [defaults] where `s` has
-// none.
+// Returns the configuration that applies, with this array (null: with its own). A preset is replaced by the
+// configuration's array if that has the same places. Sets rate and format from [defaults] if `s` has none.
 session::environment read_environment(session::settings& s, const array* a)
 {
     session::environment e = session::read_environment(s);
@@ -100,19 +99,20 @@ session::environment read_environment(session::settings& s, const array* a)
         e.tactors = session::use_preset(*a, e);
         return e;
     }
-    // A channel count belongs to its map.
+    // A channel count applies only to its own channel map.
     if (!std::ranges::equal(e.tactors.tactors, a->tactors, {}, &tactor_spec::channel, &tactor_spec::channel))
         e.config.output.channels.reset();
     e.tactors = *a;
     return e;
 }
 
-/// Calls may come from any thread, but not from a process that was forked: there they are errors, and nothing
-/// of the parent's is touched when it ends.
+/// A player for Python. Calls may come from any thread, but not from a forked process: there they are errors,
+/// and its end leaves the parent's objects alone.
 class player_handle {
 public:
-    /// Opens the device. What `s` does not set is the configuration's, then the tool's default. `keep`: as
-    /// player_options::keep_drive_time. Without the interpreter's lock. \throws error.
+    /// Opens the device. Values missing in `s` come from the configuration, then from the defaults. `keep`:
+    /// as player_options::keep_drive_time. Without the interpreter's lock.
+    /// \throws error.
     player_handle(const array& a, session::settings s, bool keep, bool wants_log)
     {
         const session::environment e = read_environment(s, &a);
@@ -142,11 +142,11 @@ public:
     }
     ~player_handle()
     {
-        if (forked()) { // the parent's: not even the memory is given back, for that would end things
+        if (forked()) { // leaks the parent's objects: destroying them would act on its device
             static_cast<void>(open_.release());
             return;
         }
-        // Its threads may be waiting for the interpreter, to drop what is Python's.
+        // The player's threads may be waiting for the interpreter, to drop Python objects.
         std::optional<without_lock> free;
         if (PyGILState_Check() != 0)
             free.emplace();
@@ -156,7 +156,7 @@ public:
     player_handle& operator=(const player_handle&) = delete;
 
     const stream_setup& setup() const noexcept { return setup_; }
-    /// Returns the configuration's array where it is played on in place of a preset.
+    /// Returns the configuration's array if it replaces a preset.
     const std::optional<array>& configured() const noexcept { return configured_; }
     /// Returns a warning about the array; else an empty text.
     const std::string& doubt() const noexcept { return doubt_; }
@@ -170,7 +170,8 @@ public:
                         "open a player in this process, or play in the parent");
     }
 
-    /// Calls `f` with the player; once it is closed, the other. \throws error (runtime) in a forked process.
+    /// Calls `f` with the player; once it is closed, calls `g`.
+    /// \throws error (runtime) in a forked process.
     template <class F, class G>
     auto use(F&& f, G&& once_closed) const
     {
@@ -188,7 +189,8 @@ public:
         });
     }
 
-    /// Return the player's; once it is closed, those of its end. \throws error in a forked process.
+    /// Return the player's values; once it is closed, the last ones.
+    /// \throws error in a forked process.
     player_stats stats() const
     {
         return use([](player& p) { return p.stats(); }, [this] { return open_->last_stats; });
@@ -198,14 +200,15 @@ public:
         return use(&end_reason, [this] { return open_->last_end; });
     }
 
-    /// Returns player::drive_time_doubt(); once it is closed, nothing. \throws error in a forked process.
+    /// Returns player::drive_time_doubt(); once it is closed, an empty text.
+    /// \throws error in a forked process.
     std::string drive_time_doubt() const
     {
         return use([](player& p) { return p.drive_time_doubt(); }, [] { return std::string(); });
     }
 
-    /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
-    /// process.
+    /// Returns false if the stroke has ended; all have ended once it is closed.
+    /// \throws error in a forked process.
     bool cancel(stroke_id id) const
     {
         return use([id](player& p) { return p.cancel(id); }, [] { return false; });
@@ -215,7 +218,7 @@ public:
         return !forked() && use([](player&) { return false; }, [] { return true; });
     }
 
-    /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
+    /// Fades out, stops and closes; all strokes have been reported then. A second call does nothing.
     void close()
     {
         use([](player& p) { p.stop(); }, [] {});
@@ -243,12 +246,12 @@ private:
         return end ? std::optional(end->why) : std::nullopt;
     }
 
-    // State that a forked process must not touch, not even to destroy it.
+    // State that a forked process must not touch, even to destroy it.
     struct open_state {
         mutable std::shared_mutex mutex;
         session::lent_lines lines;
         std::unique_ptr<player> stream;
-        player_stats last_stats; ///< without a stream, as the next
+        player_stats last_stats; ///< values without a stream, as the next
         std::optional<std::string> last_end;
     };
 
@@ -349,7 +352,7 @@ py::dict position_dict(const player_handle& h)
     return d;
 }
 
-// A live stroke with the player that it must not outlive in a forked process.
+// A live stroke with its player, which it must not outlive in a forked process.
 struct live_handle {
     live_handle(std::shared_ptr<player_handle> p, live_stroke s, double most)
         : of(std::move(p)),
@@ -376,7 +379,7 @@ struct live_handle {
     std::shared_ptr<player_handle> of;
     std::unique_ptr<live_stroke> stroke;
     double intensity_max;
-    session::live_remarks remarks; ///< with Python's lock
+    session::live_remarks remarks; ///< used with Python's lock
 };
 
 live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
@@ -387,7 +390,7 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
     w.place = options::live;
     w.plan = live_options{}.plan;
     setup said = file != nullptr ? *file : setup();
-    std::erase_if(said.defaults, [](const written_value& d) { // as in the tool
+    std::erase_if(said.defaults, [](const written_value& d) { // the same as in the tool
         return d.name == "algorithm" || d.name == "outside";
     });
     take_options(w, options, on.value().tactors.size(), &said);

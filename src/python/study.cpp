@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Studies, by the code of the tool.
+// SPDX-License-Identifier: MIT Study functions, which call the code of the tool.
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +32,7 @@ py::list read_study(const std::string& folder, const codes& only, const codes& w
     for (const study::trial_cells& cells : read_trials(folder, select_participants(only, without))) {
         py::dict trial;
         for (const auto& [name, value] : cells)
-            if (!trial.contains(py::str(name))) // a lab's column of the same name does not replace it
+            if (!trial.contains(py::str(name))) // a lab's column of the same name must not replace it
                 trial[py::str(name)] = value;
         trials.append(std::move(trial));
     }

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Arrays, paths and strokes; paths and strokes also as bytes, for pickles and for comparing: their members in
-// MessagePack, where numbers keep their last bit.
+// Arrays, paths and strokes. Paths and strokes also as bytes, to pickle and compare them: their members in
+// MessagePack, which keeps the last bit of numbers.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -67,7 +66,7 @@ inline void from_json(const nlohmann::json& j, shape& s)
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(outline::curve, segment, form)
 
-// Copies a list as it lies in memory: as JSON a million points take ten times as much.
+// Copies the bytes of a list: as JSON, a million points take ten times as many.
 template <class T>
 nlohmann::json pack(const std::vector<T>& list)
 {
@@ -177,7 +176,8 @@ py::bytes write_state(const T& value)
     return state;
 }
 
-// Reads what write_state() wrote. \throws error (bad_input) for other bytes.
+// Reads bytes of write_state().
+// \throws error (bad_input) for other bytes.
 template <class T>
 T read_state(const py::bytes& state)
 try {
@@ -207,7 +207,7 @@ auto read_rows(const numbers& a, Make make)
     return rows;
 }
 
-// Returns the place that `find` gives for each number, as an (n, 2) array.
+// Returns find(number) for each number, as an (n, 2) array.
 template <class F>
 py::array_t<double> places(const numbers& all, F&& find)
 {
@@ -334,7 +334,7 @@ stroke timed(const std::string& name, const numbers& rows, double intensity_max)
     return {.name = name, .motion = motion, .warnings = recorded.warnings()};
 }
 
-// Writes TOML; a preset by its name, which keeps its note.
+// Writes TOML. Writes a preset by its name, which keeps its note.
 std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())
@@ -343,7 +343,7 @@ std::string stroke_toml(const stroke& s)
     return detail::stroke_text(s);
 }
 
-// Without `speeds` and `intensities` both are even.
+// Makes a stroke along a path. Empty `speeds` or `intensities` mean constant ones.
 stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
              std::optional<double> speed_mm_s, double intensity, easing_kind easing,
              std::vector<profile_point> speeds, std::vector<profile_point> intensities,
@@ -371,7 +371,7 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
     return s;
 }
 
-// Returns a stroke's options by the names of plan()'s.
+// Returns a stroke's options by the names of plan()'s arguments.
 py::dict choices_dict(const stroke& s)
 {
     py::dict d;

@@ -40,7 +40,7 @@ def build_facts() -> str:
     return _tactor.build_facts()  # type: ignore[no-any-return]
 
 
-# Names that few scripts need are loaded when they are first used: they take a fifth of the import's time.
+# Names that few scripts need. They are loaded on first use, which saves a fifth of the import's time.
 _LATER = {
     "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "play": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
     "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",

@@ -130,7 +130,7 @@ _M = _t.TypeVar("_M")
 
 
 class _Member(property, _t.Generic[_M]):
-    # A property that reads a member of the extension's object, which is in _core. No docstring: each has its own.
+    # Returns a property that reads a member of the extension's object in _core. Each caller sets its own docstring.
 
     def __init__(self, name: str, doc: str) -> None:
         super().__init__(operator.attrgetter("_core." + name))

@@ -359,7 +359,7 @@ class _Shared:
         """Waits until all is reported and the thread has ended."""
         while not self.reported.wait(_LOOK_S):
             pass
-        # A handler that interrupts join() must not join, too: it would wait for a lock that the interrupted one has.
+        # A handler that interrupts join() must not join, too: it would wait for a lock of the interrupted call.
         if not self.joined:
             self.joined = True
             self.thread.join()
