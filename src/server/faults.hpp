@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Refusals in words of the protocol: parameters, never fields of the library or options of the tool. Readers
+/// Refusals in terms of the protocol: parameters, never fields of the library or options of the tool. Readers
 /// of parameters, which throw them.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace tactor::server {
 
-/// An answer that is an error.
+/// Exception with an error for the answer.
 class fault_error : public std::exception {
 public:
     explicit fault_error(net::rpc_fault f) : fault_(std::move(f)) {}
@@ -37,15 +37,15 @@ private:
 [[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "you have no such stroke");
 [[noreturn]] void no_stream(const std::string& why);
 
-/// Writes the marks of a text as the protocol names options: "options.soa".
+/// Writes the marks of a text with the protocol's names of options: "options.soa".
 std::string in_words_of_protocol(std::string_view marked);
-/// Converts an error of the library about the option in its field, else about the parameter `source`.
-/// `named`: name of the parameter's text in errors; empty: `source`.
+/// Converts an error of the library to a fault about the option in its field, or else about the parameter
+/// `source`. `named`: name of the parameter's text in errors; empty: `source`.
 net::rpc_fault library_fault(const error& e, const std::string& source, const std::string& named = {});
-/// Returns the fault of the exception that is being handled: for catch (...).
+/// Returns the fault of the current exception. Call it in catch (...).
 net::rpc_fault current_fault(const std::string& source, const std::string& named = {});
 
-/// Refuses parameters that are not among these, and params that are a list.
+/// Refuses unknown parameters, and params that are a list.
 void allow_only(const net::json& params, std::initializer_list<std::string_view> known);
 /// Returns a member; null if there is none.
 const net::json* member(const net::json& params, const char* name);
@@ -57,7 +57,8 @@ double number_or(const net::json& params, const char* name, detail::bounds b, do
 double need_number(const net::json& params, const char* name, detail::bounds b);
 /// Returns a whole number within bounds. \throws fault_error.
 double whole(const net::json& v, const std::string& what, detail::bounds b);
-/// Returns the one of these names that there is; null for none. \throws fault_error for several.
+/// Returns the name that `params` has; null for none.
+/// \throws fault_error for several.
 const char* find_one(const net::json& params, std::initializer_list<const char*> names);
 /// Returns a member that is true or false; false if there is none. \throws fault_error.
 bool flag(const net::json& params, const char* name);

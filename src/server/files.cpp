@@ -43,7 +43,7 @@ constexpr std::size_t most_file_bytes = 64U << 20;
 using net::json;
 using options::option;
 
-// Strokes as they were read, and the text if it is TOML that says the same.
+// Strokes that were read, and the text if it is TOML with the same contents.
 struct read_file {
     std::vector<stroke> strokes = {};
     std::string toml = {};
@@ -77,7 +77,7 @@ bool is_plan(std::string_view bytes, const std::string& name)
     return extension == ".json" || (!is_stroke && files::holds_plans(bytes));
 }
 
-// Returns the method of a plan. A burst that is not shorter than its SOA is that of the timing law.
+// Returns the method of a plan. A burst as long as its SOA counts as that of the timing law.
 stroke_choices read_method(const plan& p)
 {
     stroke_choices said{.algorithm = detail::find_kind<algorithm_kind>(p.algorithm),
@@ -111,7 +111,7 @@ read_file read_bytes(std::string bytes, const std::string& name, double intensit
     std::vector<stroke> strokes =
         session::read_strokes(format, bytes, name, {.intensity_max = intensity_max});
     if (format != "toml" || intensity_max != 1.0)
-        bytes.clear(); // others would read other intensities
+        bytes.clear(); // other programs would read other intensities
     return {std::move(strokes), std::move(bytes)};
 }
 
@@ -126,14 +126,14 @@ std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
     return std::move(times).all();
 }
 
-// Returns true for a stroke whose start counts from that of a group, which a stroke file written anew has
-// not.
+// Returns true for a stroke whose start counts from the start of a group: a newly written stroke file has no
+// groups.
 bool counts_from_group(const stroke& k) noexcept
 {
     return k.anchor.back != 1;
 }
 
-// Gives such strokes their starts, s from that of the piece.
+// Sets the starts of such strokes, s from the start of the piece.
 void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& starts_s)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i)
@@ -143,7 +143,7 @@ void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& s
         }
 }
 
-// Appends the points of each stroke, by hand: a document of a million numbers takes too much memory.
+// Appends the points of each stroke, directly as text: a document of a million numbers takes too much memory.
 void append_points(std::string& out, const std::vector<stroke>& strokes)
 {
     for (const stroke& k : strokes) {
@@ -158,7 +158,7 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
     }
 }
 
-// Returns the keys of a stroke file that say how the stroke is made, without those of its path and start.
+// Returns the keys of a stroke file for the method of a stroke, without those of its path and start.
 net::reply_json keys_json(const stroke& k)
 {
     net::reply_json keys = net::reply_json::object();
@@ -221,7 +221,7 @@ bool is_recording(const options::wishes& s)
     return s.plan.wave.kind == waveform_kind::recording;
 }
 
-// Returns true for what put_options() says. The texts of strokes may name no recording.
+// Returns true for an option that put_options() writes. The texts of strokes must not name recordings.
 bool is_in_file(const option& o, const options::wishes& s)
 {
     constexpr std::uint64_t kept = options::in_stroke | options::live; // others are in the strokes' times
@@ -229,7 +229,7 @@ bool is_in_file(const option& o, const options::wishes& s)
     return ((o.where & kept) == kept && !(is_recorded && is_recording(s))) || o.name == "am";
 }
 
-// Returns the options as a command has them: the strokes have their times, and the array has a name.
+// Returns the options for a command: the strokes contain their times, and the array has a name.
 options::wishes for_command(options::wishes s, const service_options& o)
 {
     constexpr unsigned usual_rate = 48000;
@@ -250,11 +250,11 @@ std::string value_text(const options::value& v)
         return fmt::format(" {}", *number);
     if (const auto* text = std::get_if<std::string>(&v))
         return " " + quote_word(*text);
-    return {}; // a flag
+    return {}; // a flag has no value
 }
 
-// Returns true for a value that the command must say. It always has the level, which a configuration on the
-// way may set otherwise.
+// Returns true for a value that the command must have. The level is always written, because a configuration
+// may set another one.
 bool is_needed(const option& o, const options::wishes& s, const options::value& v)
 {
     static const options::wishes usual;
@@ -266,8 +266,8 @@ bool is_needed(const option& o, const options::wishes& s, const options::value& 
     return !is_off && is_used && (was_given || v != o.to.get(usual));
 }
 
-// Gives a stroke the options that differ from the built-in ones or that a client gave, as far as a stroke
-// file has keys for them and the stroke does not say them itself.
+// Adds to a stroke the options that differ from the built-in ones or that a client set, if stroke files have
+// keys for them and the stroke does not set them itself.
 void put_options(stroke& k, const options::wishes& s)
 {
     const plan_options& p = s.plan;
@@ -288,8 +288,8 @@ void put_options(stroke& k, const options::wishes& s)
     put(k.sound.am, "am", p.am, usual.am);
 }
 
-// Returns " --array palm-3x3 --level-dbfs -15": what a command of the tool needs to do the same as these
-// options. `file_says`: put_options() has said what it can.
+// Returns " --array palm-3x3 --level-dbfs -15": the arguments with which a command of the tool does the same.
+// `file_says`: put_options() has written its part.
 std::string option_words(const options::wishes& w, options::place command, bool file_says)
 {
     std::string words;
@@ -301,14 +301,14 @@ std::string option_words(const options::wishes& w, options::place command, bool 
     return words;
 }
 
-// A kind of file, and the command of the tool that makes it, or plays it.
+// Kind of a file, and the command of the tool that makes or plays it.
 struct file_kind {
     std::string_view extension;
     std::string_view mime;
     std::string_view command;
     options::place place;
-    std::string_view reads; ///< extension
-    std::string_view into;  ///< before the file that it writes
+    std::string_view reads; ///< extension of the file that it reads
+    std::string_view into;  ///< arguments before the file that it writes
     std::string_view writes;
     std::optional<plot::file_format> picture = {};
 };
@@ -356,8 +356,8 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
     return name;
 }
 
-// Gives strokes that count from a group a start in seconds, which takes their plans: a plan may last longer
-// than its path.
+// Gives strokes that count from a group a start in seconds. It depends on their plans, because a plan may
+// last longer than its path.
 void place_by_plans(const service_options& o, const layout& faces, const options::wishes& s,
                     std::vector<stroke>& strokes, const go_on_check& go_on)
 {
@@ -368,13 +368,13 @@ void place_by_plans(const service_options& o, const layout& faces, const options
     count_from_piece(strokes, p.starts_s());
 }
 
-// Returns the strokes as the tool reads them in the exported file: all its digits come from there.
+// Returns the strokes as the tool reads them from the exported file, which decides their digits.
 std::vector<stroke> read_again(const std::string& toml, const std::string& source,
                                const std::vector<stroke>& written)
 {
     std::vector<stroke> strokes = parse_strokes_toml(toml, source);
     for (std::size_t i = 0; i < strokes.size(); ++i)
-        strokes[i].places = written[i].places; // in the client's text
+        strokes[i].places = written[i].places; // places in the client's text
     return strokes;
 }
 
@@ -407,7 +407,7 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
     const format_kind format = s.format.value_or(format_kind::float32);
     const double frames = p.total_s() * s.render.rate;
     if (frames * static_cast<double>(s.render.channels * sample_bytes(format)) > most_file_bytes)
-        too_large(); // before it is rendered
+        too_large(); // checked before rendering
     return wav::bytes(score(o.plans.tactors, p.plans, p.render), format);
 }
 
@@ -420,7 +420,8 @@ std::string command_line(const service_options& o, const file_kind& kind, const 
                        quote_word(fmt::format("{}.{}", name, kind.writes)));
 }
 
-// Writes and reads the strokes: an exported file has the digits that the tool finds in it.
+// Makes the bytes of a file. Writes the strokes and reads them again, so that it has the digits that the tool
+// will read.
 std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
                        const std::string& source, const std::string& name, std::vector<stroke> strokes,
                        const options::wishes& s, const go_on_check& go_on)
@@ -476,7 +477,7 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     try {
         std::vector<stroke> strokes =
             settle_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
-        if (kind.extension == "toml" || kind.extension == "csv") // which need no plan
+        if (kind.extension == "toml" || kind.extension == "csv") // these need no plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);
         const std::string bytes = make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);
@@ -513,7 +514,7 @@ std::string make_file_name(std::string_view name)
     for (char& c : made)
         if (!is_beyond_ascii(c) && plain.find(c) == plain.npos)
             c = '_';
-    if (has_controls(made)) // escapes and turned lines in a terminal
+    if (has_controls(made)) // they could be escapes, or turn lines, in a terminal
         std::replace_if(made.begin(), made.end(), is_beyond_ascii, '_');
     if (made.starts_with('-') || made.starts_with(' '))
         made.front() = '_';

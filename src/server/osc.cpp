@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Messages are read as requests, and handled at once, but for a live stroke that begins later.
+// OSC messages. They are read as requests and handled at once, except those for a live stroke that begins
+// later.
 #include "server/osc.hpp"
 
 #include <algorithm>
@@ -102,7 +102,7 @@ private:
 
 constexpr auto lowest_number = std::numeric_limits<std::int32_t>::min();
 
-// Adds "soa=0.07" as the value that it would be in JSON.
+// Adds "soa=0.07" to `into`, with the value as in JSON.
 void read_option(const std::string& word, json& into)
 {
     const auto equals = word.find('=');
@@ -168,7 +168,7 @@ void read_to(value_list& v, osc_request& r)
 {
     r.number = stroke_number(v);
     r.params["x_mm"] = v.number("x_mm");
-    r.params["y_mm"] = v.number("y_mm", number_first); // a pad may send its place alone
+    r.params["y_mm"] = v.number("y_mm", number_first); // a pad may send only its place
     if (v.left())
         r.params["intensity"] = v.number("intensity");
 }
@@ -179,8 +179,8 @@ void read_own_stroke(value_list& v, osc_request& r)
     v.ignore_rest();
 }
 
-// Stops for any value but 0 and false: controllers append the state of a button. Nothing that a controller
-// may append is refused.
+// Reads a stop: any value but 0 and false, because controllers append the state of a button. Accepts anything
+// that a controller may append.
 void read_stop(value_list& v, osc_request& r)
 {
     if (v.released())
@@ -212,7 +212,7 @@ void read_subscribe(value_list& v, osc_request& r)
 }
 
 constexpr std::string_view osc_root = "/tactor/";
-constexpr std::string_view osc_stop = "/tactor/stop"; // fades everything out
+constexpr std::string_view osc_stop = "/tactor/stop"; // fades out all strokes
 constexpr std::pair<std::string_view, void (*)(value_list& v, osc_request& r)> readers[] = {
     {"play", read_play},         {"begin", read_begin}, {"to", read_to},       {"end", read_own_stroke},
     {"cancel", read_own_stroke}, {"stop", read_stop},   {"drive", read_drive}, {"subscribe", read_subscribe},
@@ -228,10 +228,10 @@ std::string near_address(std::string_view address)
     return near.empty() ? "" : fmt::format("did you mean {}{}? ", osc_root, near);
 }
 
-// A smaller difference comes from the time between two readings.
+// Least difference that counts. A smaller one comes from the time between two readings.
 constexpr std::int64_t clocks_differ_ns = 50'000;
 
-// Returns the option of a stroke that begins; its other values are the service's to refuse.
+// Returns the option of a stroke that begins; the service checks its other values.
 double find_intensity_max(const net::json& params)
 {
     const auto said = params.find("options");
@@ -242,7 +242,7 @@ double find_intensity_max(const net::json& params)
 
 constexpr double silent_dbfs = -200.0;
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::size_t most_words = 1000; // of an error, in bytes
+constexpr std::size_t most_words = 1000; // longest text of an error, bytes
 
 } // namespace
 
@@ -270,7 +270,7 @@ osc_request read_osc(const osc_message& m)
     return r;
 }
 
-/// The way from the service to a sender.
+/// Link from the service to a sender.
 class osc_clients::sender_link final : public client_link {
 public:
     sender_link(osc_clients& all, endpoint to) : all_(all), to_(std::move(to)) {}
@@ -315,7 +315,7 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     if (is_servers_own(m.address))
         return;
     try {
-        if (!m.fault.empty() && m.address != osc_stop) // a stop stops, whatever its values are
+        if (!m.fault.empty() && m.address != osc_stop) // a stop is valid with any values
             bad_param("values", m.fault, "send an address, types and values, as OSC 1.0 requires");
         osc_request r = read_osc(m);
         if (r.method == "stop")
@@ -331,8 +331,8 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     }
 }
 
-// Reads the clocks for a packet. Keeps the offset unless the clocks have moved: messages of one time, in one
-// bundle or in several, then keep the order in which they were sent.
+// Reads the clocks for a packet. Keeps their offset unless it has changed, so that messages for the same
+// time, in one bundle or in several, keep their order.
 void osc_clients::read_clocks()
 {
     unix_ns_ = outside_.unix_ns();
@@ -355,7 +355,7 @@ std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
     return *m.unix_ns + offset_ns_;
 }
 
-// Returns how long before its first sample is at the DAC a live stroke must be fed.
+// Returns the time before its first sample at the DAC at which a live stroke must be fed, ns.
 std::int64_t osc_clients::lead_ns()
 {
     const stream_setup& s = service_.output().setup();
@@ -363,7 +363,7 @@ std::int64_t osc_clients::lead_ns()
     return s.rate == 0 ? 0 : std::llround(1e9 * frames / s.rate);
 }
 
-// Stops everything, also for a sender that is not known, and when there is no place for more.
+// Stops everything, also for an unknown sender and when there is no place for another client.
 void osc_clients::stop(const endpoint& from)
 {
     if (sender* s = find(from))
@@ -403,13 +403,13 @@ void osc_clients::move(osc_request r, const endpoint& from)
                fmt::format("stroke {}: {}", r.number, session::held_text(asked, d.intensity_max)));
     if (d.held && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
-    // Keeps only the last of the places before it begins.
+    // Keeps only the last place before it begins.
     if (d.held && r.method == "to" && !d.waiting.empty() && d.waiting.back().method == "to")
         d.waiting.pop_back();
     ask_about(*s, d, std::move(r));
 }
 
-// Handles play, begin and drive: their first sample is at the DAC at the time.
+// Handles play, begin and drive: their first sample is at the DAC at that time.
 void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
 {
     sender& s = admit(from);
@@ -459,7 +459,7 @@ void osc_clients::drop_held()
     drop_held([](const held&) { return true; });
 }
 
-// Drops live strokes that have not begun after a client stopped everything, or a sender its own stroke.
+// Drops waiting live strokes after a client stopped everything, or a sender stopped its own stroke.
 void osc_clients::drop_held(const std::function<bool(const held&)>& which)
 {
     for (auto h = held_.begin(); h != held_.end();) {
@@ -475,7 +475,7 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
     }
 }
 
-// Calls `f` later, because the service may be in the middle of something.
+// Calls `f` later, because the service may be in the middle of another call.
 template <typename F>
 void osc_clients::later(F f)
 {
@@ -512,7 +512,7 @@ void osc_clients::ask(sender& s, const osc_request& r)
             {{"jsonrpc", "2.0"}, {"id", id}, {"method", r.method}, {"params", net::reply_json(r.params)}}));
 }
 
-// Asks about a stroke that the sender has; waits for its number if that is not known yet.
+// Makes a request about a stroke of the sender; if its number is not known yet, waits for it.
 void osc_clients::ask_about(sender& s, drawn& d, osc_request r)
 {
     if (d.stroke && d.waiting.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// OSC: messages as requests in the words of the protocol, and senders as clients of the service. Knows no
+/// OSC: messages as requests in terms of the protocol, and senders as clients of the service. Knows no
 /// socket: packets come in and go out by functions.
 #pragma once
 
@@ -25,21 +25,23 @@
 namespace tactor::server {
 
 struct osc_request {
-    std::string method; ///< method of the protocol; empty: a button's release, which asks for nothing
+    std::string method; ///< method of the protocol; empty: a button's release, which has no effect
     net::json params = net::json::object();
     std::int32_t number = 0; ///< the sender's number for its stroke; 0: none
-    std::uint16_t port = 0;  ///< port at which a subscriber listens; 0: the port that it sends from
+    std::uint16_t port = 0;  ///< port at which a subscriber listens; 0: the port from which it sends
 };
 
 /// Returns true for messages that a server sends: they are never answered, so that two servers do not talk
 /// for ever.
 bool is_servers_own(std::string_view address);
 
-/// Reads a message. \throws fault_error for addresses that are not known, and for wrong values.
+/// Reads a message.
+/// \throws fault_error for unknown addresses, and for wrong values.
 osc_request read_osc(const net::osc_message& m);
 
 /// Server of all senders. Each address and port is a client while it has strokes, requests without an answer,
-/// messages for later or a subscription. Then it is forgotten. Members are called in the context's thread.
+/// messages for later or a subscription. Otherwise it is forgotten. Members are called in the context's
+/// thread.
 class osc_clients {
 public:
     using endpoint = boost::asio::ip::udp::endpoint;
@@ -47,17 +49,17 @@ public:
     struct outside {
         std::function<void(const endpoint& to, const std::string& packet)> send;
         std::function<std::int64_t()> now_ns;  ///< CLOCK_MONOTONIC
-        std::function<std::int64_t()> unix_ns; ///< the system's clock, which time tags go by
+        std::function<std::int64_t()> unix_ns; ///< system clock, to which time tags refer
     };
 
     /// Most live strokes of a sender that wait for their time.
     static constexpr std::size_t most_held = 64;
     /// Most messages that wait for the number of a stroke that is being planned or begun.
     static constexpr std::size_t most_waiting = 256;
-    /// Most errors sent in any second: forged packets cannot flood the address that they name.
+    /// Most errors sent in any second, so that forged packets cannot flood the address that they name.
     static constexpr std::size_t most_errors = 10;
-    static constexpr double farthest_s = 60.0;     ///< most that a time tag may be ahead
-    static constexpr double subscription_s = 10.0; ///< a subscription must be renewed after it
+    static constexpr double farthest_s = 60.0;     ///< greatest time that a time tag may be ahead
+    static constexpr double subscription_s = 10.0; ///< time after which a subscription must be renewed
 
     osc_clients(boost::asio::io_context& io, service& s, outside o);
     ~osc_clients();
@@ -69,7 +71,7 @@ public:
     std::optional<std::int64_t> next_ns() const;
     /// Begins the strokes, and ends the subscriptions, that are due.
     void act();
-    /// Drops the strokes that have not begun, and says so to their senders.
+    /// Drops the strokes that have not begun, and notifies their senders.
     void drop_held();
     /// Returns the number of known senders.
     std::size_t count() const noexcept { return senders_.size(); }
@@ -80,9 +82,9 @@ private:
         endpoint from;
         osc_request request; ///< a begin, or the end of a subscription
     };
-    using held_messages = std::multimap<std::int64_t, held>; ///< by when they are due
+    using held_messages = std::multimap<std::int64_t, held>; ///< by due time
 
-    /// A request to the service that is not answered yet.
+    /// A request to the service that has not been answered yet.
     struct asked_for {
         std::string method;
         std::int32_t number = 0;
@@ -102,7 +104,8 @@ private:
         std::uint64_t last_id = 0;
         std::map<std::uint64_t, asked_for> asked = {};
         std::map<std::int32_t, drawn> drawn_as = {};
-        std::map<std::uint32_t, std::int32_t> numbers = {}; ///< of strokes that go on, by the service's
+        std::map<std::uint32_t, std::int32_t> numbers =
+            {}; ///< of current strokes: the sender's by the service's
         std::size_t held = 0;
         std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
         std::uint16_t port = 0;                                   ///< destination of the subscription
@@ -144,7 +147,7 @@ private:
     held_messages held_;
     std::set<endpoint> to_check_;        ///< senders that may be idle
     std::deque<std::int64_t> errors_ns_; ///< times of the last errors, the oldest first
-    std::int64_t unix_ns_ = 0;           ///< time of the packet
+    std::int64_t unix_ns_ = 0;           ///< time of the packet by the system clock
     std::int64_t offset_ns_ = 0;         ///< CLOCK_MONOTONIC minus the system's clock
     std::shared_ptr<const int> alive_ = std::make_shared<const int>();
 };

@@ -18,7 +18,8 @@ void planners::add(planner_job j)
         waiting_.push_back(std::move(j));
         return next();
     }
-    // The newer draft has the turn of the older one: else a client that sends many would never have one.
+    // The newer draft takes the turn of the older one. Otherwise a client that sends many would never get a
+    // turn.
     if (*j.draft >= *older->draft)
         std::swap(*older, j);
     j.drop(true);
@@ -33,7 +34,7 @@ void planners::next()
     }
 }
 
-// Runs the next job that is quick, or is not. Its client then has the last turn.
+// Runs the next quick or slow job. Its client then has the last turn.
 bool planners::run_next(bool quick)
 {
     const auto found = std::find_if(waiting_.begin(), waiting_.end(),

@@ -15,21 +15,21 @@ namespace tactor::server {
 
 using client_number = std::uint64_t;
 
-/// Work for a planner. Its functions may share what they work on.
+/// Work for a planner. Its functions may share data.
 struct planner_job {
     client_number client = 0;
     std::function<void()> work; ///< runs on a planner's thread; must not throw
-    std::function<void()> done; ///< follows it in the context's thread
-    /// Replaces `done`, and `work` if it has not begun, when the server ends, its client has gone or a newer
-    /// draft has come.
+    std::function<void()> done; ///< runs after it, in the context's thread
+    /// Runs instead of `done`, and instead of `work` if that has not begun, when the server ends, its client
+    /// has gone or a newer draft has come.
     std::function<void(bool outdated)> drop;
-    std::optional<double> draft = {}; ///< its number
-    bool quick = false;               ///< it passes what is not; each draft does
-    bool outlives = false;            ///< its client may go
+    std::optional<double> draft = {}; ///< number of a draft; none: not a draft
+    bool quick = false;               ///< passes slow jobs; each draft is quick
+    bool outlives = false;            ///< stays when its client goes
 };
 
-/// Two threads. Clients have turns, and each has one draft that waits at most. Only one thread works on what
-/// is not quick, so that drafts and messages do not wait for it. Members are called in the context's thread.
+/// Two planning threads. Clients have turns, and each has at most one waiting draft. Only one thread works on
+/// slow jobs, so that drafts and messages do not wait for them. Members are called in the context's thread.
 class planners {
 public:
     explicit planners(boost::asio::io_context& io) : io_(io) {}
@@ -38,11 +38,11 @@ public:
     planners& operator=(const planners&) = delete;
 
     void add(planner_job j);
-    /// Drops what waits for a client that has gone, but for what outlives it.
+    /// Drops the jobs of a client that has gone, except those that outlive it.
     void forget(client_number of);
-    /// Drops all jobs: the server ends.
+    /// Drops all jobs when the server ends.
     void drop_all();
-    /// Does something aside, such as to destroy what is large.
+    /// Runs `f` on a planner's thread, for example to destroy large objects.
     void aside(std::function<void()> f);
 
 private:
@@ -54,7 +54,7 @@ private:
 
     boost::asio::io_context& io_;
     std::list<planner_job> waiting_; ///< in the order of their clients' turns
-    std::list<planner_job> running_; ///< without `drop` once they are dropped
+    std::list<planner_job> running_; ///< running jobs; without `drop` once they are dropped
     boost::asio::thread_pool pool_{threads};
 };
 

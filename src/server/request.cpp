@@ -31,7 +31,7 @@ using net::reply_json;
 using options::option;
 
 constexpr double rounding_db = 1e-9;
-constexpr double most_excess_db = 100.0; // above it lies no sum of strokes that is planned
+constexpr double most_excess_db = 100.0; // no sum of planned strokes exceeds the level by more
 constexpr double least_excess_db = 0.01;
 constexpr double most_bursts = 250'000.0;
 
@@ -62,7 +62,7 @@ const option& known_option(const std::string& name, options_for which)
     return *o;
 }
 
-// Refuses a waveform in a file: files are the server's own.
+// Refuses a waveform in a file, because clients must not open files of the server.
 void refuse_file(const option& o, const options::value& v)
 {
     const auto* text = std::get_if<std::string>(&v);
@@ -89,7 +89,7 @@ reply_json row_json(const option& o, const options::wishes& owner)
 {
     constexpr std::array kinds{"number", "whole", "choice", "flag", "text"};
     const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
-    const bool has_bounds = is_number && o.range.empty(); // else other values decide
+    const bool has_bounds = is_number && o.range.empty(); // otherwise other values decide
     const auto bound = [&](double x) { return has_bounds ? value_json(o, x) : reply_json(nullptr); };
     const bool in_file = (o.where & options::in_stroke) != 0;
     reply_json choices = reply_json::array();
@@ -159,7 +159,7 @@ void check_duration(const planning& with, double seconds)
                       "draw less, or faster");
 }
 
-// Refuses strokes that last too long, alone or together: planning them takes as long.
+// Refuses strokes that last too long, alone or together: planning takes time in proportion.
 void check_durations(const planning& with, const std::vector<stroke>& strokes)
 {
     detail::start_times times;
@@ -191,8 +191,8 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
     return scale.amplitude(most);
 }
 
-// Returns the bursts by park2016, before they are planned: a short SOA makes very many. None for an SOA that
-// the planner refuses.
+// Returns the number of park2016's bursts before planning, because a short SOA makes very many; 0 for an SOA
+// that the planner refuses.
 double park_bursts(const stroke& k, const plan_options& o)
 {
     if (k.choices.algorithm.value_or(o.algorithm) != algorithm_kind::park2016)
@@ -215,8 +215,9 @@ double highest_level(const planning& with, const options::wishes& s, double carr
     return level;
 }
 
-// Returns how much weaker plans must be so that they can be played, dB; 0: not at all. Notes how much weaker
-// than asked for they are then. \throws error for what no level mends.
+// Returns how much weaker the plans must be to be playable, dB; 0: not at all. Records how much weaker than
+// requested they are then.
+// \throws error if no level helps.
 double find_excess_db(const planning& with, planned& p)
 {
     const auto try_to_play = [&](double weaker_db) {
@@ -251,7 +252,7 @@ options::wishes with_options(options::wishes w, const json& given, options_for w
 {
     if (!given.is_object())
         bad_param("options", "they are not an object", R"(such as {"algorithm":"continuous"})");
-    // A client starts from the owner's values.
+    // A client's options start from the owner's values.
     w.given.reset();
     w.in_file.clear();
     w.place = options::by_client;
@@ -269,7 +270,7 @@ options::wishes settle_options(options::wishes owner, const json& params)
 {
     const bool predicts = read_view(params).kind == view_kind::percept;
     if (!predicts)
-        owner.observer = observer_kind::centroid; // which uses no option
+        owner.observer = observer_kind::centroid; // this observer uses no option
     if (const json* given = member(params, "observer")) {
         const option& o = *options::find("observer");
         const std::string name = text(*given, "observer");
@@ -298,7 +299,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
     const std::string name = start->begin().key();
     const net::json& value = start->begin().value();
     const std::string what = "start." + name;
-    const double most_s = 9e9; // a time of day for centuries
+    const double most_s = 9e9; // centuries ahead
     if (name == "delay_s")
         return {.at_ns = now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
     if (name == "after")
@@ -431,7 +432,7 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
     if (picture)
         p.over_db = std::max(p.over_db, find_excess_db(with, p));
     else
-        p.weakened = score(with.tactors, p.plans, p.render).weakened(); // checks levels and carriers
+        p.weakened = score(with.tactors, p.plans, p.render).weakened(); // also checks levels and carriers
 }
 
 void add_weakening(reply_json& to, const weakening& w)

@@ -55,24 +55,24 @@ constexpr net::page_document studio_page =
 #include "server/studio_page.inc"
     ;
 
-constexpr auto farewell = std::chrono::seconds(2); // until the last messages are sent
-constexpr std::size_t short_visits = 32;           // browsers at once in addition to clients
+constexpr auto farewell = std::chrono::seconds(2); // time to send the last messages
+constexpr std::size_t short_visits = 32; // most simultaneous requests of browsers, in addition to clients
 
-// Returns an error of -32001 that answers no request.
+// Returns an error -32001 that does not answer a request.
 std::string refusal(std::string what, std::string why, std::string hint)
 {
     return net::json_line(net::error_reply(
         nullptr, {net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)}));
 }
 
-// Returns the line for a client for which no descriptor is left.
+// Returns the line for a client for which no descriptor is free.
 std::string no_descriptors()
 {
     return refusal("descriptors", "the server has as many files open as it may", "try again later") + "\n";
 }
 
-// Returns the message to a client that is given up; empty for one that can be told nothing. `admitted`: it
-// owes no token.
+// Returns the message to a client that is given up; empty if none can be sent. `admitted`: it has shown its
+// token, if one is required.
 std::string why_given_up(connection_fault f, const service_limits& l, bool admitted)
 {
     if (f == connection_fault::too_long)
@@ -96,7 +96,8 @@ using udp = asio::ip::udp;
 /// OSC over UDP: a socket for all senders.
 class osc_endpoint {
 public:
-    /// Uses `fd`, a bound socket, which stays its owner's. Accepts only `peers` of other machines.
+    /// Uses `fd`, a bound socket, which the caller keeps. Accepts packets from other machines only if they
+    /// are `peers`.
     osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers)
         : service_(s),
           socket_(io, net::local_address(fd).starts_with('[') ? udp::v6() : udp::v4(), fd),
@@ -135,7 +136,7 @@ public:
     }
 
 private:
-    // Handles one packet, then lets others have their turn.
+    // Handles one packet, then lets other work have its turn.
     void take()
     {
         boost::system::error_code failed;
@@ -146,11 +147,11 @@ private:
         else if (!failed)
             try {
                 clients_.receive({packet_.data(), n}, from);
-            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): datagrams may be lost
             }
         arm();
     }
-    // Notes another machine once.
+    // Logs each refused machine once.
     void refuse(const std::string& from)
     {
         if (refused_.size() < most_refused && refused_.insert(from).second)
@@ -167,12 +168,12 @@ private:
                 return;
             try {
                 clients_.act();
-            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): datagrams may be lost
             }
             arm();
         });
     }
-    // Sends a datagram. It is lost if the system has no space, as it may be on its way.
+    // Sends a datagram. It is lost if the system has no space, as a datagram may be on its way.
     void send(const udp::endpoint& to, const std::string& packet)
     {
         boost::system::error_code lost;
@@ -286,7 +287,7 @@ private:
         c->start(std::move(h));
     }
 
-    // Returns the calls of a connection to the client with a number, which is 0 until a browser becomes one.
+    // Returns the handlers of a connection for the client `*n`, which is 0 until a browser becomes a client.
     net::peer_handlers handlers(const std::shared_ptr<client_number>& n)
     {
         return {.message = [this, n](std::string_view text) { return service_.receive(*n, text); },
@@ -313,13 +314,13 @@ private:
             found->second->finish();
     }
 
-    // Takes a browser. It becomes a client when it opens a WebSocket.
+    // Accepts a browser. It becomes a client when it opens a WebSocket.
     void take_browser(socket_type s)
     {
         const std::string from = net::peer_address(s.native_handle());
         if (visitors_.size() >= limits_.max_clients + short_visits) {
             service_.log_refusal(from, "a browser: all places are taken");
-            return net::turn_away(s.native_handle()); // and the socket closes
+            return net::turn_away(s.native_handle()); // the socket closes at the end of the scope
         }
         const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
         if (!c)
@@ -373,7 +374,7 @@ private:
             io_.stop();
     }
 
-    // Notifies the manager twice in the time that it gives, as long as the audio thread goes on.
+    // Notifies the manager twice in its watchdog's time, as long as the audio thread makes progress.
     void feed_watchdog()
     {
         const char* us = std::getenv("WATCHDOG_USEC");
@@ -420,7 +421,7 @@ constexpr std::array known{
     inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is not a UDP socket with a port"},
 };
 
-// Refuses a socket that everybody may write to: a user who may write to it may draw.
+// Refuses a socket to which everybody may write: a user who may write to it may draw.
 void check_private(const std::string& path)
 {
     struct stat is {};
@@ -468,7 +469,7 @@ void serve(const endpoints& at, service_options o, stream_options s, int signals
         if (!e)
             all.stop();
     });
-    // Called when the device was tried: a client that connects then learns the true state.
+    // Accepts clients only after the first attempt to open the device, so that they learn the true state.
     all.start([&] {
         listening();
         net::notify_manager("READY=1");

@@ -41,17 +41,18 @@ struct endpoints {
     std::string http_address; ///< empty: off
     net::owned_fd osc;
     std::string osc_address; ///< empty: off
-    /// HTTP: other names of this server, and pages that may use it.
+    /// HTTP: other names of this server, and of pages that may use it.
     std::vector<std::string> allow_hosts = {};
     std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines whose packets are accepted
 };
 
-/// Returns the text of token_file without its line end; empty for none. \throws error (bad_input) for a file
-/// that others may read, and for an empty one.
+/// Returns the text of token_file without its line end; empty without such a file.
+/// \throws error (bad_input) for a file that others may read, and for an empty one.
 std::string read_token(const options::serve_settings& s);
 
-/// Binds sockets, or takes inherited ones. \throws error: see net/listen.hpp; bad_input for inherited sockets
-/// that are not what their names say, and for a text that is no prefix.
+/// Binds sockets, or uses inherited ones.
+/// \throws error: see net/listen.hpp; bad_input for inherited sockets of a kind that does not fit their
+///         names, and for a text that is not a prefix.
 endpoints open_endpoints(const endpoint_options& o);
 
 /// Removes the socket that was bound here.

@@ -21,7 +21,7 @@ using net::reply_json;
 
 namespace {
 
-// Returns what `parse` does; refuses a message that needs more memory than there is.
+// Returns the result of `parse`, or a refusal if memory runs out.
 template <typename Parse>
 net::rpc_message within_memory(Parse parse)
 {
@@ -143,7 +143,7 @@ std::size_t service::places(client_kind k) const noexcept
 
 bool service::has_place(client_kind k) const
 {
-    constexpr std::size_t osc_part = 4; // a quarter, beside the places of sockets
+    constexpr std::size_t osc_part = 4; // a quarter, in addition to the places for sockets
     const bool datagram = k == client_kind::datagram;
     const auto taken =
         static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [&](const auto& c) {
@@ -155,7 +155,7 @@ bool service::has_place(client_kind k) const
 client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
     const bool is_local = k == client_kind::local;
-    // A WebSocket has shown its origin, and datagrams come only from accepted peers.
+    // The origin of a WebSocket was checked, and datagrams come only from accepted peers.
     client c{.number = ++last_client_,
              .link = std::move(link),
              .kind = k,
@@ -192,7 +192,7 @@ void service::send(client& c, const reply_json& message)
     c.link->send(net::json_line(message));
 }
 
-// Returns false for a connection of the network that does not begin with hello, like a browser's POST.
+// Returns false for a connection of the network that does not begin with hello, such as a browser's POST.
 bool service::admitted(client& c, const net::rpc_message& m)
 {
     if (c.greeted)
@@ -213,7 +213,7 @@ bool service::receive(client_number number, std::string_view text)
     return receive(number, m, text.size(), mark(*c));
 }
 
-// Parses on a planner's thread. What stops come in the meantime holds for the message.
+// Parses on a planner's thread. Stops that come in the meantime apply to the message.
 void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
 {
     client* c = find(number);
@@ -243,7 +243,7 @@ void service::receive_large(client_number number, std::string text, std::functio
                            if (client* then = find(number))
                                --then->unanswered;
                            const bool go_on = receive(number, l->message, l->bytes, asked);
-                           planners_.aside([l] {}); // which frees it
+                           planners_.aside([l] {}); // the job frees it
                            give_memory_back_when_quiet();
                            done(go_on);
                        },
@@ -251,8 +251,8 @@ void service::receive_large(client_number number, std::string text, std::functio
                    .quick = true});
 }
 
-// Returns the small blocks of large messages to the system. Trimming blocks the heap for all threads, so this
-// waits until no large message has come for a while.
+// Returns the small blocks of large messages to the system. Waits until no large message has come for a
+// while, because trimming blocks the heap for all threads.
 void service::give_memory_back_when_quiet()
 {
     constexpr std::chrono::milliseconds quiet_for{500};
@@ -286,7 +286,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
         c = find(number);
         if (c == nullptr)
             return false;
-        // A stop in the message itself is before what follows it there.
+        // A stop within the message comes before the requests that follow it.
         const answer to{
             all, i, {asked.stops + stops_ - stops, asked.cancels, asked.own + *c->cancels - cancels}};
         if (auto* r = std::get_if<net::rpc_request>(&m.parts[i]); r == nullptr)
@@ -333,15 +333,15 @@ bool service::input_ended(client_number number)
     if (c == nullptr)
         return true;
     c->input_over = true;
-    // Ends strokes that have no end of their own.
+    // Ends strokes that would not end by themselves.
     for (const std::uint32_t n : c->strokes) {
         stroke_record& r = strokes_.at(n);
         if (r.live)
             r.live->end();
         end_rounds(r);
     }
-    // A TCP client that sends no more may still read: it gets its answers, but takes no place. If there are
-    // more of them than places, lets the first one go. Its strokes play on.
+    // A TCP client that sends no more may still read. It gets its answers, but takes no place. If there are
+    // more such clients than places, disconnects the first one. Its strokes play on.
     const auto is_silent = [](const auto& one) { return one.second->input_over; };
     const auto silent = std::count_if(clients_.begin(), clients_.end(), is_silent);
     if (all_sent_ && static_cast<std::size_t>(silent) > options_.limits.max_clients)
@@ -364,7 +364,7 @@ void service::disconnect(client_number number)
     input_ended(number);
     client& c = *found->second;
     c.levels_timer.cancel();
-    const auto kept = std::move(found->second); // its answers look for it, and find nobody
+    const auto kept = std::move(found->second); // its answers look for it, and must not find it
     clients_.erase(found);
     planners_.forget(number);
     gather_levels();

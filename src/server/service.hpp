@@ -37,10 +37,11 @@ namespace tactor::server {
 
 using service_limits = options::serve_limits;
 
-/// Bytes waiting for a client that is behind. It misses levels, touches and stops until it has caught up.
+/// Number of bytes waiting for a client from which on it is behind. It misses levels, touches and stops until
+/// it has caught up.
 inline constexpr std::size_t enough_waiting = 64U << 10;
 
-/// Number of things that may be done at once. It comes back within a second.
+/// Rate limit: the number of actions that are allowed at once. It is full again after a second.
 struct allowance {
     double left = std::numeric_limits<double>::infinity();
     std::int64_t at_ns = 0;
@@ -56,8 +57,8 @@ struct allowance {
     }
 };
 
-/// The way to a client. Its finish() must not call the service back at once, which may be in the middle of
-/// something.
+/// Link to a client. Its finish() must not call the service back at once, which may be in the middle of
+/// another call.
 using client_link = net::peer;
 
 struct service_options {
@@ -66,19 +67,19 @@ struct service_options {
     std::string version = {};
     std::string token = {}; ///< token that TCP clients need; empty: none
     net::reply_json array = {};
-    /// In the tool's command line, for exported files; empty: none.
+    /// Name of the array in the tool's command line, for exported files; empty: none.
     std::string array_name = {}; ///< preset or file
     std::string config_name = {};
-    /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
+    /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond `most_bytes`.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.
     std::function<std::int64_t()> now_ns = {};
-    log_function log = {}; ///< gets a line for each stroke that ends
+    log_function log = {}; ///< receives a line for each stroke that ends
 };
 
-/// Submissions of a planned stroke, each so many frames after the last.
+/// Submissions of a planned stroke, at equal distances in frames.
 struct submissions {
-    std::optional<score> again = {}; ///< score of the next one; none: there is no next one
+    std::optional<score> again = {}; ///< score of the next submission; none: there is no next one
     std::uint64_t frames = 0;
     std::uint64_t offset = 0;                ///< frames from the beginning of its request to its own
     std::uint64_t newest = 0;                ///< number of the newest one, from 0 on
@@ -98,11 +99,11 @@ public:
     service& operator=(const service&) = delete;
 
     void start() { stream_.start(); }
-    /// Returns the most clients in all when one of this kind comes.
+    /// Returns the greatest total of clients at which another one of this kind may come.
     std::size_t places(client_kind k) const noexcept;
-    /// Returns true if there is a place for one more.
+    /// Returns true if there is a place for another client.
     bool has_place(client_kind k) const;
-    /// Returns true if the client is connected and owes no token.
+    /// Returns true if the client is connected and needs no token any more.
     bool is_admitted(client_number number) const;
     /// Adds a client. `from`: its address; a local one needs none.
     client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
@@ -111,11 +112,12 @@ public:
     /// Handles a large message, which another thread parses. Calls `done` with the result in this
     /// thread.
     void receive_large(client_number number, std::string text, std::function<void(bool)> done);
-    /// Ends the live strokes of a client that sends no more. Returns true if no message to it is outstanding.
+    /// Ends the live strokes of a client that sends no more. Returns true if it has been sent all its
+    /// messages.
     bool input_ended(client_number number);
-    /// Sets the handler for the moment when no message to such a client is outstanding any more.
+    /// Sets the handler for the moment when such a client has been sent all its messages.
     void on_all_sent(std::function<void(client_number)> f) { all_sent_ = std::move(f); }
-    /// Removes a client: its live strokes end, the others play on.
+    /// Removes a client: its live strokes end, its other strokes play on.
     void disconnect(client_number number);
     /// Sets the handler for a stop of everything.
     void on_stop(std::function<void()> f) { stopped_ = std::move(f); }
@@ -125,13 +127,13 @@ public:
     stream& output() noexcept { return stream_; }
     /// Returns the result of `status`.
     net::reply_json status_now();
-    /// Returns true if a token is the right one, or none is needed.
+    /// Returns true if a token is right, or if none is needed.
     bool admits(std::string_view token) const;
-    /// Counts and logs a wrong token from an address. Returns the time after which it is to be answered, s:
-    /// the later, the more of them came from there.
+    /// Counts and logs a wrong token from an address. Returns the delay of its answer, s, which grows with
+    /// the number of wrong tokens from there.
     double count_wrong_token(const std::string& from);
-    /// Writes a line of the log about a connection or message that is refused. `from`: its address; empty:
-    /// this computer. Some ten lines a second at most.
+    /// Logs the refusal of a connection or a message. `from`: its address; empty: this computer. Writes at
+    /// most some ten lines a second.
     void log_refusal(const std::string& from, std::string_view why);
 
 private:
@@ -141,26 +143,27 @@ private:
         client_number number;
         std::shared_ptr<client_link> link;
         client_kind kind;
-        std::string from;      ///< address, as others are shown it
-        std::string name = {}; ///< as the client gave it
+        std::string from;      ///< address, as other clients see it
+        std::string name = {}; ///< name that the client chose
         bool greeted = false;  ///< network: its first message was hello
         bool admitted = false; ///< its token was right, or it needs none
         bool input_over = false;
         unsigned wrong_tokens = 0;
-        unsigned refusals_waiting = 0; ///< answers to wrong tokens that are put off
+        unsigned refusals_waiting = 0; ///< delayed answers to wrong tokens
         std::set<std::string> events = {};
         double levels_hz = 30.0;
         boost::asio::steady_timer levels_timer;
-        std::vector<float> levels = {}; ///< by channel, since the last notification
+        std::vector<float> levels = {}; ///< peaks by channel since the last notification
         std::size_t coming = 0;         ///< requests whose strokes have no number yet
-        std::size_t bytes = 0;          ///< of requests that wait to be planned
+        std::size_t bytes = 0;          ///< bytes of requests that wait to be planned
         std::size_t unanswered = 0;
         std::set<std::uint32_t> strokes = {}; ///< strokes that have not ended
         std::size_t live = 0;
-        /// Count of its cancels of all. Its requests share it, and may outlive the client.
+        /// Number of times that the client cancelled all its strokes. Its requests share the count, and may
+        /// outlive the client.
         std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
-        allowance points = {}; ///< that it may send
-        double level_db = 0.0; ///< of its strokes, below what they ask for
+        allowance points = {}; ///< points that it may still send now
+        double level_db = 0.0; ///< level of its strokes, relative to their own
     };
 
     struct stroke_record {
@@ -171,35 +174,35 @@ private:
         std::string state = "waiting";    ///< "armed", "started"
         std::optional<live_stroke> live = {};
         double intensity_max = 1.0;                     ///< value of its points' intensity that means 1
-        double level_db = 0.0;                          ///< as its client set it ...
+        double level_db = 0.0;                          ///< level, as set by its client ...
         double gain_db = 0.0;                           ///< ... and as it was played
         std::optional<point> touched = {};              ///< its last point
-        std::optional<std::int64_t> touch_told_ns = {}; ///< when others were told a point
-        bool released = false;                          ///< its number was sent
+        std::optional<std::int64_t> touch_told_ns = {}; ///< time at which others last got a point
+        bool released = false;                          ///< its number was sent to the client
         const char* ended_by = nullptr;                 ///< reason, once it is cancelled or stopped
         std::vector<reply_json> held = {};
         std::optional<std::int64_t> asked_ns = {};
         std::optional<std::int64_t> started_ns = {};
-        /// Other strokes of an armed file, and their starts after this one, s.
+        /// Other strokes of an armed file, and their starts, s after this one.
         std::vector<std::pair<std::uint32_t, double>> followers = {};
         std::optional<score> submits_later = {}; ///< score of a follower, until it is submitted
         submissions rounds = {};
         std::uint32_t request = 0;                ///< number of the first stroke of its request
         bool next_waits = false;                  ///< the newest submission is a round that has not begun
-        std::uint64_t frames = 0;                 ///< of the submissions that have ended
-        std::string name = {};                    ///< for the log, as the next two
-        double asked_db = 0.0;                    ///< level that it asked for ...
+        std::uint64_t frames = 0;                 ///< frames of the submissions that have ended
+        std::string name = {};                    ///< name for the log, as the next two
+        double asked_db = 0.0;                    ///< requested level ...
         bool is_sl = false;                       ///< ... in dB SL, not dBFS
-        std::optional<stroke_report> broken = {}; ///< end of the first one that did not finish
+        std::optional<stroke_report> broken = {}; ///< report of the first submission that did not finish
     };
 
-    /// The replies to one message.
+    /// Replies to one message.
     struct pending {
         struct place {
             net::json id = nullptr;
             bool wanted = false;
             bool given = false;
-            bool file = false; ///< the reply may be longer than what waits for a client
+            bool file = false; ///< the reply may be longer than the limit of waiting bytes
             std::string reply = {};
         };
 
@@ -210,7 +213,7 @@ private:
         bool batch = false;
         std::vector<place> places = {};
         std::size_t open = 0;
-        std::vector<std::uint32_t> numbers = {}; ///< strokes to release when it is sent
+        std::vector<std::uint32_t> numbers = {}; ///< strokes to release when the replies are sent
     };
 
     /// Counts of stops, and of cancels of all by one client, at the time of a request.
@@ -226,11 +229,11 @@ private:
         std::size_t at = 0;
         stop_mark asked = {};
 
-        /// Gives the result. `strokes`: new ones, whose notifications are sent from now on.
+        /// Sends the result. `strokes`: new ones, whose notifications are sent from now on.
         void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
-        /// Returns the reply with a result that is JSON text already, on one line. Any thread.
+        /// Returns the reply with a result that is already JSON text on one line. Any thread.
         std::string write_reply(std::string_view result) const;
-        /// Gives what write_reply() returned. `file`: it may be longer than what waits for a client.
+        /// Sends a reply of write_reply(). `file`: it may be longer than the limit of waiting bytes.
         void whole_reply(std::string reply, bool file) const;
         void fault(const net::rpc_fault& f) const;
     };
@@ -239,11 +242,11 @@ private:
         answer to;
         std::string method; ///< "play", "plan", "import" or "export"
         std::size_t bytes = 0;
-        net::json params = {};        ///< freed when they are planned or made
-        options::wishes settled = {}; ///< options of play and plan: the owner's, and the request's over them
+        net::json params = {};        ///< freed after planning
+        options::wishes settled = {}; ///< options of play and plan: the owner's, overridden by the request's
         net::json start = "now";
-        double gain_db = 0.0;     ///< of all its strokes
-        std::uint64_t rounds = 1; ///< 0: until they are cancelled
+        double gain_db = 0.0;     ///< gain of all its strokes
+        std::uint64_t rounds = 1; ///< number of rounds; 0: until they are cancelled
         double round_s = 0.0;     ///< least length of a round
         double pause_s = 0.0;     ///< silence after it
         view_choice view = {};
@@ -265,7 +268,7 @@ private:
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);
     void send(client& c, const reply_json& message);
-    /// Returns the options of a stream that calls this service.
+    /// Returns stream options with handlers that call this service.
     stream_options with_handlers(stream_options s);
     void tell_stream(stream_state s, const std::string& reason);
     void check_all_sent(client_number number);
@@ -348,7 +351,7 @@ private:
     void note_busy();
 
     boost::asio::io_context& io_;
-    boost::asio::steady_timer quiet_; ///< runs since the last large message
+    boost::asio::steady_timer quiet_; ///< fires 500 ms after the last large message
     service_options options_;
     layout faces_;
     stream stream_;
@@ -360,13 +363,13 @@ private:
     std::uint64_t stops_ = 0;
     client_number stopped_by_ = 0; ///< client of the last stop
     boost::asio::steady_timer touch_timer_;
-    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
+    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes with a place to be sent
     allowance touches_ = {};
-    allowance refusals_ = {};                               ///< lines of the log
-    std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
+    allowance refusals_ = {};                               ///< lines of refusals that may be logged
+    std::map<std::string, double> wrong_token_wait_s_ = {}; ///< delay of the last answer, by address
     std::list<boost::asio::steady_timer> late_answers_ = {};
-    std::size_t jobs_ = 0;            ///< that wait to be planned or are
-    std::atomic<bool> ending_{false}; ///< a planner looks at it between strokes, too
+    std::size_t jobs_ = 0;            ///< number of jobs that wait for planning or are being planned
+    std::atomic<bool> ending_{false}; ///< a planner also checks it between strokes
     std::function<void(client_number)> all_sent_;
     std::function<void()> stopped_;
     planners planners_{io_};

@@ -17,7 +17,7 @@ namespace {
 
 using net::json;
 
-// Replaces line ends, which are blanks here: JSON escapes them within texts.
+// Replaces line ends by blanks. Within texts JSON has them as escapes.
 std::string on_one_line(std::string json_text)
 {
     std::replace(json_text.begin(), json_text.end(), '\n', ' ');
@@ -66,7 +66,8 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
                    .outlives = job->plays()});
 }
 
-// Reads the parameters of play and plan, except for their strokes. The planner reads those, and all of files.
+// Reads the parameters of play and plan, except for their strokes. The planner reads those, and all
+// parameters of files.
 void service::read_job(plan_job& j) const
 {
     const json& params = j.params;
@@ -163,13 +164,13 @@ void service::job_done(const std::shared_ptr<plan_job>& j)
     once_ready(j->to, "stream", [this, j] {
         const std::shared_ptr<void> after(nullptr, [&](void*) {
             planners_.aside(
-                [made = std::move(j->made), scores = std::move(j->scores)] {}); // which frees them
+                [made = std::move(j->made), scores = std::move(j->scores)] {}); // the job frees them
         });
         submit_all(*j);
     });
 }
 
-// Ends the count of a request that waits no more.
+// Stops counting a request that no longer waits.
 void service::forget(const plan_job& j)
 {
     --jobs_;
@@ -179,7 +180,7 @@ void service::forget(const plan_job& j)
         c->bytes -= j.bytes;
 }
 
-// Ends the count of a request without a stroke.
+// Stops counting a request without a stroke.
 void service::uncount(const plan_job& j)
 {
     forget(j);
@@ -193,8 +194,8 @@ void service::refuse(const plan_job& j, const net::rpc_fault& f)
     j.to.fault(f);
 }
 
-// Returns how often strokes are played by one submission. What has no end is submitted again while the last
-// one sounds, and that must be long enough.
+// Returns the number of rounds that one submission plays. Endless strokes are submitted again while the last
+// submission sounds, which must be long enough for that.
 std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
 {
     constexpr double endless_s = 2.0;

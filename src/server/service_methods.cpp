@@ -29,12 +29,12 @@ using net::json;
 using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
-constexpr double first_wrong_token_s = 0.2; // until one is answered; doubles with each
+constexpr double first_wrong_token_s = 0.2; // delay of the first answer; doubles with each
 constexpr double longest_wrong_token_s = 10.0;
 constexpr std::size_t most_addresses = 1024;
 constexpr std::array<std::string_view, 5> event_names{"strokes", "levels", "stream", "touches", "stops"};
 
-// Compares in a time that does not show how much is right.
+// Compares in constant time, so that the time does not show how much is right.
 bool same_secret(const std::string& a, const std::string& b)
 {
     unsigned char differs = a.size() == b.size() ? 0 : 1;
@@ -43,7 +43,7 @@ bool same_secret(const std::string& a, const std::string& b)
     return differs == 0;
 }
 
-// Returns true for a name without a letter, and for those by which pages call their own reader and the owner.
+// Returns true for a name without a letter, and for names that pages use for their reader and for the owner.
 bool is_taken_name(std::string_view name)
 {
     std::string small = in_small_letters(std::string(name));
@@ -54,8 +54,9 @@ bool is_taken_name(std::string_view name)
     return small.empty() || small == "you" || small == "theowner";
 }
 
-constexpr std::chrono::nanoseconds touch_step{1'000'000'000 / 30}; // for each stroke
-constexpr double most_touches_per_s = 10'000.0;                    // to all clients together
+constexpr std::chrono::nanoseconds touch_step{1'000'000'000 /
+                                              30}; // least time between two notifications of a stroke's touch
+constexpr double most_touches_per_s = 10'000.0;    // most touches to all clients together
 
 } // namespace
 
@@ -92,7 +93,7 @@ void service::hello(client& c, const json& params, const answer& to)
     if (name != nullptr && is_taken_name(name->get<std::string>()))
         bad_param("name", "it is reserved for the pages", "choose another name");
     if (!c.admitted) {
-        // Counts what comes before the answer to a wrong token as wrong: nobody tries in a hurry.
+        // Counts tokens that come before the answer to a wrong one as wrong, so that guessing is slow.
         const bool compares = c.refusals_waiting == 0 && c.wrong_tokens < most_wrong_tokens;
         if (!compares || token == nullptr || !same_secret(token->get<std::string>(), options_.token))
             return refuse_token(c, to, token == nullptr);
@@ -118,7 +119,7 @@ double service::count_wrong_token(const std::string& from)
 void service::refuse_token(client& c, const answer& to, bool is_missing)
 {
     if (++c.wrong_tokens > most_wrong_tokens)
-        return; // it is turned out when the one before is answered
+        return; // the connection is closed when the previous one is answered
     if (is_missing)
         log_refusal(c.from, "no token");
     const auto refuse = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
@@ -138,7 +139,7 @@ void service::refuse_token(client& c, const answer& to, bool is_missing)
     timer->expires_after(std::chrono::nanoseconds(std::llround(count_wrong_token(c.from) * 1e9)));
     timer->async_wait([=, this](const boost::system::error_code& gone) {
         if (gone)
-            return; // the service ends
+            return; // the service is ending
         refuse();
         late_answers_.erase(timer);
     });
@@ -282,7 +283,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     send_levels(c.number);
 }
 
-// Adds the peaks of the one meter to the levels of each client that asked for them.
+// Adds the peaks of the common meter to the levels of each client that subscribed to them.
 void service::gather_levels()
 {
     level_peaks& peaks = stream_.peaks();
@@ -317,13 +318,13 @@ void service::send_levels(client_number number)
         }
         const auto step = std::chrono::nanoseconds(std::llround(1e9 / c->levels_hz));
         const auto next = c->levels_timer.expiry() + step;
-        // A process that stood still does not make up for missed notifications.
+        // Skips notifications that were missed while the process stood still.
         c->levels_timer.expires_at(std::max(next, std::chrono::steady_clock::now()));
         send_levels(number);
     });
 }
 
-// Notifies the subscribers of an event, except for one client. Those that are behind get nothing.
+// Notifies the subscribers of an event, except for one client. Clients that are behind get nothing.
 void service::tell_subscribers(const std::string& event, const reply_json& params, client_number except)
 {
     std::string line;
@@ -369,7 +370,7 @@ void service::tell_touch(const stroke_record& r, bool down)
                      r.owner);
 }
 
-// Tells who stopped everything; 0: the owner.
+// Notifies all clients of the client that stopped everything; 0: the owner.
 void service::tell_stop(client_number by)
 {
     const client* c = find(by);

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Strokes: submission, live ones, level, cancel, stop and fire; their starts and ends: each number has
-// exactly one end.
+// Submission of strokes, live strokes, level, cancel, stop and fire; starts and ends of strokes. Each number
+// has exactly one end.
 #include "server/service.hpp"
 
 #include <algorithm>
@@ -56,7 +55,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     const start_time asked = read_start(&start, now);
     const std::vector<double> starts = p.starts_s();
     const stream_setup& s = out->setup();
-    // Several strokes keep their distances: they count from a time that the first is sure to reach.
+    // Keeps the distances of several strokes: they count from a time that the first stroke can reach for
+    // certain.
     const auto lead_ns = std::int64_t{1'000'000'000} * (s.buffer_frames + 3 * s.period_frames) / s.rate;
     const std::int64_t base_ns = asked.at_ns.value_or(now + lead_ns);
     const bool joins = !asked.after.empty();
@@ -98,7 +98,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         }
         try {
             add_submission(r, out->submit(scores[i], when, level_db(r)));
-        } catch (const error& e) { // the stream may just have ended: the number ends below
+        } catch (const error& e) { // the stream may just have ended; then the number ends below
             r.broken = {.state = state_kind::interrupted, .reason = reason_kind::failed, .why = e.what()};
         }
     }
@@ -117,7 +117,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     return numbers;
 }
 
-// Submits what is repeated for the frame after it, which begins now.
+// Submits the next repetition, for the frame after the one that begins now.
 void service::submit_next(stroke_record& r)
 {
     player* out = find_player(r);
@@ -127,7 +127,7 @@ void service::submit_next(stroke_record& r)
     if (!all.again || r.next_waits || r.open.empty() || r.ended_by != nullptr || out == nullptr)
         return;
     const auto from = out->first_frame(r.open.back());
-    if (!from) // it has ended, and its report comes
+    if (!from) // the stroke has ended, and its report will come
         return;
     try {
         add_submission(r, out->submit(*all.again, start_at::frame(*from + all.frames), level_db(r)));
@@ -153,8 +153,8 @@ std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t
     return numbers;
 }
 
-// Calls `then` for a request of a client that is `coming`, once the stream runs or it is known that it does
-// not; at once if it was stopped since it came. Answers with the fault that it throws, about `source`.
+// Calls `then` for a request of a client that is `coming`, once it is known if the stream runs; at once if
+// the request was stopped since it came. Answers with the fault that `then` throws, about `source`.
 void service::once_ready(const answer& to, const char* source, std::function<void()> then)
 {
     std::function<void()> ready = [this, to, source, then = std::move(then)] {
@@ -168,7 +168,7 @@ void service::once_ready(const answer& to, const char* source, std::function<voi
         note_busy();
     };
     if (stop_reason_since(to) != nullptr)
-        return ready(); // it must not start a device that is closed
+        return ready(); // a stopped request must not start a closed device
     stream_.when_ready(std::move(ready));
 }
 
@@ -188,7 +188,7 @@ void service::drive(client& c, const json& params, const answer& to)
     });
 }
 
-// Returns the reason of strokes that the last stop ended.
+// Returns the end reason of strokes that the last stop ended.
 const char* service::stop_reason(client_number owner) const
 {
     return owner == stopped_by_ ? cancelled_by_client : "stopped by another client";
@@ -199,8 +199,8 @@ service::stop_mark service::mark(const client& c) const
     return {stops_, c.cancels, *c.cancels};
 }
 
-// Returns the reason of a stroke that must not begin because it was stopped since its request came; null: it
-// may.
+// Returns the reason for which a stroke must not begin, if it was stopped since its request came; null: it
+// may begin.
 const char* service::stop_reason_since(const answer& to) const
 {
     const stop_mark& m = to.asked;
@@ -216,7 +216,7 @@ player* service::find_player(const stroke_record& r) const noexcept
     return r.player == stream_.number() ? stream_.current() : nullptr;
 }
 
-// Returns how far below what it asks for a stroke sounds.
+// Returns the level of a stroke relative to its own, dB, 0 or less.
 double service::level_db(const stroke_record& r) noexcept
 {
     return std::max(player::least_level_db, r.level_db + r.gain_db);
@@ -230,7 +230,7 @@ void service::set_level(stroke_record& r, double db)
             p->set_level(id, level_db(r));
 }
 
-// Sets the level of a client's strokes, those to come too, or of one.
+// Sets the level of all present and future strokes of a client, or of one stroke.
 void service::level(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"db", "stroke"});
@@ -251,7 +251,7 @@ void service::cancel(client& c, const json& params, const answer& to)
     if (const json* all = member(params, "all")) {
         if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
             bad_param("all", "it must be true and the only parameter", R"({"stroke":N} or {"all":true})");
-        // Requests that are being planned, or wait for the stream, check the count.
+        // Requests that are being planned, or that wait for the stream, check this count.
         ++*c.cancels;
         for (const std::uint32_t n : std::set(c.strokes))
             if (const auto found = strokes_.find(n); found != strokes_.end())
@@ -267,7 +267,7 @@ void service::cancel(stroke_record& r, const char* why)
 {
     if (r.ended_by == nullptr)
         r.ended_by = why;
-    if (r.submits_later) // it waits for another to begin
+    if (r.submits_later) // it waits for another stroke to begin
         return finish(r, {.state = state_kind::cancelled});
     r.rounds.again.reset();
     if (player* p = find_player(r))
@@ -301,7 +301,7 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
     player* p = stream_.current();
     if (p == nullptr && stream_.is_out())
         no_stream(stream_.reason());
-    // Armed strokes keep a stream going: if it was stopped for want of strokes, there is nothing to start.
+    // Armed strokes keep the stream running. If it is idle, there is nothing to start.
     const std::int64_t now = options_.now_ns();
     std::size_t n = p == nullptr ? 0 : p->fire(rt::to_time(now));
     for (auto& [number, r] : strokes_) {
@@ -309,7 +309,7 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
             continue;
         r.state = "waiting";
         if (r.submits_later)
-            ++n; // it follows another stroke of its file
+            ++n; // counts a stroke that follows another one of its file
         else
             r.asked_ns = now;
     }
@@ -352,7 +352,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     if (!r.open.empty() && r.open.back() == id)
         r.next_waits = false;
     note_beginning(r, id);
-    if (r.state == "started") // it began again after an xrun, or with the next round
+    if (r.state == "started") // began again after an xrun, or with the next round
         return submit_next(r);
     r.state = "started";
     const std::int64_t now = options_.now_ns();
@@ -374,7 +374,7 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
         if (found == strokes_.end() || !found->second.submits_later)
             continue;
         stroke_record& r = found->second;
-        if (r.ended_by != nullptr) { // stopped since the first began
+        if (r.ended_by != nullptr) { // it was stopped since the first began
             finish(r, {.state = state_kind::cancelled});
             continue;
         }
@@ -418,7 +418,7 @@ void service::ended(std::uint64_t player, const stroke_report& report)
     if (!r.open.empty())
         return;
     stroke_report whole = r.broken.value_or(report);
-    if (whole.frames != r.frames) // it began with an earlier round
+    if (whole.frames != r.frames) // the stroke began with an earlier round
         whole.started_ns = r.started_ns;
     whole.frames = r.frames;
     finish(r, whole);
@@ -458,8 +458,8 @@ std::vector<service::stroke_record*> service::find_request(const stroke_record& 
     return found;
 }
 
-// Lets the submission that sounds be the last one for all strokes of a request, or the next one if that comes
-// too soon. Returns the frame of the stream that follows it; nothing if the request has not begun.
+// Makes the sounding submission the last one for all strokes of a request, or the next one if that comes too
+// soon. Returns the frame of the stream that follows it; nothing if the request has not begun.
 std::optional<std::uint64_t> service::end_request(const stroke_record& of)
 {
     const std::vector<stroke_record*> strokes = find_request(of);
@@ -477,7 +477,8 @@ std::optional<std::uint64_t> service::end_request(const stroke_record& of)
     }
     for (stroke_record* r : strokes) {
         r->rounds.last = last;
-        // The player reports a beginning before it sounds, so that more than the newest may be to come.
+        // The player reports a beginning before it sounds, so more than the newest submission may be still to
+        // come.
         for (; r->rounds.newest > last && r->open.size() > 1; --r->rounds.newest) {
             r->next_waits = true;
             end_rounds(*r);
@@ -502,7 +503,7 @@ std::uint64_t service::end_requests(client_number owner, const std::vector<std::
     return end;
 }
 
-// Lets no round begin any more.
+// Prevents further rounds from beginning.
 void service::end_rounds(stroke_record& r)
 {
     r.rounds.again.reset();
@@ -516,7 +517,7 @@ void service::end_rounds(stroke_record& r)
 
 void service::finish(stroke_record& r, const stroke_report& how)
 {
-    // A stroke that did not begin takes its followers with it.
+    // If a stroke did not begin, its followers end, too.
     for (const auto& [number, after_s] : std::exchange(r.followers, {}))
         if (const auto f = strokes_.find(number); f != strokes_.end() && f->second.submits_later) {
             stroke_report same = how;
@@ -549,7 +550,7 @@ void service::finish(stroke_record& r, const stroke_report& how)
     check_all_sent(owner);
 }
 
-// Notes what the log says of a stroke.
+// Records the facts about a stroke for the log.
 void service::note_sound(stroke_record& r, std::string_view name, const render_options& o)
 {
     r.name = name;
@@ -591,7 +592,7 @@ std::string service::reason(const stroke_record& r, const stroke_report& how) co
     }
 }
 
-// Counts strokes alone: a request that waits for the stream wakes it.
+// Counts only strokes, because a request that waits for the stream wakes it itself.
 void service::note_busy()
 {
     stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
@@ -636,7 +637,7 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
     player* out = stream_.current();
     if (ending_ || out == nullptr || out->ended())
         no_stream(ending_ ? "the server ends" : stream_.reason());
-    if (const char* ended_by = stop_reason_since(to)) { // while the stream was being started
+    if (const char* ended_by = stop_reason_since(to)) { // stopped while the stream was being started
         const auto numbers = end_unbegun(c.number, 1, ended_by);
         return to.result({{"stroke", numbers.front()}}, numbers);
     }

@@ -14,7 +14,7 @@
 namespace tactor::server {
 namespace {
 
-// Returns true if the device is there and cannot be used in this way: its error names a field.
+// Returns true if the device exists but cannot be used in this way: its error names a field.
 bool is_misfit(const std::exception_ptr& failure)
 try {
     if (failure != nullptr)
@@ -29,7 +29,7 @@ try {
 float magnitude(const std::byte* p, format_kind f) noexcept
 {
     const std::size_t bytes = f == format_kind::s24_4 ? 3 : sample_bytes(f);
-    std::uint32_t bits = 0; // the sample in the highest ones
+    std::uint32_t bits = 0; // sample in the highest bits
     for (std::size_t i = 0; i < bytes; ++i)
         bits |= static_cast<std::uint32_t>(p[i]) << 8U * (4 - bytes + i);
     if (f == format_kind::float32)
@@ -89,7 +89,7 @@ void level_peaks::raise(std::size_t channel, float peak) noexcept
 {
     std::atomic<float>& p = peaks_[channel];
     float seen = p.load(std::memory_order_relaxed);
-    // The other side only ever takes it to 0: a second try is enough.
+    // The other side only sets it to 0, so a second try is enough.
     while (peak > seen && !p.compare_exchange_weak(seen, peak, std::memory_order_relaxed)) {
     }
 }
@@ -123,7 +123,7 @@ stream::~stream()
     finish();
 }
 
-// The handlers run in the context's thread.
+// Makes the handlers run in the context's thread.
 session::stream_parts stream::make_parts(stream& s, session::stream_parts p)
 {
     p.open = [&s, open = std::move(p.open)] { return metered(open(), s.peaks_); };
@@ -140,11 +140,12 @@ void stream::hand_over(std::function<void()> report)
         boost::asio::post(io_, [this] { pass_report(); });
 }
 
-// Passes one report on, so that clients have their turn before the next: a stop ends thousands of strokes.
+// Passes one report on, so that clients have their turn in between: a stop may end thousands of strokes.
 void stream::pass_report()
 {
     std::unique_lock lock(reports_mutex_);
-    const std::function<void()>& report = reports_.front(); // stays in its place while others are added
+    const std::function<void()>& report =
+        reports_.front(); // the reference stays valid while others are added
     lock.unlock();
     report();
     lock.lock();
@@ -176,7 +177,8 @@ void stream::await_news()
 void stream::go_on()
 {
     again_.cancel();
-    // The end of the first that was waited for must not close the stream before the next begins.
+    // Counts as busy while requests wait: the end of the first stroke must not close the stream before the
+    // next begins.
     set_busy(busy_ || !waiting_.empty());
     if (const auto again = step()) {
         again_.expires_at(*again);
@@ -242,7 +244,7 @@ void stream::busy(bool is)
 
 bool stream::progresses()
 {
-    // A device that is suspended takes no periods until the system wakes.
+    // A suspended device takes no periods until the system wakes.
     return current() == nullptr || !current()->position().running ||
            current()->stats().periods != std::exchange(seen_periods_, current()->stats().periods);
 }

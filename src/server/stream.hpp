@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The service's stream: a worker opens and closes the device, one timer does the rest.
+/// The service's stream: a worker thread opens and closes the device, a timer does the rest.
 #pragma once
 
 #include <atomic>
@@ -28,12 +28,12 @@ namespace tactor::server {
 
 using session::stream_state;
 
-/// Peaks by channel, between the audio thread, which writes them, and the thread that asks.
+/// Peaks by channel, which the audio thread writes and another thread reads.
 class level_peaks {
 public:
     explicit level_peaks(std::size_t channels) : peaks_(channels) {}
 
-    /// Switches the meter on or off: it costs time only while a client asks.
+    /// Switches the meter on or off: it costs time only while a client subscribes to levels.
     void listen(bool on) noexcept { on_.store(on, std::memory_order_relaxed); }
     bool listens() const noexcept { return on_.load(std::memory_order_relaxed); }
     std::size_t size() const noexcept { return peaks_.size(); }
@@ -53,8 +53,8 @@ std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_pea
 
 struct stream_options : session::stream_parts {
     std::function<void(stream_state, const std::string& reason)> changed = {};
-    /// Called instead of all others if the configuration can never be opened. Only after the first attempt:
-    /// later the device may be another one, and is tried again.
+    /// Called instead of all others if the configuration can never be opened, only after the first attempt.
+    /// Later the device may be another one, and is tried again.
     std::function<void(std::exception_ptr)> refused = {};
 };
 
@@ -68,16 +68,16 @@ public:
 
     /// Begins to open the device.
     void start() { go_on(); }
-    /// Calls `ready` once there is a player, or it is known that there is none; at once if that is known.
+    /// Calls `ready` once it is known if there is a player; at once if that is known already.
     void when_ready(std::function<void()> ready);
     level_peaks& peaks() noexcept { return *peaks_; }
-    /// Returns true if the audio thread has gone on since the last call, or has no reason to.
+    /// Returns true if the audio thread has made progress since the last call, or need not.
     bool progresses();
-    /// Notes that strokes go on, or that there are none: the stream stops after a time without.
+    /// Notes that there are strokes, or none: after a time without strokes the stream stops.
     void busy(bool is);
-    /// Cancels all strokes, first those that sound.
+    /// Cancels all strokes, the sounding ones first.
     void cancel_all();
-    /// Fades out and closes; calls `done` when all strokes were reported.
+    /// Fades out and closes; calls `done` when all strokes have been reported.
     void close(std::function<void()> done);
 
 private:
@@ -92,7 +92,7 @@ private:
 
     boost::asio::io_context& io_;
     std::function<void(stream_state, const std::string&)> changed_;
-    std::function<void(std::exception_ptr)> refused_; ///< empty once the device was tried
+    std::function<void(std::exception_ptr)> refused_; ///< empty after the first attempt to open the device
     std::shared_ptr<level_peaks> peaks_;
     std::pair<stream_state, std::string> told_;
     std::deque<std::function<void()>> waiting_;

@@ -34,18 +34,18 @@ constexpr std::pair<std::string_view, view_kind> views[] = {{"full", view_kind::
                                                             {"percept", view_kind::percept},
                                                             {"peaks", view_kind::peaks}};
 
-// Parts of a second, of a millimetre, and of the level asked for, to which numbers are rounded.
+// Numbers are rounded to such parts of a second, of a millimetre, and of the requested level.
 constexpr double time_parts = 1e5;
 constexpr double mm_parts = 1e3;
 constexpr double amplitude_parts = 1e4;
 
 double rounded(double v, double parts)
 {
-    return std::round(v * parts) / parts + 0.0; // which turns -0 into 0
+    return std::round(v * parts) / parts + 0.0; // adding 0 turns -0 into 0
 }
 
-// A member that is a list of numbers, or of rows of numbers, as text with a comma before it. By hand: a
-// document of so many values takes longer than the plan.
+// A member that is a list of numbers, or of rows of numbers, as text with a comma before it. Written
+// directly: a document of so many values takes longer than the plan.
 class number_list {
 public:
     explicit number_list(std::string_view name) : text_(fmt::format(",\"{}\":[", name)) {}
@@ -53,7 +53,7 @@ public:
     void add(double v, double parts)
     {
         if (const double r = rounded(v, parts); r == 0.0)
-            text_ += "0,"; // as most amplitudes are
+            text_ += "0,"; // the value of most amplitudes
         else
             fmt::format_to(std::back_inserter(text_), "{},", r);
     }
@@ -82,19 +82,19 @@ private:
     std::size_t rows_ = 0;
 };
 
-// Most rows of samples, and of felt places, in a view of all strokes together; least time from one to the
-// next of a stroke, s.
+// Most rows of samples, and of felt places, of all strokes together in a view; and least time between two
+// rows of a stroke, s.
 constexpr double most_view_rows = 2000.0;
 constexpr double view_step_s = 0.002;
-constexpr double time_edge = 1e-6; // of a step: a duration so little above is none
+constexpr double time_edge = 1e-6; // part of a step by which a duration may exceed whole steps
 
-// Returns the rows that a curve, or the felt places, of a stroke can have.
+// Returns the number of rows of a stroke's curve or felt places.
 std::size_t count_steps(const plan& p)
 {
     return static_cast<std::size_t>(std::ceil(p.stroke_duration_s / view_step_s - time_edge));
 }
 
-// Shares the rows of a view among strokes that would need so many. A stroke that needs any has at least one.
+// Shares the rows of a view among strokes by their needs. A stroke that needs rows gets at least one.
 std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
 {
     const auto all = static_cast<double>(std::accumulate(needed.begin(), needed.end(), std::size_t{0}));
@@ -114,7 +114,7 @@ std::size_t count_felt(const plan& p, observer_kind by)
                : 2 + static_cast<std::size_t>(p.stroke_duration_s / percept_step_s);
 }
 
-// Adds the felt places of a stroke, thinned out evenly to so many rows. Returns its prediction.
+// Adds the felt places of a stroke, thinned out evenly to `rows`. Returns its prediction.
 detail::prediction add_felt(number_list& felt, const planned& p, const array& a, std::size_t i,
                             std::size_t rows)
 {
@@ -123,7 +123,7 @@ detail::prediction add_felt(number_list& felt, const planned& p, const array& a,
     const std::size_t stride = rows == 0 ? 1 : (count_felt(one, p.observer.kind) + rows - 1) / rows;
     std::size_t count = 0;
     std::optional<point> last;
-    // In silence the last place stays, with intensity 0.
+    // In silence keeps the last place, with intensity 0.
     const auto add = [&](double t_s, const std::optional<point>& place, double intensity) {
         if (place)
             last = place;
@@ -135,7 +135,7 @@ detail::prediction add_felt(number_list& felt, const planned& p, const array& a,
         add(x.t_s, x.felt, x.intensity);
     });
     auto b = one.bursts.begin();
-    for (const tap& t : r.taps) { // one a burst that is not silent
+    for (const tap& t : r.taps) { // one for each burst that is not silent
         b = std::find_if(b, one.bursts.end(), [](const burst& x) { return !x.drives.empty(); });
         add(t.onset_s, t.felt, b++->intensity);
     }
@@ -168,11 +168,11 @@ std::string add_percept(reply_json& head, const planned& p, const array& a)
     return felt.end();
 }
 
-// Adds the width of the bins to `head`. Returns the largest amplitude of each tactor in each of some equal
-// parts of the time: a member with a comma before it.
+// Adds the width of the bins to `head`. Returns a member with a comma before it: the largest amplitude of
+// each tactor in each bin. Bins are equal parts of the time.
 std::string add_peaks(reply_json& head, const planned& p, std::size_t tactors, std::size_t bins)
 {
-    constexpr double edge = 1e-9; // of a bin: nearer is at its edge
+    constexpr double edge = 1e-9; // part of a bin within which a time counts as on its edge
     const double step_s = p.total_s() / static_cast<double>(bins);
     std::vector<double> most(tactors * bins); // a row for each bin
     const auto raise = [&](const burst& b, double first, double last) {
@@ -198,7 +198,7 @@ std::string add_peaks(reply_json& head, const planned& p, std::size_t tactors, s
             one.curve->sample(k, b);
             raise_at(b, starts[i] + one.curve->time_s(k));
         }
-        for (std::size_t bin = 0; bin < bins; ++bin) { // the values at the edges of bins
+        for (std::size_t bin = 0; bin < bins; ++bin) { // adds the values at the edges of bins
             const double t_s = static_cast<double>(bin) * step_s - starts[i];
             if (t_s < 0.0 || t_s > one.curve->duration_s())
                 continue;
@@ -213,8 +213,8 @@ std::string add_peaks(reply_json& head, const planned& p, std::size_t tactors, s
     return peaks.end();
 }
 
-// Adds the strokes to `head`. Returns the bursts of all, list by list, and curves as rows at equal distances.
-// Throws std::bad_alloc for too many.
+// Adds the strokes to `head`. Returns the bursts of all strokes, list by list, and curves as rows at equal
+// distances. Throws std::bad_alloc if they are too many.
 std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, std::size_t most_bytes)
 {
     constexpr std::size_t number_bytes = 2; // least size of a number with the comma after it
@@ -317,7 +317,7 @@ std::string view_text(const planned& p, const array& a, const view_choice& v, st
     if (v.kind == view_kind::percept)
         lists += add_percept(head, p, a);
     std::string text = net::json_line(head);
-    text.pop_back(); // its brace
+    text.pop_back(); // removes the closing brace
     text += lists + '}';
     if (text.size() > most_bytes)
         throw std::bad_alloc();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Views of a plan: small answers for pages that plan while somebody draws.
+/// Views of a plan: small answers for pages that plan while a person draws.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace tactor::server {
 
-/// Part of a plan that is asked for: all, or one for a picture.
+/// Requested part of a plan: all of it, or one for a picture.
 enum class view_kind { full, bursts, percept, peaks };
 
 struct view_choice {
@@ -21,11 +21,12 @@ struct view_choice {
     std::size_t bins = 400; ///< of peaks
 };
 
-/// Reads `view` and `bins`. \throws fault_error naming the parameter.
+/// Reads `view` and `bins`.
+/// \throws fault_error that names the parameter.
 view_choice read_view(const net::json& params);
 
-/// Returns a view as a JSON object on one line. `v` is not `full`. \throws std::bad_alloc beyond so many
-/// bytes.
+/// Returns a view as a JSON object on one line. `v` is not `full`.
+/// \throws std::bad_alloc beyond `most_bytes`.
 std::string view_text(const planned& p, const array& a, const view_choice& v, std::size_t most_bytes);
 
 } // namespace tactor::server
