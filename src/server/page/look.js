@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: MIT
-// Icons, colours of the theme, and what is painted in them on a canvas.
+// SPDX-License-Identifier: MIT Icons, colours of the theme, and painting in them on a canvas.
 import {make} from "../../net/page/dom.js";
 
-// Paths on a grid of 20.
+// Icons as paths on a grid of 20.
 const ICONS = {
   undo: "M8 5 4 9l4 4M4 9h7.5a4 4 0 0 1 0 8H10",
   redo: "M12 5l4 4-4 4M16 9H8.5a4 4 0 0 0 0 8H10",
@@ -53,7 +52,7 @@ export function icon(name) {
     "aria-hidden": "true"}, p);
 }
 
-// Puts icons where the page says data-icon.
+// Puts icons into elements with data-icon.
 export function place_icons(root = document) {
   for (const e of root.querySelectorAll("[data-icon]")) if (!e.querySelector(".icon")) e.prepend(icon(e.dataset.icon));
 }
@@ -80,6 +79,6 @@ export function write(p, text, x, y, tone, {size = 12, weight = 400, align = "ce
   Object.assign(p, {font: font(size, weight), textAlign: align, fillStyle: colour(tone)});
   p.fillText(text, x, y);
 }
-// Begins a path along places, or around one.
+// Begins a path along several places, or around a single one.
 export function plot(p, ...places) { p.beginPath(); for (const q of places) p.lineTo(...q); }
 export function disc(p, [x, y], r) { p.beginPath(); p.arc(x, y, r, 0, 2 * Math.PI); }

@@ -28,7 +28,7 @@ import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
 
-const DONE_MS = 600; // for which the button says that it has stopped
+const DONE_MS = 600; // time for which the button says that it has stopped
 const SWITCHES = ["loop", "speaker", "scrub", "snap", "show_speed", "show_strength"]; // buttons, and parts of the state
 
 // Light and dark.
@@ -40,7 +40,7 @@ function set_theme(theme) {
   changed("theme");
 }
 set_theme(remembered("theme"));
-// A page that is opened again is no louder than it was.
+// A page that is opened again is not louder than before.
 state.level_db = Math.min(0, Math.max(SILENT_DB, Number(remembered("level") ?? 0) || 0));
 on_change(() => remember("level", state.level_db), "level");
 listen(dark, "change", () => { if (!remembered("theme")) set_theme(null); });
@@ -152,7 +152,7 @@ setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) 
 new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
 addEventListener("beforeunload", e => { if (state.unkept.size) e.preventDefault(); });
 addEventListener("pagehide", () => { finish_early(); write_at_once(); });
-// Another density of the screen changes no size of the page: all is drawn again.
+// Draws everything again if the screen's density changes, which leaves the size of the page the same.
 (function watch_density() {
   listen(matchMedia(`(resolution: ${devicePixelRatio}dppx)`), "change", () => { changed("layout"); watch_density(); }, {once: true});
 })();
@@ -167,7 +167,7 @@ open_takes(steps_of_undo, restore_undo);
 connect(own_name());
 changed("takes", "take", "theme", "tool");
 
-// Browsers install the page from a secure address, as of this computer. The key of the link stays in it.
+// Lets browsers install the page from a secure address, such as this computer's. It keeps the token of the link.
 document.head.append(make("link", {rel: "manifest", href: URL.createObjectURL(new Blob([JSON.stringify({
   name: "tactor", short_name: "tactor", start_url: page_link(), display: "standalone", background_color: "#efeeea",
   theme_color: "#f8f7f4", icons: [{src: document.querySelector('link[rel="icon"]').href, sizes: "any", type: "image/svg+xml"}],

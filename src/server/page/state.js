@@ -4,30 +4,30 @@ import {by_id, make} from "../../net/page/dom.js";
 import {total_s} from "./takes/stroke.js";
 
 const TOAST_MS = 2200, UNDO_MS = 6000;
-export const LEAST_PART_S = 0.05; // of a take, or a stroke, that is played from within
+export const LEAST_PART_S = 0.05; // shortest part of a take or a stroke that is played
 
 export const state = {
   // The service.
   hello: null, link: "connecting", stream: {state: "", reason: ""}, status: null, slow: false, asks_token: "",
-  lost_reason: "", retry_at: 0, // of a connection that is tried again
-  fault: null,           // what failed, for the banner
+  lost_reason: "", retry_at: 0, // of a lost connection
+  fault: null,           // failure, for the banner
   stopped: null,         // {name, at}
-  stopping: null,        // a stop that was not answered yet: {since_ms, sent_ms}
-  touches: new Map(),    // of other people, by stroke: {x_mm, y_mm, client, at}
-  dbfs: [],              // of each tactor, as it is driven
-  options: [],           // the rows of the table of options that a client may give
+  stopping: null,        // a stop without an answer: {since_ms, sent_ms}
+  touches: new Map(),    // of other clients, by stroke: {x_mm, y_mm, client, at}
+  dbfs: [],              // level of each tactor
+  options: [],           // rows of the table of options that a client may set
   // Takes.
   takes: [], current: null, bin: [],
-  trial: null,           // strokes to try, like a take; they become one with the first change
-  unkept: new Set(), storage_fault: "", // ids of takes that the browser has not kept, and why
+  trial: null,           // strokes to try, like a take; the first change makes them a take
+  unkept: new Set(), storage_fault: "", // ids of takes that the browser has not stored, and the reason
   elsewhere: new Set(),  // ids of takes that another tab has just changed
-  stroke: 0,             // the one that is edited
-  knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
+  stroke: 0,             // index of the edited stroke
+  knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // level relative to the ceiling
   // Drawing, prediction and play.
   drawing: null,         // {began, before, tracks, kind, append}
   plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
-  outside: [],           // places of strokes that are farthest from the array
-  playing: null,         // {take, began_ms, numbers, felt, waits, again, next, ending} and its round, see service/player.js
+  outside: [],           // farthest place outside the array of each stroke
+  playing: null,         // {take, began_ms, numbers, felt, waits, again, next, ending} and its round; see service/player.js
   at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   compare: null,         // of two methods, see settings/compare.js
@@ -39,14 +39,14 @@ export const now_ms = () => performance.now();
 const listeners = [];
 let pending = new Set();
 
-// Calls f(changes) at most once a frame, with the set of what has changed, if one of the names is in it; without names after each change but
+// Calls f(changes) at most once a frame, with the set of changes, if it contains one of the names. Without names, calls it after each change except
 // "ink", a further point of a drawing.
 export function on_change(f, ...names) { listeners.push({f, names}); }
 export function changed(...what) {
   const is_first = !pending.size;
   what.forEach(w => pending.add(w));
   if (!is_first) return;
-  // A tab that is not shown has no frames.
+  // A hidden tab has no frames.
   if (document.hidden) setTimeout(flush, 0); else requestAnimationFrame(flush);
 }
 function flush() {
@@ -65,28 +65,28 @@ export function say(text, take_back = null) {
   toast_timer = setTimeout(hide, take_back ? UNDO_MS : TOAST_MS);
 }
 
-// Small things that the browser remembers, where it does.
+// Small values that the browser remembers, if it can.
 export const remembered = name => { try { return localStorage.getItem(`tactor-${name}`); } catch { return null; } };
 export function remember(name, v) { try { localStorage.setItem(`tactor-${name}`, v); } catch { /* for this visit only */ } }
 
 export const take_by_id = id => state.takes.find(t => t.id === id) ?? (state.trial?.id === id ? state.trial : null);
 export const current_take = () => take_by_id(state.current);
-// Marks within the take as it is now: a part of it may be gone since they were set.
+// Returns the marks, clamped to the take, which may have become shorter since they were set.
 export function marks() {
   if (state.marks.take !== state.current) return {start_s: 0};
   const {start_s, range} = state.marks, is_within = t => t < total_s(current_take()?.strokes ?? []) - LEAST_PART_S;
   return {...state.marks, start_s: is_within(start_s) ? start_s : 0, range: range && is_within(range[0]) ? range : null};
 }
-// The stroke of the take that is edited.
+// Returns the stroke that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
-// The service plays to the PCM null where nothing names another.
+// Returns true if the service plays to the PCM null, its default.
 export const plays_to_nobody = () => state.hello?.stream.pcm === "null";
-// Returns true where the service has never had a card: it plays nothing then.
+// Returns true if the service has never had a card, so it plays nothing.
 export const is_cardless = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
-// Returns true where nobody feels what plays: the page makes it heard then.
+// Returns true if nobody can feel the strokes, so the page makes them audible.
 export const is_simulated = () => is_cardless() || state.link === "connected" && plays_to_nobody();
-export const SILENT_DB = -60; // the least level that the service knows
+export const SILENT_DB = -60; // lowest level of the service
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
-// Level and gain of the take that is shown, as a factor on what sounds at the ceiling.
+// Returns level and gain of the shown take, as a factor on amplitudes at the ceiling.
 export const take_gain = () => 10 ** ((state.level_db + (current_take()?.gain_db ?? 0)) / 20);

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Names and sentences for people, beside the identifiers of files and options.
+// SPDX-License-Identifier: MIT Names and sentences for people, instead of the identifiers of files and options.
 
 export const ALGORITHMS = {
   "park2016": ["Park 2016", "Short bursts that touch but do not overlap, on three tactors at a time. Follows any path."],
@@ -21,7 +20,7 @@ export const OPTION_NAMES = {
   noise_seed: "Seed of the noise", ramp: "Ramp", envelope: "Envelope", attack: "Attack", release: "Release", sl: "Level above the threshold",
   intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength", level_dbfs: "Level", phase: "One carrier through the stroke",
 };
-// An error as a part of the pitch.
+// Returns a word for an error, as a part of the pitch.
 export const place_word = part => part < 0.06 ? "close to the path" : part < 0.15 ? "near the path" : "far from the path";
 export const even_word = cv => cv < 0.25 ? "even speed" : cv < 0.5 ? "slightly uneven" : "uneven speed";
 export function seconds_text(s) {
@@ -30,16 +29,16 @@ export function seconds_text(s) {
   return `${Math.floor(tenths / 600)} min ${((tenths % 600) / 10).toFixed(1)} s`;
 }
 export const number_text = (v, digits = 1) => v.toFixed(digits).replace("-", "−");
-// An identifier as words: "tactile-brush" becomes "Tactile brush".
+// Writes an identifier as words: "tactile-brush" becomes "Tactile brush".
 export const plain_name = id => (id.charAt(0).toUpperCase() + id.slice(1)).replace(/[-_]/g, " ");
 export const array_name = a => ({"palm-3x3": "Palm, 3 × 3", "palm-2x4": "Palm, 2 × 4"})[a?.name]
   ?? (a?.name ? plain_name(a.name) : "Array");
 
-const SHORT_HINT = 80; // characters; in a file there is room for no longer one
-// Parameters that are what is drawn, or a limit whose text says all.
+const SHORT_HINT = 80; // most characters of a hint; a file has room for no more
+// Parameters that contain strokes, or limits whose text needs no name.
 const OF_PROTOCOL = /^(toml|text|base64|points|params|stream|bursts|max_\w+|export|import)?$/;
 const option_name = name => OPTION_NAMES[name] ?? plain_name(name);
-// Returns a fault, of the service or of this page, in words for people: without the terms of the protocol, and without a full stop.
+// Returns a fault, of the service or of this page, in words for people: without terms of the protocol and without a full stop.
 export function fault_text({message, data}) {
   const {what = "", why, hint, line} = data ?? {}, plain = text => text.replace(/\boptions\.(\w+)/g, (_, name) => `“${option_name(name)}”`);
   if (!why) return message;

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// The body: outlines of its parts, and the place of the array on it, from its file or as it was chosen in this browser.
+// SPDX-License-Identifier: MIT The body: outlines of its parts, and the place of the array on it, from its file or as chosen in this browser.
 import {state, changed, on_change, remember, remembered} from "../state.js";
 
 // Outlines of parts of the body, mm. Hands: length 180 (men 189, women 172) and breadth 80.5 (86, 77), Ibeachu 2011 and Chan; fingers 51,
@@ -12,8 +11,8 @@ const HAND = {...ARM, box: [-88, -180, 176, 240], length: 180, measure: "hand le
   directions: ["fingers", "thumb", "wrist", "little finger"], outline: " AnPP Q=OQP2O;G;A2C; FCQOMLEAGFIBNIQHVIWMYPVT\\YX[[]YY]fU?R=QC O"
       + "BQNNEO8N@M3SMTJWNWPVUSSUlQ`UgQ_Xr PCROPBQ5O?Q.RMVJWOWQVVRRRrPbRjP^ Q^ONY%QBT8Q@T1RNVKWOWRTVSSNoN`OhN\\ P_OO]5QCW>SCV9SNVMVPUSSURS"
       + "KhM]LcM\\KiVnPtNzItDlKfPl QdPQ"};
-export const PARTS = { // the last that fits a site is that of the site
-  other: {find: /./, at: [0, 0], box: [-60, -60, 120, 120], length: 100, directions: []}, // has no outline
+export const PARTS = { // the last entry that fits a site applies
+  other: {find: /./, at: [0, 0], box: [-60, -60, 120, 120], length: 100, directions: []}, // without an outline
   palm: {...HAND, find: /palm|hand/i, at: [1, -56], lines: " >#P=_P_M GD!QQ^S]J!2.\\R\\K Vb!PR_S`M HB!RP]T^L!5']R\\M Tj!PP^S_P JB!QR]U]M!<"
       + "([T[N Ql!QO\\T]R LD!RR[V\\O!C-XT[Q #t!<P_E^D CN!PP_G[D ^x!ONyVbP \\NPO 0)!OQqNadZuQo L\\PP E.!OPtVn]tdge ;8!PP]bqUn[v^"},
   "back of hand": {...HAND, find: /dors|back/i, at: [0, -60], mirrored: true, lines: " <# P2QN[SXMP>MJFOHSLTVb ]H!OQ[UXMR=MJGNFSMSTc ^T"
@@ -31,8 +30,8 @@ export const PARTS = { // the last that fits a site is that of the site
       + "P T\\OR TDON",
     outline: " :} PlPNR3X6U6O;J*J,P;?aEIS4T5[:dHmIkDUFQ>PPlPPPQbUZk\\mWdX[fTkSlEW??PeJtJvOeUjXjRm"},
 };
-// Returns curves as a path. A point is two characters, relative to the one before: from "#" for -45 units to "}" for 45; after a space they
-// count four times and are no point yet. Curves, after "!", are quadratic B-splines; a point that comes twice is a corner.
+// Returns curves as a path. A point has two characters, relative to the point before: from "#" for -45 units to "}" for 45. After a space they
+// count four times and do not make a point yet. Curves, after "!", are quadratic B-splines; a repeated point is a corner.
 function read_path({unit}, text) {
   let at = [0, 0];
   return text.split("!").map(curve => {
@@ -46,12 +45,12 @@ function read_path({unit}, text) {
 }
 for (const p of Object.values(PARTS).slice(1)) Object.assign(p, {outline: read_path(p, p.outline), lines: read_path(p, p.lines)});
 
-// The array's middle is x, y mm from the landmark, as one looks at the part. The body is turned under it, in degrees clockwise.
+// Place of the body: the array's middle is x, y mm from the landmark, seen by a viewer. The body is turned under it, in degrees clockwise.
 export const body = usual_place("palm");
-let place_key = "", in_file = ""; // the place that the file says, where it says a site
+let place_key = "", in_file = ""; // place in the file, if it has a site
 export const part = () => PARTS[body.part];
 export const mirror = p => body.right === !p.mirrored ? -1 : 1;
-export const outline_mm = () => body.length / part().length; // of one in the outline
+export const outline_mm = () => body.length / part().length; // screen scale: mm of the body for each mm of the outline
 export const is_in_file = () => JSON.stringify(body) === in_file;
 export function set_body(values) {
   remember(place_key, JSON.stringify([in_file, Object.assign(body, values)]));
@@ -63,9 +62,9 @@ export function usual_place(name, other_side) {
   return {part: name, right, x: right ? -x : x, y, turn: 0, length};
 }
 const directions = () => { const d = part().directions; return mirror(part()) < 0 ? [d[0], d[3], d[2], d[1]] : d; };
-export const up_word = () => directions()[(Math.round(body.turn / 90) + 4) % 4] ?? state.hello.array.up ?? ""; // on the screen
+export const up_word = () => directions()[(Math.round(body.turn / 90) + 4) % 4] ?? state.hello.array.up ?? ""; // direction that is up on the screen
 export const place_name = () => part().lines ? (part().sides ? body.right ? "right " : "left " : "") + body.part : state.hello.array.site;
-// Puts the outline under a place, at a scale.
+// Returns the matrix that puts the outline under a place, at a scale.
 export const body_matrix = ([x, y], scale) => new DOMMatrix().translate(x, y).rotate(body.turn).scale(scale).translate(-body.x, -body.y)
   .scale(outline_mm() * mirror(part()), outline_mm());
 // Returns the corners of the part, mm, around the middle of an array.

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// The picture of the array at one moment: over ground and strokes, what is driven and felt.
+// SPDX-License-Identifier: MIT The picture of the array at one moment: drives and felt places, over ground and strokes.
 import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {paint, write, disc} from "../look.js";
@@ -11,7 +10,7 @@ import {draw_share, number_place} from "./labels.js";
 
 const pen = by_id("field").getContext("2d");
 
-// The parts of full amplitude of each tactor at this moment: measured, or planned where nothing is driven.
+// Returns each tactor's part of full amplitude at this moment: measured, or planned if nothing is driven.
 function shares() {
   const t = array?.places.length ?? 0, out = new Array(t).fill(0);
   if (state.dbfs.some(v => v !== null)) {
@@ -26,7 +25,7 @@ function shares() {
     Math.min(1, plan.amplitudes[i * t + k] * level));
   return out;
 }
-// Bursts that sound at a moment. Those of one stroke come by onset.
+// Returns the bursts that sound at a moment. Bursts of one stroke come by onset.
 function bursts_at(plan, t) {
   const found = [];
   for (const s of plan.strokes) {
@@ -36,9 +35,9 @@ function bursts_at(plan, t) {
   }
   return found;
 }
-// A moment is shown that was chosen, or at which this take plays; of another take that plays only what is driven.
+// Returns true if the canvas shows a moment: one that was chosen, or at which this take plays. For another take it shows only drives.
 const shows_moment = () => state.at_s > 0 || state.playing?.take === state.current;
-// Places where the strokes are felt at a moment.
+// Returns the places where the strokes are felt at a moment.
 const felt_at = (plan, t) => (plan?.felt_rows ?? []).filter(rows => rows.length && t >= rows[0][0] && t <= rows.at(-1)[0] + 0.1)
   .map(rows => interpolate(rows, t));
 
@@ -81,7 +80,7 @@ function draw_arms(now) {
     paint(pen, {line: "felt", width: 1 + 7 * share, alpha: 0.35});
   });
 }
-// Draws the target of this moment as a ring, and where it is felt as a dot.
+// Draws the target of this moment as a ring, and its felt place as a dot.
 function draw_moment() {
   const take = current_take();
   if (!take || state.drawing || !shows_moment()) return;
@@ -115,7 +114,7 @@ function draw_others() {
     if (who) write(pen, `“${who}”`, c[0], c[1] - 20, "info", {weight: 600});
   }
 }
-// A mark where the end of a stroke lies beyond the array.
+// Draws a mark where the end of a stroke lies beyond the array.
 function draw_outside() {
   for (const w of state.outside) {
     const [x, y] = to_px(w.place).map((v, k) => Math.min((k ? view.height : view.width) - 14, Math.max(14, v)));
@@ -124,6 +123,6 @@ function draw_outside() {
     write(pen, "!", x, y + 4.5, "warn", {size: 13, weight: 700});
   }
 }
-// Returns true while a frame differs from the one before though nothing was changed.
+// Returns true while frames differ although nothing was changed.
 export const moves = () => state.playing !== null || state.drawing !== null || state.touches.size > 0
   || state.dbfs.some(v => v !== null);

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Moves what is felt: diamonds where points of the stroke are felt, at most one each 10 mm. The point moves until it is felt where the
-// diamond was put, or as near as can be.
+// Moves felt points: diamonds where points of the stroke are felt, at most one each 10 mm. The point moves until it is felt at the diamond, or as
+// near as possible.
 import {state, changed, on_change, current_take, current_stroke, say, now_ms} from "../state.js";
 import {plot, paint, disc} from "../look.js";
 import {array, trace_rows, to_px, view} from "./view.js";
@@ -10,11 +9,11 @@ import {number_text} from "../words.js";
 
 const GRASP_PX = 22, WISH_STEPS = 24, LEAST_PART = 0.2;
 const HERE_MM = 0.25, SOLVED_MM = 0.05;
-const APART_MM = 10, APART_PITCHES = 0.5; // diamonds along the path; less on an array with a small pitch
+const APART_MM = 10, APART_PITCHES = 0.5; // diamonds along the path; less if the array's pitch is small
 
-let wish = null; // {knot, at, steps, part, best, before, after, key}: so many steps are left
+let wish = null; // {knot, at, steps, part, best, before, after, key}; `steps`: remaining steps
 
-// Returns the diamonds: numbers of points, and where they are felt. The ends and the chosen point have one.
+// Returns the diamonds: numbers of points, and their felt places. The ends and the chosen point have one.
 export function felt_points(s = current_stroke()) {
   const i = state.stroke, rows = s && state.plan?.felt_rows[i];
   if (!rows?.length) return [];
@@ -29,14 +28,14 @@ function start_wish(knot) {
   state.knot = knot;
   changed("knot");
 }
-// Takes the diamond near a place, if there is one; returns how far it is from there.
+// Grasps the diamond near a place, if there is one; returns its distance.
 export function grasp_felt(mm) {
   const points = felt_points(), near = nearest_knot(points, mm), at = points[near.index];
   if (near.off * view.scale > GRASP_PX) return null;
   start_wish(at.knot);
   return [at.x - mm[0], at.y - mm[1]];
 }
-// Lets the point of the wish be felt at a place.
+// Sets the place at which the grasped point is to be felt.
 export function pull(at) {
   Object.assign(wish, {at, steps: WISH_STEPS, part: 1, best: null});
   changed("knot");
@@ -48,8 +47,8 @@ export function step_felt(knot, [dx, dy]) {
   start_wish(knot);
   pull([felt.x + dx, felt.y + dy]);
 }
-// Adds the error to the point, or less of it, from where it was felt nearest; where that brings it no nearer, for the felt place jumps
-// between triangles, it looks round about. The plan of that comes here again.
+// Adds the error, or a part of it, to the point, from the best position so far. If that does not help, because the felt place jumps between
+// triangles, tries positions round about. Each plan calls this again.
 function solve() {
   if (!(wish?.steps >= 0) || wish.knot !== state.knot || state.plan_of !== current_take()) return;
   const s = current_stroke(), felt = felt_points().find(q => q.knot === wish.knot), k = editable(s).knots[wish.knot];
@@ -67,7 +66,7 @@ function solve() {
 on_change(() => { wish = null; }, "tool");
 on_change(solve, "plan");
 
-// Draws the diamonds, and of a wish its ring, how far it is from there, and the former path.
+// Draws the diamonds, and for a grasped point its target as a ring, the remaining distance, and the former path.
 export function draw_felt_points(p, s) {
   const points = felt_points(s), places = points.map(q => to_px([q.x, q.y])), held = points.findIndex(q => q.knot === wish?.knot);
   if (wish?.at && wish.after === s && held >= 0) {

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Strokes, their bursts, and where they are predicted to be felt.
+// SPDX-License-Identifier: MIT Strokes, their bursts, and their predicted felt places.
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font, paint, disc} from "../look.js";
 import {array, view, layers, start_layer, trace_rows, to_px} from "./view.js";
@@ -12,7 +11,7 @@ export function draw_ink() {
   const p = start_layer(layers.ink);
   if (!array) return;
   const {drawing, stroke} = state, plan = state.compare?.blind ? null : state.plan, strokes = drawing ? drawing.before : current_take()?.strokes ?? [];
-  // Tactors are the ground of the lines, which stay above them.
+  // Draws the tactors below the lines, which stay visible.
   place_labels(drawing ? [] : strokes, drawing || !strokes[stroke] ? [] : mark_places(strokes[stroke]));
   array.places.forEach((q, i) => draw_ring(p, q, i));
   if (plan) draw_felt(p, plan);
@@ -29,7 +28,7 @@ function draw_ring(p, q, i) {
   paint(p, {fill: "skin", line: hot ? "ink" : "ink3", width: hot ? 2.5 : 1.5});
   draw_number(p, i, "ink");
 }
-// Writes a tactor's number: over its disc while it is driven, and where a stroke crosses it in all places over that.
+// Writes a tactor's number: over its disc while it is driven, and above a stroke that covers all free places.
 export function draw_number(p, i, tone) {
   const [x, y, crossed] = number_place(i), r = array.radius * view.scale, number = String(array.tactors[i].tactor ?? i);
   p.font = font(Math.max(11, Math.min(16, r * 0.5)), 600);
@@ -47,7 +46,7 @@ export function draw_number(p, i, tone) {
 function draw_felt(p, plan) {
   const ribbon = {line: "felt", width: Math.min(9, Math.max(5, view.scale * 0.8)), alpha: is_dark() ? 0.5 : 0.45};
   for (const rows of plan.felt_rows) { trace_rows(p, rows); paint(p, ribbon); }
-  // The ribbon of the other method is hollow.
+  // Draws the ribbon of the other method hollow.
   for (const rows of state.compare?.rest?.felt_rows ?? []) {
     trace_rows(p, rows);
     paint(p, {line: "felt", width: 8});
@@ -55,7 +54,7 @@ function draw_felt(p, plan) {
   }
 }
 function draw_stroke(p, s, own) {
-  // The ink lies below a path that has left it.
+  // Draws the ink below a path that differs from it.
   if (own && s.ink && shape(s) !== "drawn") {
     trace_rows(p, s.ink);
     paint(p, {line: "ink", width: 3, alpha: 0.2});

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Places of the labels on the canvas: no label lies on another, on a disc or on a stroke. Where no place is free it stays away.
+// Places of the labels on the canvas: a label never lies on another, on a disc or on a stroke. Without a free place it is left out.
 import {state} from "../state.js";
 import {colour, font} from "../look.js";
 import {array, view, to_px} from "./view.js";
@@ -7,7 +6,7 @@ import {array, view, to_px} from "./view.js";
 const HIGH_PX = 15, SHARE_PX = 40; // "100 %"
 const FAR_PX = [9, 20, 34];
 const ANGLES = 16;
-const POINTS = 200; // of a stroke, that labels avoid
+const POINTS = 200; // number of a stroke's points that labels avoid
 
 let circles = [], boxes = [], share_places = [], number_places = [];
 
@@ -17,7 +16,7 @@ function is_free(b) {
   return b[0] > 2 && b[1] > 2 && b[2] < view.width - 2 && b[3] < view.height - 2
     && !boxes.some(o => labels_touch(o, b)) && !circles.some(c => circle_touches(c, b));
 }
-// Takes the first free place; returns its middle, or null.
+// Takes the first free place and returns its middle, or null.
 function take_place(w, places) {
   for (const [x, y] of places) {
     const b = [x - w / 2, y - HIGH_PX / 2, x + w / 2, y + HIGH_PX / 2];
@@ -31,7 +30,7 @@ function* places_round([x, y], w, first) {
     yield [x + c * (far + w / 2), y + s * (far + HIGH_PX / 2)];
   }
 }
-// Finds places for the number of each tactor, where no stroke and no mark hides it, and for what the tactor may show. `marks`: px.
+// Finds places for each tactor's number, where no stroke or mark hides it, and for its part of amplitude. `marks`: px.
 export function place_labels(strokes, marks = []) {
   const r = array.radius * view.scale, centres = array.places.map(to_px);
   circles = [...centres.map(c => [...c, r + 2]), ...state.outside.map(w => [...to_px(w.place), 13])];
@@ -48,9 +47,9 @@ export function place_labels(strokes, marks = []) {
   number_places = centres.map(([x, y], i) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q, i)) ?? [x, y, true]);
   circles.push(...path);
 }
-// Returns x, y, and true where what is drawn crosses it there, too.
+// Returns x, y, and true if a stroke crosses the number even there.
 export const number_place = i => number_places[i];
-// Draws the names of the ends of a stroke, where there is a place.
+// Draws the names of the ends of a stroke, if there is a place.
 export function draw_labels(p, {timed: rows}) {
   p.font = font(12, 600);
   p.textAlign = "center";

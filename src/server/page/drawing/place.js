@@ -36,7 +36,7 @@ export function show_place(on = !state.placing) {
 on_click("locator", () => show_place(true));
 on_change(() => {
   if (!array) return;
-  // The whole part with the array's square on it.
+  // Draws the whole part, with the array's square on it.
   const {x, y, turn} = body, k = outline_mm(), [w, h] = array.box.size.map(v => (v + 2 * array.radius) / k), {from, measure: name} = part();
   by_id("locator").replaceChildren(part_picture(part(), make("rect", {x: -w / 2, y: -h / 2, width: w, height: h,
     transform: `translate(${x / k} ${y / k}) rotate(${-turn})`})));
@@ -47,9 +47,9 @@ on_change(() => {
   lines.textContent = `[array]\nsite = ${site}\nup = "${up}"\nplace = [${x}, ${y}]\nturn = ${turn}\nbody = ${body.length}`;
   outdated("ground");
 }, "body", "array");
-// Hands and keys on the canvas.
+// Pointers and keys on the canvas.
 let grip = null;
-const over_body = (x, y) => new DOMMatrix().rotate(-body.turn).transformPoint({x, y}); // a distance on the screen
+const over_body = (x, y) => new DOMMatrix().rotate(-body.turn).transformPoint({x, y}); // converts a distance on the screen to one on the body
 const move_from = ({x, y}, dx, dy, d = over_body(dx, dy)) => set_body({x: +(x - d.x).toFixed(1), y: +(y - d.y).toFixed(1)});
 listen(skin, "pointerdown", e => {
   if (!state.placing || e.button > 0 || grip) return;

@@ -12,28 +12,28 @@ import {test_tactor, tell_level, on_stop} from "../service/player.js";
 import {show_tactor} from "../service/device.js";
 import {fault_sentence} from "../words.js";
 
-const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
+const RESTING_MS = 100;    // interval at which a resting finger sends its place, or its stroke would end
 const LEAST_MM = 1;        // a shorter touch is a tap
 const HOLD_MS = 500;
-const LEAST_STEP_MS = 2;   // between points that are sent
-const REACH_PX = 22, LEAST_PX = 3; // of a point, and by which it is dragged
-const LINE_PX = 16, PINCH_PX = 200; // of a wheel: a line, and what zooms by e
+const LEAST_STEP_MS = 2;   // least interval of sent points
+const REACH_PX = 22, LEAST_PX = 3; // reach of a point, and the distance from which on it is dragged
+const LINE_PX = 16, PINCH_PX = 200; // of a wheel: height of a line, and the distance that zooms by e
 const LINE_MM_S = 60;
-const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1; // of a point, by keys
-export const PAUSE_S = 0.1; // between strokes of a take that were drawn, or copied, one after the other
+const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1; // steps of a point that keys move
+export const PAUSE_S = 0.1; // pause between strokes of a take that were drawn, or copied, one after the other
 const NAMES = {mouse: "drawn", touch: "drawn", pen: "drawn with a pen", key: "drawn with keys"};
 
 const field = by_id("field");
 const fingers = new Map();
 
 const to_pixel = e => { const r = field.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
-// A pen's pressure, and where it is lifted the one before; mice and most fingers have none to tell.
+// Returns the strength of a touch: a pen's pressure, or its previous one when it lifts. Mice and most fingers have no pressure.
 const strength = (e, before = 1) => e.pointerType !== "pen" ? 1 : e.pressure > 0 ? Math.min(1, +e.pressure.toFixed(3)) : before;
 const seconds = ms => +(ms / 1000).toFixed(4);
 
 function down(id, px, e) {
   if (!array || state.placing || fingers.has(id)) return;
-  if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
+  if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // this touch is the hand that holds the pen
   if (e.pointerType === "pen") drop_palm();
   const mm = to_mm(...px);
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType, down_ms: e.timeStamp, mode: "tap",
@@ -44,7 +44,7 @@ function down(id, px, e) {
   if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_tactor(tactor, px); } }, HOLD_MS);
   f.tactor = tactor;
   fingers.set(id, f);
-  // Two fingers that begin together on the ground zoom; they draw nothing.
+  // Two fingers that begin together on the ground only zoom.
   f.ground = f.kind === "touch" && outside_mm(array.edge, mm) > array.radius;
   const other = f.ground && [...fingers.values()].find(o => o !== f && o.ground && o.mode === "tap");
   if (other) [f, other].forEach(o => { clearTimeout(o.hold); o.mode = "zoom"; });
@@ -99,11 +99,11 @@ function record(f, mm, at_ms) {
   changed("ink");
 }
 
-// Live strokes: what is drawn is felt.
+// Begins a live stroke, so that the drawing is felt.
 export function begin_live(f) {
   tell_level();
   const o = request_options({options: current_take()?.options}, ceiling_dbfs());
-  if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
+  if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // Tactile Brush must know the end first
   const live = new Set(state.options.filter(r => r.live).map(r => r.name));
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
   call("begin", {options}).then(r => {
@@ -130,13 +130,13 @@ function up(id, cancelled = false) {
   if (f.mode !== "draw") return;
   f.track.down = false;
   const t = seconds(now_ms() - f.track.began), last = f.track.points.at(-1);
-  // A finger that rests before it is lifted stays there as long.
+  // If the finger rests before it lifts, the stroke rests as long.
   if (t > last[0] + 0.05) f.track.points.push([t, last[1], last[2], last[3]]);
   if (f.number !== null) tell("end", {stroke: f.number});
   if ([...fingers.values()].some(o => o.mode === "draw")) return changed("drawing");
   finish();
 }
-// A touch that the system cancels beside others is a palm, and nothing of it stays. A drawing of one finger is kept.
+// Takes back a touch that the system cancels beside others: it was a palm. A drawing of one finger is kept.
 function take_back(id) {
   const f = fingers.get(id), others = [...fingers.values()].some(o => o !== f && o.mode === "draw");
   if (f?.mode !== "draw" || !(others || f.kind === "touch" && state.drawing.kind === "pen")) return up(id, true);
@@ -151,7 +151,7 @@ function drop(f) {
   f.dropped = true;
   if (f.number !== null) tell("cancel", {stroke: f.number});
 }
-// A hand may lie on the array before its pen does: nothing of its touches stays.
+// Drops touches before a pen's: the hand may lie on the array before its pen does.
 function drop_palm() {
   for (const f of [...fingers.values()]) if (f.kind === "touch" && f.mode === "draw") drop(f); else if (f.kind === "touch") up(f.id, true);
   if (!state.drawing || [...fingers.values()].some(f => f.mode === "draw")) return;
@@ -164,7 +164,7 @@ function tap(f) {
   if (f.tactor >= 0) test_tactor(f.tactor);
 }
 
-// Makes a take, or more strokes of this one, of all fingers that touched until none did any more.
+// Makes a take, or more strokes of this one, from all fingers that touched until the last one lifted.
 function finish(take_name) {
   const d = state.drawing;
   state.drawing = null;
@@ -176,7 +176,7 @@ function finish(take_name) {
     const start = k.points[0].slice(1, 3), [, x, y, strong] = k.points.at(-1);
     return k.straight ? straight(start, [x, y], LINE_MM_S, name, k.start_s, strong) : from_drawing(k.points, name, k.start_s);
   });
-  // Further strokes follow the last one, whenever they were drawn; the last burst of that one has ended by then.
+  // Further strokes follow the last one, whenever they were drawn. They start after its last burst has ended.
   const first = Math.min(...strokes.map(s => s.start_s)), from_s = d.append ? total_s(d.before) + PAUSE_S : 0;
   const placed = strokes.map(s => ({...s, start_s: +(s.start_s - first + from_s).toFixed(4)}));
   if (d.append) {
@@ -197,10 +197,10 @@ function lift_all() {
   for (const id of [...fingers.keys()]) up(id, true);
 }
 on_stop(lift_all);
-// Drawing goes on in silence without a connection; its live strokes have ended.
+// Drawing continues silently without a connection, which has ended its live strokes.
 on_lost(() => fingers.forEach(f => { f.number = null; }));
 
-// Points.
+// Editing of points.
 const edited_stroke = () => current_stroke() && editable(current_stroke());
 function grasp(f, mm) {
   const knots = edited_stroke()?.knots ?? [], near = nearest_knot(knots, mm), k = knots[near.index];
@@ -240,7 +240,7 @@ function choose_stroke(mm) {
   return true;
 }
 
-// Listeners. `pointerrawupdate` comes before the frame, where the browser has it.
+// Listeners. `pointerrawupdate` comes before the frame, in browsers that have it.
 let middle = null;
 listen(field, "pointerdown", e => {
   if (e.button === 1) { middle = [e.clientX, e.clientY]; field.setPointerCapture(e.pointerId); e.preventDefault(); return; }
@@ -268,7 +268,7 @@ listen(field, "wheel", e => {
   e.preventDefault();
   if (state.drawing) return;
   const r = field.getBoundingClientRect();
-  // Two fingers on a touchpad come as a wheel, with ctrl where they pinch.
+  // Two fingers on a touchpad arrive as a wheel, with ctrl if they pinch.
   const by = e.deltaMode ? LINE_PX : 1;
   if (e.ctrlKey) zoom(Math.exp(-e.deltaY * by / PINCH_PX), [e.clientX - r.left, e.clientY - r.top]);
   else if (e.shiftKey && !e.deltaX) pan(-e.deltaY * by, 0);
@@ -281,8 +281,8 @@ function set_hot(i) {
   changed("hot");
 }
 
-// Keys within the canvas. With Points and Felt Tab walks the points, arrows move the chosen one, Enter makes it a curve or a corner. Tab
-// after the last one leaves the canvas.
+// Handles keys within the canvas. With the tools Points and Felt, Tab walks through the points, arrows move the chosen one, and Enter makes it a
+// curve or a corner. Tab after the last one leaves the canvas.
 function act_on_point(e) {
   const felt = state.tool === "felt";
   if ((state.tool !== "points" && !felt) || !current_stroke()) return false;
@@ -300,7 +300,7 @@ function act_on_point(e) {
   else move_knot(at, [k.x + step[0] * mm, k.y + step[1] * mm], `key knot ${at}`);
   return true;
 }
-// Otherwise Enter touches and lifts, and arrows move.
+// Touch by keys: Enter touches and lifts, and arrows move.
 let key = null;
 listen(field, "keydown", e => {
   if (!array || state.placing || e.ctrlKey || e.metaKey || e.altKey) return;

@@ -6,7 +6,7 @@ import {hull, box} from "../takes/stroke.js";
 import {body_corners} from "./body.js";
 
 const canvas = by_id("field");
-export const layers = {ground: by_id("ground"), ink: by_id("ink"), moment: canvas}; // each lies over the one before
+export const layers = {ground: by_id("ground"), ink: by_id("ink"), moment: canvas}; // each lies over the previous one
 export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1, scale_bottom: 20, scale_left: 18};
 export const ARROWS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}; // keys
 export const stale = {ground: true, ink: true};
@@ -27,7 +27,7 @@ export const to_mm = (px, py) => [(px - view.left) / view.scale + array.box.midd
   (py - view.top) / view.scale + array.box.middle[1]];
 export const place_in_page = p => { const r = canvas.getBoundingClientRect(), [x, y] = to_px(p); return [r.left + x, r.top + y];
   };
-export const handle_px = () => Math.max(...array.box.size) / 2 * view.scale + 44; // from the middle of the array, where the body is placed
+export const handle_px = () => Math.max(...array.box.size) / 2 * view.scale + 44; // distance of the handle that turns the body from the middle of the array
 export function tactor_at([x, y]) {
   return array ? array.places.findIndex(p => Math.hypot(p[0] - x, p[1] - y) <= array.radius * 1.05) : -1;
 }
@@ -49,7 +49,7 @@ export function zoom_by_two([a, b], [c, d]) {
 }
 export function pan(dx, dy) { view.x += dx; view.y += dy; place(); outdated("ground", "ink"); }
 
-// The free part of the stage: what tools, title and an open sheet leave.
+// Returns the margins of the stage that tools, title and an open sheet cover.
 function insets() {
   const s = getComputedStyle(canvas), v = name => parseFloat(s.getPropertyValue(name)) || 0;
   Object.assign(view, {scale_bottom: v("--scale-bottom") || 20, scale_left: v("--scale-left") || 18});
@@ -78,7 +78,7 @@ export function resize() {
   for (const c of Object.values(layers)) {
     c.width = Math.round(r.width * view.dpr);
     c.height = Math.round(r.height * view.dpr);
-    // A size of its own keeps it from being stretched where the screen changes under a finger.
+    // A fixed size prevents stretching if the screen changes under a finger.
     Object.assign(c.style, {width: `${r.width}px`, height: `${r.height}px`});
   }
   place();
@@ -93,7 +93,7 @@ on_change(() => outdated("ink"), "take", "plan", "drawing", "tool", "knot");
 on_change(() => outdated("ground", "ink"), "theme", "array");
 on_change(what => { if (what.has("layout") || is_outgrown()) resize(); }, "layout", "drawing");
 
-// Begins a layer anew.
+// Clears a layer for drawing.
 export function start_layer(c) {
   const p = c.getContext("2d");
   p.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);

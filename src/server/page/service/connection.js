@@ -3,7 +3,7 @@
 import {state, changed, now_ms} from "../state.js";
 import {fault_sentence} from "../words.js";
 
-export const SLOW_MS = 300; // without an answer
+export const SLOW_MS = 300; // time without an answer that counts as slow
 const POLL_MS = 500;
 const LONGEST_RETRY_MS = 5000;
 const CODE_TOKEN = -32003;
@@ -11,12 +11,12 @@ const CODE_TOKEN = -32003;
 let socket = null, last = 0, retry_ms = 500, retry_timer = 0, token = null, name = "";
 const calls = new Map();
 const hearers = {}, losers = [];
-let offset_s = 0, best_trip_s = Infinity; // of the server's monotonic clock against now_ms()
+let offset_s = 0, best_trip_s = Infinity; // offset of the server's monotonic clock from now_ms(), and its best round trip
 
 export const is_connected = () => state.link === "connected";
-// Handles notifications of a method.
+// Sets the handler for notifications of a method.
 export function on_notification(method, f) { hearers[method] = f; }
-// Handles the loss of the connection.
+// Adds a handler for the loss of the connection.
 export function on_lost(f) { losers.push(f); }
 let greet = () => {};
 export function on_hello(f) { greet = f; }
@@ -44,14 +44,14 @@ export function tell(method, params) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({jsonrpc: "2.0", method, params}));
 }
 
-// The token leaves the address, which others see; the tab keeps it for a reload.
+// Removes the token from the address, which others see. The tab keeps it for a reload.
 function take_token(t) {
   token = t;
   if (location.hash) history.replaceState(null, "", location.pathname);
   try { if (token) sessionStorage.setItem("tactor-token", token); } catch { /* for this visit only */ }
 }
 const remembered_token = () => { try { return sessionStorage.getItem("tactor-token"); } catch { return null; } };
-// The address with the token: who has it can draw.
+// Returns the address with the token, with which anybody can draw.
 export const page_link = () => location.origin + location.pathname + (token ? `#token=${encodeURIComponent(token)}` : "");
 
 export function connect(own_name = name) {
@@ -74,7 +74,7 @@ export function connect_with(new_token) {
 }
 
 const introduce = () => call("hello", {...token && {token}, ...name && {name}});
-// Goes by another name, now and when the connection comes back.
+// Renames the client, now and after each reconnection.
 export function rename_client(new_name) {
   name = new_name;
   return is_connected() ? introduce() : Promise.resolve();
@@ -84,7 +84,7 @@ async function hello() {
     const asked = server_now_s(), h = await introduce();
     set_clock(h.clock.monotonic_s, asked);
     state.hello = h;
-    tell("level", {db: state.level_db}); // before anything plays: a connection begins at the ceiling
+    tell("level", {db: state.level_db}); // sent before anything plays, because a connection begins at the ceiling
     state.asks_token = "";
     await call("subscribe", {events: ["levels", "stream", "strokes", "touches", "stops"], levels_hz: 30});
     await poll();
@@ -144,13 +144,13 @@ async function poll() {
   const s = await call("status");
   state.status = s;
   state.stream = {state: s.stream.state, reason: s.stream.reason};
-  if (s.stream.state !== "lost") state.hello.stream.format ??= ""; // a card has come
+  if (s.stream.state !== "lost") state.hello.stream.format ??= ""; // a card was connected
   changed("status");
 }
 setInterval(() => {
   if (is_connected() && ![...calls.values()].some(c => c.method === "status")) poll().catch(() => {});
 }, POLL_MS);
-// Shows that there is no answer, while that lasts.
+// Shows that answers are missing, while they are.
 setInterval(() => {
   const now = now_ms();
   const slow = [...calls.values()].some(c => (c.method === "status" || c.method === "stop") && now - c.at > SLOW_MS);

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// State of the service: one word and one reason each, a banner where something is to be done.
+// SPDX-License-Identifier: MIT State of the service: a word and a reason for each state, and a banner if the user must act.
 import {state, on_change, changed, ceiling_dbfs, is_cardless, is_simulated, say, remember, remembered, now_ms} from "../state.js";
 import {by_id, make, on_click, listen, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
@@ -31,7 +30,7 @@ function describe() {
 }
 const who = client => { const w = state.status?.who?.find(x => x.client === client); return w ? w.name ? `“${w.name}”` : w.from : ""; };
 
-// Returns what the banner says: [text, tone, details], or null.
+// Returns the contents of the banner, [text, tone, details], or null.
 function warn() {
   const s = state.stream;
   if (unanswered_s()) return [`Stop is ${stop_words()[1]}. Switch the amplifier off.`, "bad", ""];
@@ -90,7 +89,7 @@ listen("token", "submit", e => {
 });
 addEventListener("hashchange", () => { if (state.link !== "connected") connect(); });
 
-// Shows a list of facts, without those that are not known.
+// Shows a list of facts, without unknown ones.
 function list_facts(id, facts) {
   by_id(id).replaceChildren(...Object.entries(facts).flatMap(([name, v]) => (v ?? "") === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))]));
 }
@@ -138,7 +137,7 @@ export function show_tactor(i, at) {
   p.showPopover();
   p.style.inset = `${Math.max(8, Math.min(innerHeight - 220, at[1] + 60))}px auto auto ${Math.max(8, Math.min(innerWidth - 352, at[0]))}px`;
 }
-// A fault is about the take as it was.
+// Clears the fault, which was about the take before the change.
 on_change(() => { state.fault = null; }, "take");
 on_change(show_device, "take", "link", "status", "stream", "array", "playing");
 setInterval(() => { if (state.stopped) show_device(); }, 1000);

@@ -2,15 +2,15 @@
 // A plan on the browser's loudspeakers (Web Audio): each tactor is a place between left and right.
 
 const ENVELOPE_S = 0.005;
-const AHEAD_S = 2.5;      // gains are scheduled so far ahead; browsers call the timers of a hidden page once a second
+const AHEAD_S = 2.5;      // time by which gains are scheduled ahead; browsers call the timers of a hidden page once a second
 const CHECK_S = 0.25;
 const START_S = 0.05;
 const LEVEL = 0.25;       // the largest sample, full scale 1
 const CARRIER_HZ = 250;
-const LOW_HZ = 330, HIGH_HZ = 880; // of places, from below to above
+const LOW_HZ = 330, HIGH_HZ = 880; // frequencies of places, from bottom to top
 
-// Starts a plan of the view "percept" at one of its moments, on an array's tactors, [{x_mm, y_mm}, ...]. With `pitched` each tactor has a
-// frequency by its place. Call it from a user's gesture: browsers allow sound only then. Returns {stop(), set_gain(gain)}; a gain is at most 1.
+// Starts a plan of the view "percept" at a moment, on an array's tactors, [{x_mm, y_mm}, ...]. With `pitched` each tactor has a frequency by its
+// place. Call it from a user's gesture: browsers allow sound only then. Returns {stop(), set_gain(gain)}; a gain is at most 1.
 export function start_loudspeaker(plan, tactors, at_s, {gain = 1, pitched = false, context = new AudioContext()} = {}) {
   const begin = context.currentTime + START_S, offset_s = begin - at_s;
   const master = context.createGain(), largest = Math.max(1, largest_sum(plan));
@@ -43,7 +43,7 @@ export function start_loudspeaker(plan, tactors, at_s, {gain = 1, pitched = fals
   };
 }
 
-// Starts a sound whose tactors are given gains as it goes on: set(gains, level), with a level of at most 1, and stop().
+// Starts a sound whose gains can be changed while it plays. Returns {set(gains, level), stop()}; a level is at most 1.
 export function start_tones(tactors, context = new AudioContext()) {
   const gains = make_places(context, tactors, true, context.destination).map(place => add_gain(context, place));
   const set = (parts, level) => gains.forEach((gain, i) => gain.setTargetAtTime(parts[i] * LEVEL * Math.min(1, level)
@@ -74,15 +74,15 @@ function add_gain(context, {oscillator, panner}) {
   return gain.gain;
 }
 
-// Returns the rows of a stroke that are to be scheduled, and the gains of the tactors on which it plays, [[tactor, gain], ...].
+// Returns the rows of a stroke to schedule, and the gains of the tactors on which it plays, [[tactor, gain], ...].
 function make_stroke(context, plan, {first, count, continuous}, places) {
   const end = first + count, used = new Set();
   for (let i = first * plan.tactors; i < end * plan.tactors; ++i) if (plan.amplitudes[i] > 0) used.add(i % plan.tactors);
-  // A curve with many rows is taken at every few.
+  // Uses only every n-th row of a curve with many rows.
   const every = continuous ? Math.max(1, Math.ceil(ENVELOPE_S / plan.durations[first])) : 1;
   return {first, next: first, end, every, continuous, gains: [...used].map(k => [k, add_gain(context, places[k])])};
 }
-// Lets a burst rise and fall within its duration.
+// Schedules a burst's rise and fall within its duration.
 function schedule_burst(param, amplitude, from, to) {
   if (!amplitude) return;
   const envelope = Math.min(ENVELOPE_S, (to - from) / 2);
@@ -91,18 +91,18 @@ function schedule_burst(param, amplitude, from, to) {
   param.setValueAtTime(amplitude, to - envelope);
   param.linearRampToValueAtTime(0, to);
 }
-// Leads a curve to the middle of a row; it is linear between the middles.
+// Schedules a curve up to the middle of a row; it is linear between the middles.
 function schedule_curve(param, amplitude, from, to, begins, ends) {
   if (begins) param.setValueAtTime(0, from);
   param.linearRampToValueAtTime(amplitude, (from + to) / 2);
   if (ends) param.linearRampToValueAtTime(0, to);
 }
 
-// Returns the largest sum of the tactors' amplitudes at any time: they have one carrier, and may all meet on one side.
+// Returns the largest sum of the tactors' amplitudes at any time: they share a carrier, and may all be on one side.
 function largest_sum({onsets, durations, amplitudes, tactors}) {
   const changes = onsets.flatMap((onset, row) => {
     const sum = amplitudes.slice(row * tactors, (row + 1) * tactors).reduce((a, b) => a + b, 0);
-    return [[onset, sum], [onset + durations[row] - 1e-6, -sum]]; // rows that follow each other do not add up
+    return [[onset, sum], [onset + durations[row] - 1e-6, -sum]]; // consecutive rows do not add up
   });
   changes.sort((a, b) => a[0] - b[0]);
   let now = 0;

@@ -1,15 +1,14 @@
-// SPDX-License-Identifier: MIT
-// Plans for the picture: one question at a time, always about what is newest.
+// SPDX-License-Identifier: MIT Plans for the picture: one request at a time, always for the newest state.
 import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms, take_by_id} from "../state.js";
 import {call, is_connected} from "./connection.js";
 import {make_request, put_take, take_s, with_side, row, value} from "../takes/takes.js";
 import {number_text} from "../words.js";
 import {thin} from "../takes/stroke.js";
 
-const COMPARED_MS = 500;   // quiet before other methods are predicted
-const COMPARED_S = 30;     // the longest take for which they are
+const COMPARED_MS = 500;   // idle time before other methods are predicted
+const COMPARED_S = 30;     // longest take for which they are predicted
 const MOST_KEPT = 200;
-const DRAFTED_POINTS = 2000; // of a drawing; more are thinned before they are sent
+const DRAFTED_POINTS = 2000; // most points of a drawing; more are thinned out before they are sent
 
 let draft = 0, busy = false, owed = false, compare_timer = 0, round = 0;
 
@@ -17,13 +16,13 @@ function request() {
   const take = current_take(), strokes = state.drawing ? draw_so_far(state.drawing) : take?.strokes;
   return strokes?.length ? make_request(with_side({...take, strokes})) : null;
 }
-// Returns the strokes of a drawing that goes on.
+// Returns the strokes of an unfinished drawing.
 function draw_so_far({before, tracks}) {
   return [...before, ...tracks.filter(k => k.points.length > 1).map(k => ({name: "drawing", start_s: k.start_s,
     timed: k.points.length > DRAFTED_POINTS ? thin(k.points, 0.1) : k.points}))];
 }
 
-// Returns the plan of a request, with what is predicted to be felt: rows for each stroke.
+// Returns the plan of a request with the prediction: rows of felt places for each stroke.
 async function predict(what, more = {}) {
   const plan = await call("plan", {...what, view: "percept", ...more, ...state.observer && {observer: state.observer}});
   plan.felt_rows = plan.strokes.map(s => plan.felt.slice(s.felt_first, s.felt_first + s.felt_count));
@@ -54,15 +53,15 @@ async function ask() {
     if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e, plan_of: take});
   }
   changed("plan");
-  // A long drawing is planned less often: its picture must not hold the hand up.
+  // A long drawing is planned less often: its picture must not slow down the hand.
   if (was_drawing) await new Promise(done => setTimeout(done, Math.min(2000, 2 * (now_ms() - began) - 20)));
   busy = false;
   if (owed) return ask();
   if (!was_drawing) compare_timer = setTimeout(compare, COMPARED_MS);
 }
-// Returns by how much the strokes of a plan are too strong, dB.
+// Returns the excess level of a plan's strokes, dB.
 export const excess_db = plan => plan?.warnings.find(w => w.kind === "level")?.over_db ?? 0;
-// Returns which tactor is driven most beyond a limit of its own, in words; empty where none is. `dbfs`: level of full amplitude.
+// Returns, in words, the tactor that exceeds its own limit most; empty if none does. `dbfs`: level of full amplitude.
 export function limit_text({tactors: count, amplitudes}, dbfs) {
   const {array, max_level_dbfs} = state.hello, over = array.tactors.map((t, i) => {
     let most = 0;
@@ -72,11 +71,11 @@ export function limit_text({tactors: count, amplitudes}, dbfs) {
   const worst = over.indexOf(Math.max(...over)), {tactor, max_dbfs} = array.tactors[worst];
   return over[worst] > 0 ? `tactor ${tactor ?? worst} is limited to ${number_text(max_dbfs, max_dbfs % 1 ? 1 : 0)} dBFS` : "";
 }
-// Gives a take the gain with which it can be played; the level of all others stays. Returns false if it is not too strong. What is tried
-// is no take for that.
+// Sets a take's gain so that it can be played; the level of other takes stays. Returns false if it is not too strong, and for strokes that are only
+// tried.
 export async function weaken_take(take) {
   const plan = await call("plan", {...make_request(take, ceiling_dbfs()), view: "peaks", bins: 1}), over_db = excess_db(plan);
-  const now = take_by_id(take.id); // it may have been edited meanwhile
+  const now = take_by_id(take.id); // the take may have been edited meanwhile
   if (!over_db || !now) return false;
   const gain_db = (now.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
   if (now === state.trial) { state.trial = {...now, gain_db}; changed("take"); } else put_take({...now, gain_db});
@@ -85,7 +84,7 @@ export async function weaken_take(take) {
   return true;
 }
 
-// Predicts the other algorithms and phantoms, one after the other, while nothing else is asked for.
+// Predicts the other algorithms and phantoms, one after the other, while there is no other request.
 async function compare() {
   const take = current_take(), own = ++round;
   if (!take?.strokes.length || state.drawing || take_s(take) > COMPARED_S) return;
@@ -113,7 +112,7 @@ export function predicted_key(take, name, v) {
   return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}${state.compare?.on ? JSON.stringify(state.compare.other) : ""}`;
 }
 
-// Without a connection there is no plan, and that of another take, or of this one before a change, is not shown for it.
+// Drops the plan of another take, or of this one before a change: without a connection no new plan replaces it.
 function forget_other_plan() {
   if (is_connected() || !state.plan && !state.plan_fault || !state.drawing && state.plan_of === current_take()) return;
   Object.assign(state, {plan: null, plan_fault: null, plan_of: null});

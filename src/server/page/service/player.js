@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Plays takes, tests tactors, stops, and moves the moment on.
+// SPDX-License-Identifier: MIT Plays takes, tests tactors, stops, and advances the moment.
 import {state, changed, on_change, current_take, take_by_id, is_cardless, is_simulated, ceiling_dbfs, take_gain, marks, say, now_ms, SILENT_DB} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
@@ -8,20 +7,20 @@ import {start_loudspeaker} from "./loudspeaker.js";
 import {fault_text, fault_sentence} from "../words.js";
 
 const TEST_S = 0.5;
-const AHEAD_S = 0.4;      // before the end of a round, when what has changed is asked for
-const TOGETHER_S = 0.3, ROUNDING_S = 0.001; // of sides of a comparison: the time until both begin
-const STOP_AGAIN_MS = 500; // between stops that are not answered
-const ended = new Set(), begun = new Map(); // of strokes: ends and starts that came before the answer that named them
+const AHEAD_S = 0.4;      // time before the end of a round at which changes are requested
+const TOGETHER_S = 0.3, ROUNDING_S = 0.001; // of sides of a comparison: time until both begin
+const STOP_AGAIN_MS = 500; // interval of stops without an answer
+const ended = new Set(), begun = new Map(); // ends and starts of strokes that came before the answer with their numbers
 let speaker = null;
 
-// Returns what Play plays: the range, or all from the start on.
+// Returns the part that Play plays: the range, or everything from the start on.
 const part_to_play = () => { const [from_s, until_s = Infinity] = marks().range ?? [marks().start_s]; return {from_s, until_s}; };
-// Returns a round of a take: a part of it, how long that is, and how long it is silent at first (Infinity: always).
+// Returns a round of a take: a part of it, its length, and the silence at its beginning (Infinity: always).
 const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, take_s(take)) - from_s,
   lead_s: Math.min(...take_part(take, from_s, until_s).strokes.map(s => s.start_s))});
-// Returns what decides how a round of a take sounds.
+// Returns the values that decide how a round of a take sounds.
 const ingredients = (take, {from_s, until_s}) => [take, from_s, until_s, state.compare?.other];
-// Asks for a round. The service repeats it where the page loops: then no round needs the page. `start()` is called once all is known.
+// Requests a round. If the page loops, the service repeats it without the page. Calls `start()` once everything is known.
 async function ask_for(p, round, start) {
   const whole = take_by_id(p.take), take = take_part(whole, round.from_s, round.until_s), made_of = ingredients(whole, round);
   const repeats = state.loop && round.from_s === p.again.from_s && round.until_s === p.again.until_s;
@@ -31,7 +30,7 @@ async function ask_for(p, round, start) {
   Object.assign(round, {made_of, repeats, strokes, firsts: answers.map(r => r.stroke), sound_s, total_s: Math.max(sound_s, round_s), ending: false});
   return strokes;
 }
-// Both sides of a comparison have rounds of one length: a plan may last longer than its stroke.
+// Returns the length of a round for both sides of a comparison: a plan may last longer than its stroke.
 async function longest_s(take, total_s) {
   const plans = await Promise.all([0, 1].map(side => call("plan", {...make_request(with_side(take, side), ceiling_dbfs()), view: "peaks", bins: 1})));
   return Math.max(total_s, ...plans.map(plan => plan.total_s + ROUNDING_S));
@@ -43,7 +42,7 @@ export async function play(part = part_to_play()) {
   if (!take?.strokes.length) return;
   const round = make_round(take, part);
   if (round.lead_s === Infinity) return say("Nothing plays in this part of the time");
-  // Ends the round that plays: copies never add up.
+  // Ends the current round, so that copies never add up.
   end_round(state.playing);
   silence_speaker();
   const felt = is_connected() && !["lost", "muted", "closing"].includes(state.stream.state);
@@ -66,12 +65,11 @@ async function play_unfelt(take, own) {
 }
 on_change(() => speaker?.set_gain(take_gain()), "level");
 
-// Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
-// follows, too.
-// Strokes of both sides of a comparison begin silent; those of one are raised after all were lowered. All ramps take 20 ms, so that
-// the sum is never above the level. `anew`: there are new strokes.
-let sent_level = null; // as the service knows it
-const side_of = new Map(); // by number of a stroke
+// Sends the level to the service, which plays this page's strokes at the ceiling and turns them down. So sounding strokes follow, too. Strokes of
+// both sides of a comparison begin silent; those of one are raised after all were lowered. All ramps take 20 ms, so that the sum is never above the
+// level. `anew`: there are new strokes.
+let sent_level = null; // level that the service has
+const side_of = new Map(); // side by the number of a stroke
 export function tell_level(anew = false) {
   const on = state.compare?.on, now = `${on} ${state.level_db}`;
   if (!is_connected() || !anew && sent_level === now) return;
@@ -86,7 +84,7 @@ async function ask_to_play() {
   const own = state.playing, take = take_by_id(own.take);
   try {
     tell_level();
-    // Without a start the service leaves out the silence before the first stroke.
+    // Without a start, the service skips the silence before the first stroke.
     const strokes = await ask_for(own, own, () => state.compare ? {monotonic_s: server_now_s() + TOGETHER_S} : own.lead_s ? {delay_s: 0} : "now");
     if (state.playing !== own) return cancel_strokes(strokes);
     own.began_ms = now_ms();
@@ -113,7 +111,7 @@ function say_refusal(e) {
   else if (e.code !== 0) { state.fault = fault_sentence(e); changed("link"); }
 }
 
-// Asks for the strokes of a take, or of both sides of a comparison, which begin together. Returns the answers.
+// Requests the strokes of a take, or of both sides of a comparison, which begin together. Returns the answers.
 async function submit(take, how) {
   const sides = state.compare ? [0, 1] : [0];
   const all = await Promise.allSettled(sides.map(side => call("play", {...make_request(with_side(take, side), ceiling_dbfs()), ...how})));
@@ -128,9 +126,9 @@ function hear_starts(strokes) {
   begun.clear();
 }
 
-// A take that was chosen meanwhile is not the one that sounds.
+// Returns true if the sounding take is the one that is shown.
 const is_shown = p => p.take === state.current;
-// Moves the moment on; called once a frame.
+// Advances the moment; called once a frame.
 export function tick() {
   const p = state.playing;
   if (!p) return;
@@ -142,7 +140,7 @@ export function tick() {
   if (p.felt && p.numbers.size && t < p.total_s + 1) return; // the service reports its end
   end_playing();
 }
-// Begins the round that it is time for. Returns true if there is one.
+// Begins the next round if it is time. Returns true if it did.
 function begin_round(p) {
   const now = now_ms(), rounds = Math.floor((now - p.began_ms) / (1000 * p.total_s));
   if (p.next?.began_ms <= now) {
@@ -153,7 +151,7 @@ function begin_round(p) {
   if (round) Object.assign(p, round, {began_ms: p.began_ms + 1000 * p.total_s * (p.repeats ? rounds : 1)});
   return Boolean(round);
 }
-// Ends a loop that is switched off, or whose take is deleted, with its round; asks for what has changed soon before that.
+// Ends a loop at the end of its round if it was switched off or its take was deleted. Requests changes shortly before that.
 function follow_changes(p, t) {
   const take = take_by_id(p.take), loops = state.loop && take;
   if (p.repeats && !p.ending && !loops) {
@@ -170,7 +168,7 @@ function end_round(p) {
   cancel_strokes([...p.numbers]);
   p.numbers.clear();
 }
-// Returns what plays next; the marks may have changed meanwhile.
+// Returns the round that plays next; the marks may have changed meanwhile.
 function round_after(p) {
   const take = take_by_id(p.take);
   if (is_shown(p)) p.again = part_to_play();
@@ -201,7 +199,7 @@ function hear_stroke(s) {
   if (s.state === "started") {
     if (p && !p.numbers.has(s.stroke)) begun.set(s.stroke, s);
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
-      // The service reports a start before it is heard: the round before goes on until its end.
+      // The service reports a start before it is heard: the previous round continues until its end.
       const round = p.waits ? p : p.next?.strokes?.includes(s.stroke) && !p.next.began_ms && p.next;
       if (round) round.began_ms = from_server_ms(s.started_s) - round.lead_s * 1000;
       if (p.waits) { p.waits = false; tick(); hear_it(); }
@@ -215,14 +213,14 @@ function hear_stroke(s) {
       if (s.state === "interrupted") { state.fault = `The stroke was interrupted: ${s.reason}`; changed("link"); }
       end_playing();
     } else if (!p.numbers.size && !p.next) {
-      p.repeats = false; // the silence at the end of the round is to come
+      p.repeats = false; // the silence at the end of the round is still to come
       if (p.total_s !== p.sound_s) return;
       if (is_shown(p)) state.at_s = p.from_s + p.total_s;
       end_playing();
     }
   } else if (state.playing) ended.add(s.stroke);
 }
-// Ends what this page plays.
+// Ends everything that this page plays.
 export function quit_playing() {
   end_round(state.playing);
   end_playing();
@@ -240,7 +238,7 @@ on_notification("stops", s => {
   say(own ? "Stopped, everybody's strokes" : `Stopped by ${state.stopped.name}`);
   changed("link", "playing");
 });
-// They come in a tab that is hidden, too, where there are no frames: a loop goes on.
+// Handles levels in a hidden tab, too, which has no frames: a loop continues.
 on_notification("levels", l => { if (!is_cardless()) state.dbfs = l.dbfs; if (document.hidden) tick(); });
 on_notification("stream", s => { state.stream = s; changed("stream", "link"); });
 on_notification("touches", t => {
@@ -264,10 +262,10 @@ export function stop() {
   return sent;
 }
 const is_unanswered = s => now_ms() - s.since_ms > SLOW_MS;
-// Returns for how long a stop has not been answered, s; 0 where there is none, or it is young.
+// Returns the time for which a stop has had no answer, s; 0 without one, or soon after it.
 export const unanswered_s = () => state.stopping && is_unanswered(state.stopping)
   ? (now_ms() - state.stopping.since_ms) / 1000 : 0;
-// Returns what became of that stop, for the button and for the banner.
+// Returns the state of that stop in words, for the button and the banner.
 export function stop_words() {
   const e = state.stopping.fault;
   return !e ? ["no answer", "sent, but tactor does not answer"] : e.code ? ["refused", `refused: ${fault_text(e)}`]
@@ -293,7 +291,7 @@ export function test_tactor(i) {
     }, e => say(fault_sentence(e)));
 }
 
-// Without a card a tactor that is tried is a sound.
+// Plays a tactor that is tried as a sound if there is no card.
 function tap_tactor(i) {
   state.tapped = i;
   if (i >= 0) setTimeout(tap_tactor, 1000 * TEST_S, -1);
@@ -305,7 +303,7 @@ export function hear_it() {
   if (!state.speaker || !state.plan || !state.hello || state.playing && state.plan_of?.id !== state.playing.take) return;
   speaker = start_loudspeaker(state.plan, state.hello.array.tactors, state.at_s, {gain: take_gain(), pitched: is_simulated()});
 }
-on_change(() => { if (!speaker && state.playing && !state.playing.waits) hear_it(); }, "plan"); // a new take is planned while it begins
+on_change(() => { if (!speaker && state.playing && !state.playing.waits) hear_it(); }, "plan"); // begins when the plan of a new take has come
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {
   if (state.playing) return;

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// A page whose service has no card, or plays to nobody, is heard: each tactor is a sound at its place.
+// Sound for a page whose service has no card or plays to the null device: each tactor is a sound at its place.
 import {state, changed, on_change, is_cardless, is_simulated, ceiling_dbfs, take_gain} from "../state.js";
 import {by_id, on_click, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
@@ -28,12 +27,12 @@ on_change(() => {
   const hint = by_id("hint");
   hint.hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
   if (hinted === hint.hidden && !state.drawing) { hinted = !hint.hidden; changed("layout"); } // the canvas never moves under a finger
-  if (!warned && !by_id("banner").hidden) by_id("p-gallery").hidePopover(); // a new banner is seen
+  if (!warned && !by_id("banner").hidden) by_id("p-gallery").hidePopover(); // a new banner must be visible
   warned = !by_id("banner").hidden;
   hear_touches();
 });
 
-// Sounds where fingers draw, or a tactor is tried. Near tactors have most of the energy of a place.
+// Plays sounds where fingers draw or a tactor is tried. Near tactors have most of the energy of a place.
 function hear_touches() {
   const touches = state.tapped >= 0 ? [[0, ...array.places[state.tapped], 1]]
     : state.drawing?.tracks.filter(k => k.down).map(k => k.points.at(-1)) ?? [];

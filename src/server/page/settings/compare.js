@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
+// SPDX-License-Identifier: MIT Comparison of two methods on one stroke: side 0 is the take itself, side 1 has other options. Both loop in step, and
+// one of them is silent.
 import {state, changed, on_change, current_take, level_dbfs, say} from "../state.js";
 import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {row, value, with_side, request_options} from "../takes/takes.js";
@@ -9,9 +9,9 @@ import {study_files, study_command} from "./study.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
 import {ALGORITHMS, PHANTOMS, number_text} from "../words.js";
 
-const LONGEST_WAIT_S = 0.07; // for the next burst; message and ramp take up to 30 ms more
-const LEAD_S = 0.02;         // before the burst
-const FEW = 20;              // answers
+const LONGEST_WAIT_S = 0.07; // longest wait for the next burst; message and ramp take up to 30 ms more
+const LEAD_S = 0.02;         // time before the burst at which the side changes
+const FEW = 20;              // number of answers that are too few for a result
 
 export function toggle_compare() {
   if (state.compare) return close_compare();
@@ -33,7 +33,7 @@ export function close_compare() {
   changed("take", "layout");
 }
 const plan_of_side = side => side === state.compare.on ? state.plan : state.compare.rest;
-// Lets the side of a card sound from the next burst on, where the other one is at that moment.
+// Switches to the side of a card with the next burst, at the same moment of the stroke.
 export function choose_side(card) {
   const c = state.compare, side = c?.order[card];
   if (!c) return;
@@ -45,11 +45,11 @@ export function choose_side(card) {
     c.on = side;
     c.heard.add(card);
     tell_level();
-    if (!played) play(); else if (state.playing) hear_it(); // or it was stopped meanwhile
+    if (!played) play(); else if (state.playing) hear_it(); // unless it was stopped meanwhile
     changed("take", "plan");
   }, played ? 1000 * Math.min(LONGEST_WAIT_S, next - state.at_s - LEAD_S) : 0);
 }
-// Shuffles the cards, which have to be heard anew.
+// Shuffles the cards, which must be heard again.
 function ask_again() {
   state.compare.order = Math.random() < 0.5 ? [0, 1] : [1, 0];
   state.compare.heard.clear();
@@ -61,7 +61,7 @@ on_click("blind", () => {
   if (c.blind) { c.answers = []; ask_again(); } else c.order = [0, 1];
   changed("take");
 });
-// Returns how often the same side was chosen, and, after a reveal, which.
+// Returns the number of times that each side was chosen; after a reveal, with the sides' names.
 function tally_text({answers, blind}) {
   const n = answers.length, often = [0, 1].map(side => answers.filter(v => v === side).length), most = Math.max(...often);
   const who = blind || often[0] === often[1] ? "the same one" : side_name(often.indexOf(most));
@@ -83,7 +83,7 @@ votes.childNodes.forEach((b, card) => listen(b, "click", () => {
 on_click("compare-end", close_compare);
 on_change(() => {
   const c = state.compare, blind = c?.blind ?? false;
-  // Whoever draws compares no longer.
+  // Drawing ends a comparison.
   if (c && (c.take !== state.current || state.drawing)) return close_compare();
   by_id("compare").hidden = !c;
   document.body.toggleAttribute("data-blind", blind);
@@ -100,7 +100,7 @@ on_change(() => {
   set_text("tally", tally_text(c));
 });
 
-// A study of both. Its definition names the files of the array and the strokes, which lie beside it.
+// Saving a study of both sides. Its definition names the files of the array and the strokes, which lie in the same folder.
 const form = by_id("study"), study_name = () => file_name({name: form.elements.name.value});
 const show_command = () => { set_text("study-command", study_command(study_name(), state.hello?.stream.pcm)); };
 listen("p-study", "beforetoggle", show_command);

@@ -29,7 +29,7 @@ export function slider({label, get, set, least, most, text, done, step = 0, log 
   return {element: make("div", {class: "slider"}, make("label", {for: id}, label), output, input), update, input};
 }
 
-// Lets arrows choose the next of the buttons, or the one before.
+// Lets arrow keys choose the next or the previous button.
 export function choose_by_arrows(group, buttons) {
   listen(group, "keydown", e => {
     const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
@@ -40,7 +40,7 @@ export function choose_by_arrows(group, buttons) {
     next.click();
   });
 }
-// Makes buttons of which one is chosen; arrows move, as in any group of radio buttons.
+// Makes buttons of which one is chosen. Arrow keys move, as in any group of radio buttons.
 export function choice({label, get, set, values, shape = "segments", visible_label = true}) {
   const buttons = values.map(v => make("button", {role: "radio", "data-value": v.value,
     onclick: () => { set(v.value); update(); }}, ...v.content ?? [v.name]));
@@ -66,7 +66,7 @@ export function toggle({label, hint, get, set}) {
   return {element: b, update};
 }
 
-// Makes a field for a text or a number; the service says what is wrong with it.
+// Makes a field for a text or a number; the service checks it.
 export function entry({label, get, set, hint, unit, numeric}) {
   const id = new_id(), input = make("input", {id, type: "text", inputmode: numeric ? "decimal" : null, autocomplete: "off",
     spellcheck: "false", placeholder: hint});

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Small pictures that are computed from the formulas they stand for.
+// SPDX-License-Identifier: MIT Small pictures, computed from the formulas that they explain.
 import {make} from "../../../net/page/dom.js";
 import {is_dark} from "../look.js";
 import {viridis} from "../../../net/page/viridis.js";
@@ -12,7 +11,7 @@ const line = (points, attributes = {}) => make("polyline",
 const base = y => line([[1, y], [55, y]], {stroke: "var(--line2)", "stroke-width": 1});
 const tone = part => viridis(part, is_dark());
 
-// Draws who plays when, on two tactors that a stroke passes.
+// Draws the times at which two tactors play while a stroke passes them.
 export function algorithm_picture(name) {
   const parts = [base(17), base(35)];
   if (name === "park2016") {
@@ -33,10 +32,10 @@ export function algorithm_picture(name) {
   }
   return picture(56, 36, ...parts);
 }
-// Returns the amplitudes, as the plan has them, of a tactor and of each of two others that make an even triangle with it: of a
-// point that moves from the first (part 0) to the middle between the two (part 1).
+// Returns the amplitudes, as in a plan, of three tactors at the corners of an even triangle, for a point that moves from the first tactor (part 0)
+// to the middle between the other two (part 1).
 export function shares_at(name, part) {
-  const height = Math.sqrt(0.75), to_first = part * height, to_other = Math.hypot(0.5, (1 - part) * height); // sides of 1
+  const height = Math.sqrt(0.75), to_first = part * height, to_other = Math.hypot(0.5, (1 - part) * height); // the sides are 1
   const [a, b] = {
     "inverse-distance": () => part === 0 ? [1, 0] : part === 1 ? [0, 0.5] : [1 / to_first, 1 / to_other],
     gaussian: () => [to_first, to_other].map(d => Math.exp(-((d / 0.6) ** 2))),
@@ -60,7 +59,7 @@ export function wave_picture(name) {
   return picture(40, 22, line(Array.from({length: 81}, (_, i) => [2 + i * 0.45,
     11 - 8 * Math.max(-1, Math.min(1, WAVES[name](i / 40)))])));
 }
-// Bursts and the interval between their onsets, to scale.
+// Draws bursts and the interval between their onsets, to scale.
 export function timing_picture(burst_s, soa_s) {
   const scale = 250 / Math.max(3 * soa_s, 2 * soa_s + burst_s), x = i => 22 + i * soa_s * scale;
   const parts = [0, 1, 2].map(i => make("rect", {x: x(i), y: 34, width: Math.max(2, burst_s * scale - 1), height: 24,
@@ -71,7 +70,7 @@ export function timing_picture(burst_s, soa_s) {
   parts.push(word((x(0) + x(1)) / 2, 17, "interval"), word(x(0) + burst_s * scale / 2, 72, "burst"));
   return picture(296, 80, ...parts);
 }
-// Returns the window of a burst that lasts 1, as it is played: at a part of it, with its rise and fall as parts of it.
+// Returns the window of a burst at a part of its duration. Rise and fall are parts of the duration, too.
 export function window_at(part, rise, fall, kind) {
   const shorter = Math.min(1, 1 / (rise + fall)), up = rise * shorter, down = fall * shorter;
   const ramp = v => kind === "linear" ? v : kind === "exponential" ? (1 - Math.exp(-5 * v)) / (1 - Math.exp(-5))
@@ -90,7 +89,7 @@ export function envelope_picture(burst_s, attack_s, release_s, carrier_hz, kind)
   const top = Array.from({length: 121}, (_, i) => [14 + 268 * i / 120, 40 - 30 * at(i / 120)]);
   return picture(296, 80, line(wave, {stroke: "var(--ink3)", "stroke-width": 0.9}), line(top, {"stroke-width": 2}));
 }
-// Values over time, as a line with its area.
+// Draws values over time, as a line with its area.
 export function spark(values, level = null) {
   const most = Math.max(1e-9, ...values, level ?? 0), n = values.length;
   if (n < 2) return picture(140, 26);

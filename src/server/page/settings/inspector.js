@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Settings of the take. Options come from the service's table: those with a control of their own are named in OWN, all
-// others are made from their rows.
+// SPDX-License-Identifier: MIT Settings of the take. Options come from the service's table: options in OWN have special controls, all others are
+// made from their rows.
 import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make, all_of, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
@@ -15,13 +14,13 @@ import {toggle_compare} from "./compare.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
 import {starting_at, choose_clip} from "../time/clips.js";
 
-// Tabs of the headings of the table.
+// Tab for each heading of the table.
 const TABS = {Place: "method", Timing: "timing", Sound: "vibration", Level: "vibration", Stroke: "timing"};
 const IN_METHOD = new Set(["algorithm", "phantom", "faces", "snap", "drop_points", "overlap", "compensate", "sigma_mm",
   "sigma_v_mm_s", "observer"]);
 const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrier", "attack", "release", "phase", "level_dbfs",
-  "duration", "speed", "intensity_max"]); // the last is of recordings: what is drawn here is 0 to 1
-const OF_BRUSH = new Set(["snap", "drop_points", "overlap"]); // no other algorithm knows them
+  "duration", "speed", "intensity_max"]); // the last is for recordings: drawings here have 0 to 1
+const OF_BRUSH = new Set(["snap", "drop_points", "overlap"]); // other algorithms do not have them
 
 const ms = (v, digits = 0) => `${number_text(v * 1000, digits)} ms`;
 const percent = v => `${Math.round(100 * v)} %`;
@@ -36,7 +35,7 @@ function join(tag, attributes, ...parts) {
 }
 const more = (title, open, ...parts) => join("details", {class: "more", open}, make("summary", {}, title), ...parts);
 
-// The panes.
+// Panes.
 const algorithm_choice = () => cards("Algorithm", "algorithm", ALGORITHMS, algorithm_picture, true);
 const phantom_choice = () => cards("Phantom: how tactors share a point", "phantom", PHANTOMS, phantom_picture, false);
 function cards(label, name, words, picture, large) {
@@ -55,7 +54,7 @@ function predicted_text(name, id) {
   return !e ? "" : e.refused ? "not possible" : typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm` : "";
 }
 
-// Controls of the stroke that is edited; they are there while there is one.
+// Controls of the stroke that is edited; hidden without one.
 const stroke = () => editable(current_stroke());
 function pace_controls() {
   const kinds = [["even", "Even"], ["soft", "Soft ends"], ["reach", "Like a reach"], ["drawn", "As drawn"]];
@@ -86,7 +85,7 @@ function pace_controls() {
   return join("section", {}, make("h2", {}, "Stroke"), duration, along, movement,
     more("Speed and strength along the path", false, ...speeds, strong_controls));
 }
-// The strokes of the take: which one is edited, when it starts, and what of it is left.
+// Makes controls of the take's strokes: the edited stroke, its start, and its trimmed part.
 function stroke_controls() {
   const take = current_take(), many = take.strokes.length > 1, number = {unit: "s", numeric: true};
   const which = many && choice({label: "Stroke", get: () => state.stroke, set: choose_clip, values: take.strokes.map((s, i) => ({value: i, name: s.name}))});
@@ -98,7 +97,7 @@ function stroke_controls() {
     many && button("Delete this stroke", "bin", () => edit_take(t => ({strokes: t.strokes.filter((_, i) => i !== state.stroke)}))));
 }
 
-// The timing law, with the take's own values.
+// Timing law, with the take's own values.
 const slope = () => value("slope") ?? 0.32, intercept = () => value("intercept") ?? 0.0473;
 const soa = () => value("soa") ?? 0.07, burst = () => value("burst") ?? (soa() - intercept()) / slope();
 const option_slider = (name, more) => slider({label: OPTION_NAMES[name], set: v => set_option(name, v), done: end_edit, ...more});
@@ -145,7 +144,7 @@ function vibration_controls() {
     option_slider("release", {...envelope, get: release}), phase);
 }
 
-// A control made from a row of the table.
+// Makes a control from a row of the table.
 function from_row(o) {
   const label = OPTION_NAMES[o.name] ?? plain_name(o.name), get = () => value(o.name), set = v => set_option(o.name, v);
   const hint = o.help.charAt(0).toUpperCase() + o.help.slice(1);

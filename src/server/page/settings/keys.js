@@ -22,7 +22,7 @@ const KEYS = [["Space, X, Esc", "stop everything"], ["P, Shift P", "play, play f
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
 const is_field = e => e instanceof HTMLInputElement && ["text", "password"].includes(e.type);
-const is_number = e => is_field(e) && e.inputMode === "decimal"; // it takes no blank, so Space stops there, too
+const is_number = e => is_field(e) && e.inputMode === "decimal"; // a number has no blank, so Space stops there, too
 const is_text = e => is_field(e) && !is_number(e);
 const press = id => () => by_id(id).click();
 export function new_take() {
@@ -37,7 +37,7 @@ const ACTIONS = {
   ",": () => step_burst(-1), ".": () => step_burst(1),
 };
 const STEPS = new Set([",", ".", "+", "=", "-", "[", "]"]);
-// Closes what is open; where nothing is, it stops.
+// Closes an open sheet or popover; stops if none is open.
 function leave(e) {
   const open = document.querySelector(":popover-open");
   if (open) return open.hidePopover();
@@ -46,7 +46,7 @@ function leave(e) {
   if (state.compare) return close_compare();
   if (!e.repeat) stop();
 }
-// Sheets of small windows, and the dock of middle ones.
+// Opens a sheet of a small window, or the dock of a medium one.
 export function open_sheet(name) {
   if (state.drawing) return; // the canvas never changes under a finger
   if (name) state.sheet = name;
@@ -67,7 +67,7 @@ export function choose_tool(tool) {
   Object.assign(state, {tool, knot: -1});
   changed("tool");
 }
-// Space stops, before any control sees it; in silence it presses the button that has the focus.
+// Space stops, before any control gets it. If nothing can sound, it presses the button with the focus.
 const may_sound = () => state.playing || state.stopping || state.drawing || state.speaker && state.tapped >= 0 || state.link !== "connected" || state.slow
   || state.dbfs.some(v => v !== null) || state.status?.strokes.some(k => k.state === "started");
 let stops = false;
@@ -80,7 +80,7 @@ for (const event of ["keydown", "keyup"]) addEventListener(event, e => {
   if (event === "keydown" && !e.repeat) stop();
 }, {capture: true});
 addEventListener("keydown", e => {
-  if (is_field(e.target) && !(is_number(e.target) && e.key === "Escape")) return; // its keys type, and undo what was typed
+  if (is_field(e.target) && !(is_number(e.target) && e.key === "Escape")) return; // keys type, and undo typing, in a field
   if (e.ctrlKey || e.metaKey) {
     const edit = {z: e.shiftKey ? redo : undo, y: redo, d: () => copy_clip()}[e.key.toLowerCase()];
     if (edit) e.preventDefault();
@@ -96,5 +96,5 @@ addEventListener("keydown", e => {
   const f = ACTIONS[e.key.toLowerCase()];
   if (!f) return;
   e.preventDefault();
-  if (!e.repeat || STEPS.has(e.key)) f(e); // a key that is held does one thing once
+  if (!e.repeat || STEPS.has(e.key)) f(e); // a held key acts only once
 });

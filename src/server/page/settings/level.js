@@ -1,13 +1,11 @@
-// SPDX-License-Identifier: MIT
-// The level: a fader on a scale of dBFS, in which the loudest tactor shows, too. Beyond the owner's ceiling it cannot go. What sounds
-// follows.
+// The level: a fader on a scale of dBFS that also shows the loudest tactor. It cannot go beyond the owner's ceiling. Sounding strokes follow it.
 import {state, changed, on_change, ceiling_dbfs, level_dbfs, SILENT_DB} from "../state.js";
 import {by_id, make, listen, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {number_text} from "../words.js";
 
-const LEAST_DB = -30, BEYOND_DB = 6; // of the scale, from the ceiling; its first place is silence
-const MOST_JUMP_DB = 3; // of a tap above the knob; to go further it is dragged
+const LEAST_DB = -30, BEYOND_DB = 6; // ends of the scale, from the ceiling; its first place is silence
+const MOST_JUMP_DB = 3; // largest step of a tap above the knob; dragging goes further
 const STEP_DB = 0.5, KEY_DB = 1, PAGE_DB = 6, TICK_DB = 10;
 const KEYS = {ArrowRight: KEY_DB, ArrowUp: KEY_DB, ArrowLeft: -KEY_DB, ArrowDown: -KEY_DB, PageUp: PAGE_DB, PageDown: -PAGE_DB,
   Home: -Infinity, End: Infinity};
@@ -29,7 +27,7 @@ listen(input, "input", () => {
   tapped = false;
 });
 listen(input, "pointerdown", () => { tapped = true; });
-// The browser tells what a finger has tapped after it is up.
+// The browser reports a finger's tap after it has lifted.
 listen(input, "click", () => { tapped = false; });
 listen(input, "keydown", e => {
   tapped = false;
@@ -57,7 +55,7 @@ by_id("fader").append(make("div", {class: "row"}, make("label", {for: "level-db"
   by_id("loudest")), groove, ticks);
 
 let metered = "";
-// Called once a frame.
+// Draws the meter; called once a frame.
 export function draw_meter() {
   const at = state.dbfs.reduce((best, v, i) => v !== null && (best < 0 || v > state.dbfs[best]) ? i : best, -1);
   const below_db = at < 0 ? -Infinity : Math.min(0, state.dbfs[at] - ceiling_dbfs());

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Prediction of what is felt, and faults of the take in plain words, with what mends them.
+// SPDX-License-Identifier: MIT The prediction, and faults of the take in plain words, with remedies.
 import {state, changed, on_change, current_take, current_stroke, level_dbfs, say} from "../state.js";
 import {by_id, make, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
@@ -13,7 +12,7 @@ import {felt_speeds} from "../time/curves.js";
 
 const OUTSIDE_MM = 0.5;
 
-// Predictions.
+// Shows the prediction.
 function show_predicted() {
   const {rms_error_mm: mm, speed_cv: cv} = state.plan?.errors ?? {}, is_known = typeof mm === "number";
   by_id("pill").hidden = !is_known;
@@ -38,7 +37,7 @@ function errors_over_time() {
 const felt_speed = () => felt_speeds(state.plan).flat().map(r => r[1]);
 const mean_speed = () => { const s = current_stroke(); return s ? length_mm(s.timed) / duration_s(s) : null; };
 
-// Warnings in plain words, with what mends them.
+// Shows warnings in plain words, with remedies.
 function show_warnings() {
   const found = [], take = current_take();
   if (state.plan_fault) found.push({text: fault_sentence(state.plan_fault), buttons: mending(state.plan_fault)});

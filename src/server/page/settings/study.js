@@ -1,14 +1,14 @@
-// SPDX-License-Identifier: MIT
-// The definition of a study of two methods, for `tactor experiment`, and what it names: the array, and each stroke of the take.
+// SPDX-License-Identifier: MIT The definition of a study of two methods, for `tactor experiment`, and its files: the array, and each stroke of the
+// take.
 import {quoted, strokes_toml} from "../takes/stroke.js";
 
-// Options of a method, see tactor-experiment(5), without the level in dBFS, which is the experiment's.
+// Options of a method, see tactor-experiment(5), without the level in dBFS, which the experiment sets.
 const OF_METHOD = ("algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap compensate sigma_mm " +
   "sigma_v_mm_s carrier waveform am noise_seed phase ramp envelope attack release intensity_scale stevens_exponent sl").split(" ");
 
 const table = (head, values) => `${head}\n${Object.entries(values).filter(([, v]) => v !== undefined && v !== null)
   .map(([k, v]) => `${k} = ${typeof v === "string" ? quoted(v) : JSON.stringify(v)}\n`).join("")}`;
-// Returns names of which no two are the same.
+// Makes names distinct.
 function distinct(names) {
   const used = new Set();
   return names.map(name => {
@@ -18,7 +18,7 @@ function distinct(names) {
     return own;
   });
 }
-// Names methods by what differs.
+// Names methods by their differences.
 function method_names(methods) {
   const by = ["algorithm", "phantom"].find(name => methods[0][name] !== methods[1][name]);
   return methods.map((m, i) => by ? m[by] : ["first", "second"][i]);
@@ -36,6 +36,6 @@ export function study_files({name, question, trials, level_dbfs, array, take, me
     table("[[run]]", {name: "choice", task: "choose", attribute: "preference", simulate_as: "uniformity", question, trials})];
   return [[`${name}-array`, array_toml(array)], ...strokes.map((s, i) => [files[i], strokes_toml([{...s, start_s: 0}])]), [name, definition.join("\n")]];
 }
-// Returns the command that runs it, on the device of the service.
+// Returns the command that runs the study on the device of the service.
 export const study_command = (name, pcm) => `tactor experiment ${name}.toml --participant P01 -o results${!pcm || pcm === "null" ? ""
   : ` -D ${/^[\w.:,=@%+/-]+$/.test(pcm) ? pcm : `'${pcm.replace(/'/g, "'\\''")}'`}`}`;

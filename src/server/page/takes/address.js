@@ -1,3 +1,3 @@
-// SPDX-License-Identifier: MIT
-// Returns true where a host's name, as a page's address has it, is each machine's own: another machine opens itself by it.
+// SPDX-License-Identifier: MIT Returns true if a host's name, as in a page's address, means each machine itself, such as localhost: other machines
+// cannot use it.
 export const is_own_host = name => /^((.+\.)?localhost\.?|127\..*|0\.0\.0\.0|\[::1?\]|\[::ffff:7f.*)$/.test(name);

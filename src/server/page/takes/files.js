@@ -15,7 +15,7 @@ const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv"
   ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
     ["json", "Plan", "all bursts as numbers"]];
 
-// A figure of this page has its stroke, as TOML in base64, in one part or two, in a comment at its end.
+// Comment at the end of a figure of this page, with its stroke as TOML in base64, in one part or two.
 const STROKE_OF_FIGURE = /<!-- stroke of this figure: ([\w+/= ]+) -->\s*$/;
 const FIGURE = "it is a figure; open the stroke that it shows (.toml)";
 
@@ -31,10 +31,10 @@ async function open_files(files) {
   }
   if (message) say(message);
   if (!faults.length) return;
-  // After the changes of the takes, which end the faults of former ones.
+  // Shows the faults after the takes have changed, because a change clears older faults.
   requestAnimationFrame(() => { state.fault = faults.join(" "); changed("link"); });
 }
-// Asks which value of a recording that goes above 1 means the level, as --intensity-max does.
+// Asks for the value of intensity 1 if a recording goes above 1, as --intensity-max.
 async function import_file(file, source) {
   try { return await call("import", source); } catch (e) {
     if (!e.data?.hint?.includes("intensity_max")) throw e;
@@ -43,7 +43,7 @@ async function import_file(file, source) {
     return call("import", {...source, intensity_max: most});
   }
 }
-// Returns the name and the text of the strokes of a file; throws what it is instead.
+// Returns the name and the text of a file's strokes; for other files throws their kind.
 async function what_to_import(file) {
   const text = await file.text(), head = text.slice(0, 400), own = STROKE_OF_FIGURE.exec(text);
   if (own) return {name: "figure.toml", text: own[1].split(" ").map(part => new TextDecoder().decode(decoded(part))).join("")};
@@ -65,7 +65,7 @@ addEventListener("drop", e => {
   open_files([...e.dataTransfer?.files ?? []]);
 });
 
-// Letters and digits of all languages, at most 100 bytes: what the service takes as a name.
+// Returns a name that the service accepts: letters and digits of all languages, at most 100 bytes.
 export function file_name(take) {
   let name = take.name.normalize("NFC").replace(/[^\p{L}\p{M}\p{N} _-]|[\x80-\xbf]/gu, "").trim().replace(/ +/g, "-").toLowerCase().replace(/^-+/, "");
   while (new TextEncoder().encode(name).length > 90) name = [...name].slice(0, -1).join("");
@@ -77,7 +77,7 @@ function give(name, type, ...parts) {
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);
 }
 export const give_toml = (name, text) => give(`${name}.toml`, "application/toml", text);
-// Asks the service for a take as a file. Its gain is in a file that can say it, and otherwise in the level at which it is played.
+// Requests a take as a file from the service. Its gain becomes a part of the file if the format has it, else of the level.
 const export_as = (take, as) => call("export", {...make_request(as === "csv" ? take : with_level(take)), as, name: file_name(take)});
 const encoded = text => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
 const decoded = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
@@ -97,7 +97,7 @@ async function save_as(kind) {
     say(`Saved “${take.name}” as ${file_name(take)}.${kind}`);
   } catch (e) { say(fault_sentence(e)); }
 }
-// A browser may ask first whether the page may give several files.
+// A browser may first ask if the page may save several files.
 on_click("save-all", () => {
   const takes = state.takes.filter(t => t.strokes.length);
   for (const t of takes) give_toml(file_name(t), take_toml(t));
@@ -110,7 +110,7 @@ listen("p-save", "beforetoggle", async e => {
   if (e.newState !== "open") return;
   const take = current_take();
   show_only_if(document.querySelector("#save-list [data-kind=csv]"), !(take?.strokes.length > 1));
-  // A line is broken between words, not behind their dashes.
+  // Breaks lines between words, not after dashes in them.
   const show_words = (id, line) => by_id(id).replaceChildren(...line.split(" ").flatMap((w, i) => [i > 0 && " ", make("span", {}, w)]).filter(Boolean));
   const show = (render, play = render) => { show_words("command", render); show_words("play-line", play); };
   if (!take?.strokes.length) return show("There is nothing to save yet.");
@@ -128,7 +128,7 @@ async function copy(id) {
 }
 all_of("[data-copy]").forEach(b => listen(b, "click", () => copy(b.dataset.copy)));
 
-// A link, with the token, for a phone beside the array: its code is shown where a phone can open it.
+// Shows a link with the token for a phone, and its QR code if a phone can reach this server.
 listen("p-share", "beforetoggle", async e => {
   if (e.newState !== "open") return;
   const own = is_own_host(location.hostname);

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take. The tour: six steps on a card beside
-// the array, each with something to try.
+// SPDX-License-Identifier: MIT The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take. The tour: six
+// steps on a card next to the array, each with a stroke to try.
 import {state, changed, on_change, is_simulated} from "../state.js";
 import {by_id, make, listen} from "../../../net/page/dom.js";
 import {array} from "../drawing/view.js";
@@ -9,9 +8,9 @@ import {add_take, choose_take, try_take} from "./takes.js";
 import {thumb, draw_thumb, facts} from "./takes_panel.js";
 import {box, outside_mm, parts_reached, trimmed} from "./stroke.js";
 
-const BURST_S = 0.07; // by Park's law its interval is as long
+const BURST_S = 0.07; // by Park's law the interval is the same
 
-// Rows of a stroke, [t_s, u, v, strength], where u and v go from 0 to 1: along places at one speed, or at one place.
+// Returns rows of a stroke, [t_s, u, v, strength], where u and v go from 0 to 1: along places at one speed, or at one place.
 function path(seconds, places) {
   const rows = places.map((p, i) => [i, ...p, 1]);
   return rows.map(([i, ...q]) => [seconds * parts_reached(rows)[i][0], ...q]);
@@ -20,11 +19,11 @@ const resting = (u, seconds, v = 0.5, strength = 1) => [[0, u, v, strength], [se
 const curve = (f, n = 60) => Array.from({length: n + 1}, (_, i) => f(i / n));
 const wave = turns => Math.sin(2 * Math.PI * turns);
 const ring = (turn, radius = 0.5) => [0.5 + radius * wave(turn), 0.5 - radius * wave(turn + 0.25)]; // clockwise from the top
-// Strokes, [start_s, rows, keys].
+// Returns strokes, [start_s, rows, keys].
 const one = (...of) => [[0, path(...of)]];
 const in_turn = (step_s, list) => list.map((rows, i) => [step_s * i, rows]);
 const taps = soa_s => ({soa_s, burst_s: BURST_S});
-// Bursts at a part of the law's interval. Those that overlap are two strokes, whose bursts come in turn.
+// Returns bursts at a part of the law's interval. Overlapping ones become two strokes, whose bursts alternate.
 function at_law(rows, part, start_s = 0) {
   const step_s = part * BURST_S, keys = taps(part < 1 ? 2 * step_s : step_s), own = [start_s, rows, keys];
   return part < 1 ? [own, [start_s + step_s, trimmed({timed: rows}, step_s, rows.at(-1)[0]).timed, keys]] : [own];
@@ -32,8 +31,8 @@ function at_law(rows, part, start_s = 0) {
 const ROW = [[0, 0.5], [1, 0.5]];
 const BACK = [...ROW, ROW[0]], PARTS = [0, 0.5, 1], CONTINUOUS = {algorithm: "continuous"}, SHORT = {soa: 0.05, burst: 0.03};
 
-// Name, what it shows, what u and v go over (0: two neighbours; the array, 1: of two tactors, 2: of three, 3: of two rows, or more;
-// 4: a square in two rows), strokes, options, and gain.
+// Entries: name, purpose, range of u and v (0: two neighbours; the array, 1: of two tactors, 2: of three, 3: of two rows, or more; 4: a square in
+// two rows), strokes, options, and gain.
 const GALLERY = [
   ["Line across", "One line at one speed: the plainest motion.", 1, one(1.2, ROW)],
   ["Fast and slow", "In 0.4 s and in 1.6 s: speed is felt, too.", 2, [[0, path(0.4, ROW)], [0.8, path(1.6, ROW)]]],
@@ -61,13 +60,13 @@ const GALLERY = [
   ["Two fingers", "Together, apart, together.", 3,
     [1, -1].map(sign => [0, path(2.4, curve(p => [p, 0.5 + sign * wave(p / 2) ** 2 / 2]))]), {}, -6]];
 
-// Returns two neighbours near the middle of the array; the second one is nearer, and a level pair wins over an upright one.
+// Returns two neighbours near the middle of the array; the second one is nearer, and a horizontal pair wins over a vertical one.
 function middle_pair() {
   const {places, box: {middle}} = array, apart = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
   return places.flatMap((p, i) => places.map((q, k) => [i, k, i === k ? Infinity : apart(p, q) + apart(p, middle) + 1.01 * apart(q, middle)
     + 0.001 * Math.abs(p[1] - q[1])])).sort((a, b) => a[2] - b[2])[0].slice(0, 2);
 }
-// Returns strokes as large as the array without a tenth at each edge, or less where its hull is not as wide as its box.
+// Returns strokes scaled to the array without a tenth at each edge; smaller if its hull is narrower than its box.
 function on_array(strokes, over) {
   const {edge, places} = array, {size} = array.box, line = over ? edge.length < 3 && edge : middle_pair().map(i => places[i]);
   const {middle} = box(line || places);
@@ -98,7 +97,7 @@ on_change(() => {
   by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", e => try_entry(g, e.currentTarget.firstChild))));
   by_id("examples").replaceChildren(entry(example, "", open_example));
 }, "array");
-// Shows in its card what a card plays; called once a frame.
+// Animates the card whose stroke plays; called once a frame.
 let shown = null;
 export function draw_card() {
   const now = state.trial && state.playing?.take === state.trial.id ? tried : null;
@@ -110,7 +109,7 @@ export function draw_card() {
   if (now) draw_thumb(now, state.trial.strokes, state.at_s);
 }
 
-// Title, text, what its strokes go over (see the gallery), and [name, strokes] of what is tried, with the neighbours a and b.
+// Steps of the tour: title, text, range of its strokes (as in the gallery), and [name, strokes] to try, with the neighbours a and b.
 const tour = ([a, b], feel) => [
   ["One tactor", `Tactor ${b} buzzes where it is.`, 0, ["Tap it", [[0, resting(1, 0.5)]]]],
   ["A point where nothing is", `Now ${a} and ${b} play together, equally strong. You ${feel} one point between them: a phantom.`, 0,
@@ -124,7 +123,7 @@ const tour = ([a, b], feel) => [
   ["Your turn", `Draw on the array. You ${feel} it while you draw, and it is kept as a take.`]];
 
 const card = by_id("p-tour"), gallery = by_id("p-gallery");
-// Shows a step. One that can be tried again begins by itself.
+// Shows a step. A step that can be tried begins by itself.
 function show_step(n) {
   const steps = tour(middle_pair().map(i => array.tactors[i].tactor ?? i), is_simulated() ? "hear" : "feel");
   const [title, text, over, ...tried] = steps[n], next = steps[n + 1];

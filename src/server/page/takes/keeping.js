@@ -1,19 +1,18 @@
-// SPDX-License-Identifier: MIT
-// Takes in the browser's storage and in other tabs: writes each change, and says what is not written.
+// SPDX-License-Identifier: MIT Takes in the browser's storage and in other tabs: writes each change, and reports changes that it cannot write.
 import {state, changed, say, remember, remembered, take_by_id} from "../state.js";
 import {open_storage} from "./storage.js";
 import {listen} from "../../../net/page/dom.js";
 
-const AGAIN_MS = 3000;   // after a write that failed
-const HISTORY_MS = 1000; // after an edit, until the steps of undo are written
-const SHOWN_MS = 10000;  // of a change in another tab
+const AGAIN_MS = 3000;   // time until a failed write is tried again
+const HISTORY_MS = 1000; // time after an edit until the steps of undo are written
+const SHOWN_MS = 10000;  // time for which a change in another tab is shown
 export const BIN_DAYS = 30;
-export const DAY_MS = 24 * 3600e3; // a tab that wrote nothing for so long is closed
+export const DAY_MS = 24 * 3600e3; // a tab counts as closed after this time without a write
 
-let all = [];             // takes with those of the bin, newest first
+let all = [];             // all takes, also those in the bin, newest first
 let storage = null, writing = null, undo_steps = {history: () => null, restore: () => {}};
-const NEWEST = "newest";  // no take has this id: the first one is shown
-const unwritten = new Map(); // takes that are not written yet, by id; null where one was removed
+const NEWEST = "newest";  // id that no take has: then the first take is shown
+const unwritten = new Map(); // takes that have not been written, by id; null for a removed one
 const known = new Map();  // versions in the storage, by id
 let current_owed = false, history_timer = 0, tabs = {}; // times of the last write of each tab
 
@@ -21,13 +20,13 @@ export const new_id = () => `${Date.now().toString(36)}-${Math.floor(Math.random
 export const find_take = id => all.find(t => t.id === id);
 export const all_takes = () => all;
 
-// Shows takes, and which one is edited.
+// Shows the takes and the edited one.
 function show(takes, current = state.current) {
   all = [...takes.values()].sort((a, b) => b.made - a.made);
   const at = Math.max(0, state.takes.findIndex(t => t.id === current));
   state.takes = all.filter(t => !t.deleted);
   state.bin = all.filter(t => t.deleted);
-  // Shows the take that stood behind one that is gone.
+  // Shows the take that came after a removed one.
   const found = current && (take_by_id(current) ?? state.takes[Math.min(at, state.takes.length - 1)]);
   Object.assign(state, {current: found?.id ?? null, stroke: Math.min(state.stroke, Math.max(0, (found?.strokes.length ?? 1) - 1))});
   changed("takes", "take");
@@ -35,7 +34,7 @@ function show(takes, current = state.current) {
 const by_ids = () => new Map(all.map(t => [t.id, t]));
 const takes_and_removed = changes => ({takes: [...changes.values()].filter(Boolean), removed: [...changes.keys()].filter(id => !changes.get(id))});
 
-// Takes over changes, [[id, take or null], ...], and writes them.
+// Applies changes, [[id, take or null], ...], and writes them.
 export function put_takes(changes, current) {
   const takes = by_ids();
   for (const [id, take] of changes) {
@@ -49,7 +48,7 @@ export function put_takes(changes, current) {
 }
 export function keep_current() { current_owed = true; write_owed(); }
 
-// Opens the storage, reads it, and calls restore(steps of undo); history() returns the steps to be written.
+// Opens the storage, reads it, and calls restore(steps of undo); history() returns the steps to write.
 export function open_takes(history, restore) {
   undo_steps = {history, restore};
   return write_owed();
@@ -59,7 +58,7 @@ async function open() {
   const kept = await opened.load(), current = await opened.get("current");
   tabs = await opened.get("tabs") ?? {};
   const steps = await opened.get(`history ${tab}`);
-  // No await from here on: a drawing made meanwhile would be lost.
+  // No await from here on: a drawing that is made meanwhile would be lost.
   const takes = by_ids();
   let late = null;
   // Adds what a page could not write before it was closed.
@@ -94,7 +93,7 @@ function history_values() {
   return {tabs, [`history ${tab}`]: undo_steps.history()};
 }
 
-// The storage was deleted: writes all takes again.
+// Writes all takes again after the storage was deleted.
 function storage_lost() {
   storage = null;
   known.clear();
@@ -103,7 +102,7 @@ function storage_lost() {
   setTimeout(write_owed, 0);
 }
 
-// Writes what is unwritten; resolves when it is written or has failed.
+// Writes unwritten takes; resolves when that is done or has failed.
 function write_owed() {
   return writing ??= write_all().finally(() => {
     writing = null;
@@ -143,13 +142,12 @@ function set_fault(text) {
   if (before && !state.unkept.size) say(before === 1 ? "Kept again" : `Kept again, all ${before}`);
   if (text || before) changed("takes", "link");
 }
-// Says that a take is kept, or why not, once the write has ended.
+// Reports that a take is stored, or the reason why not, once the write has ended.
 export async function say_if_kept(take) {
   await write_owed();
   if (!find_take(take.id)?.deleted) say(state.unkept.has(take.id) ? `Not kept: ${state.storage_fault}` : `Kept as “${take.name}”`);
 }
-// Writes all at once while the page goes away: the browser may drop what is written to the database then, so it is
-// written to the local storage, too.
+// Writes everything at once while the page goes away. The browser may then drop writes to the database, so it also writes to the local storage.
 export function write_at_once() {
   if (unwritten.size) remember("unwritten", JSON.stringify([...JSON.parse(remembered("unwritten") || "[]"),
     ...[...unwritten].map(([id, take]) => [id, take, known.get(id)])]));
@@ -161,7 +159,7 @@ const channel = new BroadcastChannel("tactor-takes");
 listen(channel, "message", ({data}) => {
   const takes = by_ids();
   for (const t of data.takes) {
-    if (unwritten.has(t.id)) continue; // this tab's own change finds the other one when it is written
+    if (unwritten.has(t.id)) continue; // writing this tab's own change will find the other one
     known.set(t.id, t.version);
     takes.set(t.id, t);
     state.elsewhere.add(t.id);
@@ -170,7 +168,7 @@ listen(channel, "message", ({data}) => {
   for (const id of data.removed) if (!unwritten.has(id)) { known.delete(id); takes.delete(id); }
   show(takes);
 });
-// Both tabs changed a take: this tab's change becomes a take of its own.
+// Keeps both changes when two tabs changed a take: this tab's change becomes a separate take.
 function keep_both(other) {
   const own = find_take(other.id), takes = by_ids();
   const copy = {...own, id: new_id(), made: own.made + 0.001, name: `${own.name}, other tab`};

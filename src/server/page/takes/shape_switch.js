@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// The switch at the bottom of the canvas: the stroke plays as it was drawn, or the curve through its points.
+// SPDX-License-Identifier: MIT The switch at the bottom of the canvas: the stroke plays as drawn, or as the curve through its points.
 import {state, on_change, current_stroke} from "../state.js";
 import {by_id, on_click, show_pressed, show_only_if, listen, set_text} from "../../../net/page/dom.js";
 import {edit_stroke} from "./takes.js";

@@ -7,9 +7,9 @@
 // {edited} while it plays as drawn: what it was before.
 
 const SMOOTH_S = 0.012;
-export const FIT_MM = 0.2; // between the curve and the base, both ways
-const LOOK_MM = 0.25;      // between the places where they are compared
-const LONGEST_MM = 40;     // between two knots
+export const FIT_MM = 0.2; // greatest distance of curve and base from each other
+const LOOK_MM = 0.25;      // distance of the places where they are compared
+const LONGEST_MM = 40;     // greatest distance of two knots
 const STEP_MM = 0.5;
 const STEP_S = 0.02;
 const MOST_POINTS = 20000;
@@ -33,7 +33,7 @@ function row_before(rows, v) {
   return low;
 }
 
-// Returns a row of a table between two of its rows; at its ends the first or the last.
+// Returns a row of a table between two of its rows; beyond its ends, the first or the last row.
 export function interpolate(rows, v) {
   if (v <= rows[0][0]) return rows[0];
   if (v >= rows.at(-1)[0]) return rows.at(-1);
@@ -41,24 +41,24 @@ export function interpolate(rows, v) {
   return a.map((x, k) => between(x, b[k], part));
 }
 
-// Makes a function of a value that is never changed: what it returned is kept as long as the value.
+// Makes a function of immutable values that caches its result for as long as the value exists.
 export function kept_for(f) {
   const kept = new WeakMap();
   return value => { if (!kept.has(value)) kept.set(value, f(value)); return kept.get(value); };
 }
-// Lengths of path until each point, mm.
+// Returns the length of path up to each point, mm.
 const lengths_mm = kept_for(timed => {
   let sum = 0;
   return timed.map((p, i) => i ? sum += Math.hypot(p[1] - timed[i - 1][1], p[2] - timed[i - 1][2]) : 0);
 });
 export const length_mm = timed => lengths_mm(timed).at(-1);
-// Parts of the path, and of the time, at each point. A path without a length goes on as time does.
+// Returns the parts of path and time at each point. On a path without length, both parts are equal.
 export const parts_reached = kept_for(timed => {
   const total = length_mm(timed), seconds = timed.at(-1)[0];
   return timed.map((p, i) => [total > 0 ? lengths_mm(timed)[i] / total : p[0] / seconds, p[0] / seconds]);
 });
 
-// Returns [[length so far, x, y, ...], ...] of [[x, y, ...], ...], without points that stay.
+// Returns [[length so far, x, y, ...], ...] of [[x, y, ...], ...], without repeated points.
 function along(places) {
   const rows = [];
   let sum = 0;
@@ -103,7 +103,7 @@ function path_piece(s, i) {
 }
 const path_pieces = s => s.knots.slice(1).map((_, i) => path_piece(s, i));
 
-// A place beyond an end, on the bend of the three knots there.
+// Returns a place beyond an end that continues the bend of the three knots there.
 const bent = (at, next, then) => ({x: 3 * (at.x - next.x) + then.x, y: 3 * (at.y - next.y) + then.y});
 const mirrored = (at, from) => ({x: 2 * at.x - from.x, y: 2 * at.y - from.y});
 function catmull_rom(a, b, c, d, part) {
@@ -116,7 +116,7 @@ function catmull_rom(a, b, c, d, part) {
   });
 }
 
-// Returns the numbers of knots that are so far apart along the path: the ends, one that is wanted, and others between.
+// Returns the numbers of knots that are `apart_mm` apart along the path: the ends, the wanted one, and others in between.
 export function handles_apart(knots, apart_mm, wanted = -1) {
   let sum = 0;
   const reached = knots.map((k, i) => i ? sum += Math.hypot(k.x - knots[i - 1].x, k.y - knots[i - 1].y) : 0);
@@ -125,7 +125,7 @@ export function handles_apart(knots, apart_mm, wanted = -1) {
   return kept.sort((a, b) => a - b);
 }
 
-// Finds knots on a base: at its corners, and between them so many that the spline stays within a tolerance, both ways.
+// Finds knots on a base: at its corners, and enough between them that spline and base stay within a tolerance of each other.
 function find_knots(base, fit_mm = FIT_MM) {
   const rows = along(base.map(([t, x, y]) => [x, y, t]));
   const end_s = base.at(-1)[0];
@@ -136,7 +136,7 @@ function find_knots(base, fit_mm = FIT_MM) {
     return {mm, x, y, corner, at: mm === 0 ? 0 : mm === total ? end_s : t};
   };
   let knots = [knot(0, false), ...corners(rows).map(mm => knot(mm, true)), knot(total, false)];
-  const fits = new Set(); // pieces that have been looked at, by the knots on which they depend
+  const fits = new Set(); // checked pieces, by the knots on which they depend
   for (let more = true; more;) {
     more = false;
     knots = knots.flatMap((k, i) => {
@@ -150,7 +150,7 @@ function find_knots(base, fit_mm = FIT_MM) {
   }
   return knots.map(({x, y, corner, at}) => ({x, y, corner, at}));
 }
-// Returns where a further knot is wanted between knot i and the next one, mm along the path, or null.
+// Returns the place of a further knot between knot i and the next one, mm along the path, or null if none is needed.
 function place_to_cut(rows, knots, i, fit_mm) {
   const from = knots[i].mm, to = knots[i + 1].mm, long = to - from;
   if (long > LONGEST_MM) return (from + to) / 2;
@@ -158,7 +158,7 @@ function place_to_cut(rows, knots, i, fit_mm) {
   const n = Math.ceil(long / LOOK_MM), curve = along(spline_piece(knots, i)), whole = curve.at(-1)[0];
   const sampled = (table, first, length) => Array.from({length: n + 1}, (_, k) => interpolate(table, first + length * k / n).slice(1, 3));
   const path = sampled(rows, from, long), spline = sampled(curve, 0, whole);
-  let worst = {off: fit_mm * 0.9, k: 0}; // a part is left for what lies between the samples
+  let worst = {off: fit_mm * 0.9, k: 0}; // keeps a margin for places between the samples
   for (let k = 0; k <= n; ++k) {
     const off = Math.max(from_line_mm(path[k], spline, k), from_line_mm(spline[k], path, k));
     if (off > worst.off) worst = {off, k};
@@ -174,7 +174,7 @@ function from_line_mm(p, line, k) {
     off = Math.min(off, segment_mm(line[j], line[j + 1], p));
   return off;
 }
-// Returns where a path turns by more than CORNER_RAD within 1 mm, mm along it.
+// Returns the corners of a path, mm along it: turns of more than CORNER_RAD within 1 mm.
 function corners(rows) {
   const total = rows.at(-1)[0], look = 0.5, found = [];
   for (const [mm] of rows) {
@@ -193,8 +193,8 @@ function turn(rows, at, look) {
   return Math.abs(Math.atan2(Math.sin(change), Math.cos(change)));
 }
 
-// Returns when which part of the path is reached, both from 0 to 1: "even", "soft" (in and out), "reach" (minimum jerk),
-// "drawn" (a table [[part, time]]) and "points" (speeds [[part, relative speed]]).
+// Returns a table of part of the path and part of the time, both from 0 to 1: "even", "soft" (in and out), "reach" (minimum jerk), "drawn" (a table
+// [[part, time]]) and "points" (speeds [[part, relative speed]]).
 export function pace_table(pace, n = 200) {
   if (pace.kind === "drawn") return pace.table;
   if (pace.kind === "points") {
@@ -211,7 +211,7 @@ export function pace_table(pace, n = 200) {
   return Array.from({length: n + 1}, (_, i) => [easing(i / n), i / n]);
 }
 
-// Speeds, relative to the mean one, at some parts of the path; their points can be moved.
+// Returns speeds at some parts of the path, relative to the mean speed, as movable points.
 export function find_speeds(pace, n = 5) {
   if (pace.kind === "points") return pace.speeds;
   const table = pace_table(pace);
@@ -222,7 +222,7 @@ export function find_speeds(pace, n = 5) {
   });
 }
 
-// Makes timed points of knots, pace, strength and duration.
+// Makes timed points from knots, pace, strength and duration.
 export function rebuild(s, seconds = duration_s(s)) {
   const path = path_pieces(s).flatMap((rows, i) => i ? rows.slice(1) : rows);
   const own = JSON.stringify(s.strength) !== JSON.stringify(strength_table(s.base));
@@ -248,7 +248,7 @@ export function rebuild(s, seconds = duration_s(s)) {
   return {...s, timed: thin(timed)};
 }
 
-// Returns when a stroke that can be edited passes its knots, s from its start.
+// Returns the times at which an editable stroke passes its knots, s from its start.
 export const knot_times = kept_for(s => {
   if (s.pace.kind === "drawn") return s.knots.map(k => k.at * duration_s(s) / s.base.at(-1)[0]);
   let mm = 0;
@@ -256,11 +256,11 @@ export const knot_times = kept_for(s => {
   return reached.map(v => interpolate(pace_table(s.pace), v / (mm || 1))[1] * duration_s(s));
 });
 
-// Leaves out points that lie on the line of their neighbours in time, place and intensity.
+// Removes points that lie on the line between their neighbours in time, place and intensity.
 export function thin(timed, tolerance = 0.02) {
   for (;;) {
     const kept = [timed[0]];
-    // Ranges of at most 512 rows, so that the work stays linear.
+    // Works in ranges of at most 512 rows, so that the time stays linear.
     for (let from = 0; from + 1 < timed.length; from = Math.min(from + 512, timed.length - 1))
       kept.push(...needed_rows(timed, from, Math.min(from + 512, timed.length - 1), tolerance, TIMED_WEIGHTS));
     const rounded = kept.map(([t, x, y, v]) => [+t.toFixed(4), +x.toFixed(3), +y.toFixed(3), +v.toFixed(4)]);
@@ -270,7 +270,7 @@ export function thin(timed, tolerance = 0.02) {
     tolerance *= 2;
   }
 }
-// Returns the fewest rows after row a, until b, between which no column, by its weight, is off by more than a tolerance.
+// Returns the fewest rows after row a, up to b, such that between them no column, times its weight, is off by more than a tolerance.
 function needed_rows(rows, a, b, tolerance, weights) {
   const stack = [[a, b]], needed = [];
   while (stack.length) {
@@ -293,7 +293,7 @@ function farthest(rows, a, b, weights) {
   return {off, at};
 }
 
-// Gives a stroke what editing needs, found from its timed points, which stay as they are.
+// Makes a stroke editable: finds base, knots, pace and strength from its timed points, which stay the same.
 export const editable = kept_for(s => {
   if (s.base) return s;
   const base = s.timed, table = [];
@@ -305,14 +305,14 @@ export const editable = kept_for(s => {
   return {pace: even ? {kind: "even"} : {kind: "drawn", table: fewer(table, 0.004)}, strength: strength_table(base), ...s,
     base, knots: find_knots(base)};
 });
-// Returns the strength along a path, as it is drawn: [[part, factor], ...].
+// Returns the drawn strength along a path: [[part, factor], ...].
 const strength_table = kept_for(base => {
   const strength = [];
   parts_reached(base).forEach(([part], i) => { if (!i || part > strength.at(-1)[0]) strength.push([part, base[i][3] ?? 1]); });
   strength.at(-1)[0] = 1;
   return fewer(strength, 0.03);
 });
-// The fewest rows [v, w] that stay within a tolerance.
+// Returns the fewest rows [v, w] that stay within a tolerance.
 function fewer(rows, tolerance) {
   const out = [rows[0], ...needed_rows(rows, 0, rows.length - 1, tolerance, [1])];
   return out.length > 1 ? out : [[0, rows[0][1]], [1, rows[0][1]]];
@@ -340,18 +340,18 @@ export function shape(s) {
   return s.knots[0].curve ? "fitted" : "drawn";
 }
 export const points_moved = s => (s.knots ?? []).filter(k => k.moved).length;
-// Makes a stroke play its ink again; what it was before is kept beside it.
+// Makes a stroke play its ink again, and keeps its edited form.
 export function as_drawn(s) {
   const {edited: _, ...before} = s;
   return {...from_drawing(s.ink, s.name, s.start_s), ...s.keys && {keys: s.keys}, ...shape(s) === "edited" && {edited: before}};
 }
-// Makes a stroke as it was edited, or, without edits, play the spline through its knots.
+// Restores the edited form of a stroke; without edits, makes it play the spline through its knots.
 export const as_edited = s => s.edited ? {...s.edited, name: s.name, start_s: s.start_s} : rebuild({...s, knots: s.knots.map(k => ({...k, curve: true}))});
 
-// Fits a curve of as few knots to the base as stay within a tolerance.
+// Fits a curve with the fewest knots that stays within a tolerance of the base.
 export const fitted_within = (s, fit_mm) => rebuild({...s, fit_mm, knots: find_knots(s.base, fit_mm).map(k => ({...k, curve: true}))});
 
-// Changes knot i; the path is a spline on both sides of it, to its neighbours, and stays as it is elsewhere.
+// Changes knot i; the path becomes a spline on both sides of it, up to its neighbours, and stays the same elsewhere.
 export const changed_knot = (s, i, change) => rebuild({...s, knots: s.knots.map((k, n) => ({...k,
   ...n === i && {...change, moved: true}, ...(n === i || n === i - 1) && {curve: true}}))});
 export const without_knot = (s, i) => rebuild({...s, knots: s.knots.map((k, n) => n === i - 1 ? {...k, curve: true, moved: true} : k)
@@ -394,7 +394,7 @@ export function insert_knot(s, place) {
   return {stroke: rebuild({...s, knots}), index: after + 1};
 }
 
-// The convex hull of places, counter-clockwise in the mathematical sense.
+// Returns the convex hull of places, counter-clockwise in the mathematical sense.
 export function hull(places) {
   const sorted = [...places].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = list => {
@@ -409,7 +409,7 @@ export function hull(places) {
 }
 const cross = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 
-// The distance of a place from a hull; 0 within.
+// Returns the distance of a place from a hull; 0 within.
 export function outside_mm(edge, p) {
   if (edge.length < 3) return edge.length === 2 ? segment_mm(edge[0], edge[1], p) : 0;
   let off = Infinity, inside = true;
@@ -426,7 +426,7 @@ function nearest_part(a, b, p) {
   return Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
 }
 const nearest_on = (a, b, p) => [0, 1].map(k => between(a[k], b[k], nearest_part(a, b, p)));
-// In numbers: it is most of the work of a fit.
+// Returns the distance of a place from a segment. Uses plain numbers, because this is most of a fit's work.
 function segment_mm(a, b, p) {
   const part = nearest_part(a, b, p), x = between(a[0], b[0], part) - p[0], y = between(a[1], b[1], part) - p[1];
   return Math.sqrt(x * x + y * y);
@@ -435,7 +435,7 @@ function segment_mm(a, b, p) {
 export const within = (edge, p) => outside_mm(edge, p) === 0 ? p : edge.map((a, i) => nearest_on(a, edge[(i + 1) % edge.length], p))
   .reduce((best, q) => distance(q, p) < distance(best, p) ? q : best);
 
-// Scales and centres strokes to the box of a hull, and keeps their shape and their times.
+// Scales and centres strokes to the box of a hull, but keeps their shape and times.
 export function fitted(strokes, edge) {
   const all = strokes.flatMap(s => s.timed.map(p => [p[1], p[2]]));
   const from = box(all), to = box(edge);
@@ -454,7 +454,7 @@ export function box(places) {
 
 // TOML and CSV of strokes.
 export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
-// Strokes may have `keys` of their own, as in a stroke file, such as {soa_s: 0.4}; an option that is set for all of them wins.
+// Returns a stroke's own `keys`, as in a stroke file, such as {soa_s: 0.4}, without options that are set for all strokes, which win.
 export const keys_left = (s, options) => Object.fromEntries(Object.entries(s.keys ?? {}).filter(([key]) => key === "noise_seed"
   ? options.waveform === undefined : options[key.replace(/_(s|hz|depth|profile)$/, "")] === undefined)
   .map(([key, v]) => [key, key === "noise_seed" ? options.noise_seed ?? v : v]));

@@ -1,12 +1,12 @@
-// SPDX-License-Identifier: MIT
-// A take as a stroke file says it: options by the file's keys, the gain as its level, and what it has no keys for in a comment at its end.
+// SPDX-License-Identifier: MIT A take as a stroke file: options as keys of the file, the gain as its level, and other options in a comment at its
+// end.
 import {keys_left, strokes_toml} from "./stroke.js";
 
 const KEYS = {algorithm: "algorithm", phantom: "phantom", faces: "faces", soa: "soa_s", burst: "burst_s", carrier: "carrier_hz", waveform: "waveform"};
 const REST = /^# Options of the studio that a stroke file has no keys for: (\{.*\})$/m;
 const AM = /^([\d.]+)(?::([\d.]+))?$/; // HZ or HZ:DEPTH
 
-// Returns options as keys of a stroke file, and the rest of them.
+// Splits options into keys of a stroke file and the others.
 function split({noise_seed, am, ...options}) {
   const keys = {}, rest = {}, depth = AM.exec(am ?? "");
   for (const [name, v] of Object.entries(options)) if (KEYS[name]) keys[KEYS[name]] = v; else rest[name] = v;
@@ -14,7 +14,7 @@ function split({noise_seed, am, ...options}) {
   if (depth) Object.assign(keys, {am_hz: +depth[1], am_depth: +(depth[2] ?? 1)}); else if (am !== undefined) rest.am = am;
   return {keys, rest};
 }
-// Returns a take whose gain is the level of each of its strokes.
+// Returns a take with its gain moved to the level of each stroke.
 export const with_level = ({gain_db = 0, ...take}) => ({...take, strokes: take.strokes.map(s => ({...s,
   keys: {...s.keys, ...gain_db && {level_db: gain_db + (s.keys?.level_db ?? 0)}}}))});
 // Returns the comment of a take, or "".
@@ -27,7 +27,8 @@ export function take_toml(take) {
   const {keys} = split(take.options);
   return strokes_toml(with_level(take).strokes.map(s => ({...s, keys: {...keys_left(s, take.options), ...keys}}))) + rest_comment(take);
 }
-// Returns the strokes, options and gain of a file: what the service found in its text, and the text. What all strokes have is the take's.
+// Returns the strokes, options and gain of a file: from the service's reading of its text, and the text. Options that all strokes have become the
+// take's.
 export function read_take({strokes, points}, text, rows) {
   const own = strokes.map(s => ({...s.keys})), shared = key => own.every(k => k[key] === own[0][key]) ? own[0][key] : undefined;
   const options = {}, take = {options}, drop = key => own.forEach(k => { delete k[key]; });

@@ -1,11 +1,10 @@
-// SPDX-License-Identifier: MIT
-// Takes: {id, version, name, origin, strokes, options}. They are values: a change makes a new one with a new version, so
-// that all can be undone.
+// SPDX-License-Identifier: MIT Takes: {id, version, name, origin, strokes, options}. They are values: a change makes a new take with a new version,
+// so that it can be undone.
 import {state, changed, current_take, level_dbfs, say, LEAST_PART_S} from "../state.js";
 import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";
 import {total_s, duration_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
 
-const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // of undo
+const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // limits of undo
 const ROW_BYTES = 40;         // of a list of points, in memory
 
 // Steps: {changes: [[id, take before, take after], ...], current: [before, after], stroke}.
@@ -16,7 +15,7 @@ export function restore_undo(steps) {
   done = [...steps.done, ...done];
   undone = steps.undone;
 }
-// Drops the oldest steps: what they share with later ones is not counted.
+// Drops the oldest steps. Data that they share with later steps is not counted.
 function bound_undo() {
   const seen = new Set();
   let bytes = 0, i = done.length;
@@ -63,20 +62,20 @@ export function add_take(strokes, {name, origin, options, ...more} = {}) {
   edit([take], {current: take.id, stroke: 0});
   return take;
 }
-// Replaces a take, whether it is shown or not.
+// Replaces a take, shown or not.
 export const put_take = (take, same) => edit([take], {same});
 export function edit_take(change, same) {
   const take = current_take();
   if (take) edit([{...take, ...change(take)}], {same});
 }
-// Changes a stroke as it is, or once it can be edited by points.
+// Changes a stroke, after making it editable if necessary.
 export function put_stroke(change, same, index = state.stroke) {
   edit_take(t => ({strokes: t.strokes.map((s, i) => i === index ? change(s) : s)}), same);
 }
 export const edit_stroke = (change, same) => put_stroke(s => change(editable(s)), same);
-// Returns a take as a side of a comparison plays it: 0 is the take itself. Without a number, the side that sounds.
+// Returns a take as played by a side of a comparison (0: the take itself; default: the sounding side).
 export const with_side = (take, side = state.compare?.on) => side && take ? {...take, options: {...take.options, ...state.compare.other}} : take;
-// Options of the take, and the rows of the table that describe them.
+// Options of the take, and their rows in the table.
 export const row = name => state.options.find(o => o.name === name);
 export const value = name => with_side(current_take())?.options[name] ?? row(name)?.default ?? null;
 export const algorithm = () => value("algorithm") ?? "park2016";
@@ -97,7 +96,7 @@ export function choose_take(id) {
   keep_current();
   changed("takes", "take");
 }
-// Shows strokes to try, which are no take until they are changed.
+// Shows strokes to try, which become a take with the first change.
 export function try_take(take) {
   state.trial = {id: new_id(), made: Date.now(), options: {}, ...take};
   choose_take(state.trial.id);
@@ -123,7 +122,7 @@ export function fit_take(edge) {
   edit_take(t => ({strokes: fitted(t.strokes, edge)}));
   say("Fitted", undo);
 }
-// Returns what a take has from one moment until another; its time begins there.
+// Returns the part of a take between two moments; its time begins at the first.
 export const take_part = (take, from_s, until_s) => ({...take, strokes: take.strokes.flatMap(k => {
   const d = duration_s(k), a = Math.max(0, from_s - k.start_s), b = Math.min(d, until_s - k.start_s);
   if (b - a < Math.min(LEAST_PART_S, d)) return [];
@@ -131,9 +130,9 @@ export const take_part = (take, from_s, until_s) => ({...take, strokes: take.str
 })});
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
-// Makes what the service plays, plans and writes: the same for all three.
+// Makes the parameters for playing, planning and exporting.
 export const make_request = (take, dbfs = level_dbfs()) => ({toml: strokes_toml(take.strokes, take.options), options: request_options(take, dbfs)});
-// A take's gain keeps strokes that add up within the level.
+// Returns the options of a request. The take's gain keeps strokes that add up within the level.
 export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};
   const gain_db = take?.gain_db ?? 0;

@@ -15,14 +15,14 @@ const rows = new Map(); // by take: {take, element}
 const seen = new IntersectionObserver(list => list.filter(e => e.isIntersecting).forEach(e => { seen.unobserve(e.target);
   e.target.draw(); }), {rootMargin: "300px"});
 
-// A small picture of strokes over the tactors, drawn when it comes into view.
+// Makes a small picture of strokes over the tactors, which is drawn when it comes into view.
 export function thumb(strokes) {
   const c = make("canvas", {class: "thumb", width: SIZE * 2, height: SIZE * 2, "aria-hidden": "true"});
   c.draw = () => draw_thumb(c, strokes);
   seen.observe(c);
   return c;
 }
-// With a moment it shows the strokes as they play: how strong each tactor is, and where each stroke is.
+// Draws it. With a moment, shows the strokes while they play: the strength of each tactor, and the place of each stroke.
 export function draw_thumb(c, strokes, at_s = null) {
   if (!array) return;
   const p = c.getContext("2d"), side = Math.max(...array.box.size, 1), scale = SIZE * 2 * 0.68 / side;
@@ -110,7 +110,7 @@ function show_takes() {
     noted = notes;
     const elements = now.map(make_row), wanted = new Set(now.map(t => t.id));
     for (const id of [...rows.keys()]) if (!wanted.has(id)) rows.delete(id);
-    // Moves only what differs, which keeps a list of a thousand quick.
+    // Moves only elements that differ, which keeps a list of a thousand quick.
     elements.forEach((e, i) => { if (list.children[i] !== e) list.insertBefore(e, list.children[i] ?? null); });
     while (list.children.length > elements.length) list.lastChild.remove();
     listed = now;

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// The strokes in time: buttons below the canvas of the lanes, which takes pointers and draws marks over them.
+// SPDX-License-Identifier: MIT The strokes in time: buttons under the lanes' canvas, which handles pointers and draws marks over them.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_pressed} from "../../../net/page/dom.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
@@ -9,7 +8,7 @@ import {seconds_text} from "../words.js";
 import {clip_box, to_x, total, CLIP, MOST_S} from "./time_axis.js";
 
 const MOVE_S = 0.1, FINE_MOVE_S = 0.01;
-const MOST_STROKES = 32; // two rounds of a loop are within the service's limit
+const MOST_STROKES = 32; // with it, two rounds of a loop are within the service's limit
 const clips_box = by_id("clips");
 
 export function choose_clip(i) {
@@ -17,16 +16,16 @@ export function choose_clip(i) {
   changed("take");
 }
 export const starting_at = (s, t) => ({...s, start_s: +Math.min(MOST_S - duration_s(s), Math.max(0, t)).toFixed(3)});
-// Returns the strokes of a take, and copies of stroke i behind each other from a moment on.
+// Returns the strokes of a take and consecutive copies of stroke i from a moment on.
 export function with_copies({name: take_name, strokes}, i, count, from_s = total_s(strokes) + PAUSE_S) {
-  // A stroke that is alone is shown by the name of its take.
+  // A single stroke is shown by the name of its take.
   const step_s = duration_s(strokes[i]) + PAUSE_S, name = strokes[1] ? strokes[i].name : take_name, out = [...strokes];
   out[i] = {...strokes[i], name};
   for (; count >= 1 && out.length < MOST_STROKES && from_s + step_s < MOST_S; --count, from_s += step_s)
     out.push(starting_at({...out[i], name: `${name.replace(/ \d+$/, "")} ${out.length + 1}`}, from_s));
   return out;
 }
-// Copies the stroke that is edited, and edits the copy.
+// Copies the edited stroke, and edits the copy.
 export function copy_clip(from_s, same) {
   const take = current_take();
   if (!take?.strokes.length) return;

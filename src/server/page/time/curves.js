@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
+// SPDX-License-Identifier: MIT Speed and strength along the strokes, requested and felt, and the points that change them.
 import {state, current_take, current_stroke} from "../state.js";
 import {paint, write, plot} from "../look.js";
 import {left, right, to_x} from "./time_axis.js";
@@ -8,7 +7,7 @@ import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, part
 
 const FELT_STEP_S = 0.07; // the SOA of the paper
 
-// Speed as asked for and as felt, and strength with its points.
+// Draws requested and felt speed, and strength with its points.
 export function draw_curves(p, l) {
   const take = current_take(), top = l.height - l.curves, bottom = l.height - 8;
   if (!take?.strokes.length || !l.curves) return;
@@ -42,7 +41,7 @@ function most_speed(take) {
 const speeds_felt = kept_for(plan => plan.felt_rows.map(felt => {
     const found = [];
     if (felt.length < 2) return found;
-    // From the middle of one step to the middle of the next: within a burst nothing moves.
+    // Steps go from middle to middle, because nothing moves within a burst.
     const step = Math.max(FELT_STEP_S, (felt.at(-1)[0] - felt[0][0]) / 400);
     for (let t = felt[0][0] + step / 2; t + step < felt.at(-1)[0]; t += step) {
       const a = interpolate(felt, t), b = interpolate(felt, t + step);
@@ -75,7 +74,7 @@ const strength_points = s => s.strength.length >= 3 && s.strength.length <= 12 ?
   : s.strength.length < 3 ? [s.strength[0], [0.5, interpolate(s.strength, 0.5)[1]], s.strength.at(-1)]
   : [0, 0.25, 0.5, 0.75, 1].map(part => [part, interpolate(s.strength, part)[1]]);
 const y_strength = (v, top, bottom) => bottom - v * (bottom - top - 12);
-// Returns when a part of the path is reached, as a part of the time.
+// Returns the part of the time at which a part of the path is reached.
 const reached = (s, part) => interpolate(s.pace.kind === "even" ? [[0, 0], [1, 1]] : parts_reached(s.timed), part)[1];
 function draw_strength(p, l, s, top, bottom) {
   const rows = s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed, duration_s(s) * k / 199)) : s.timed;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Lanes that show who plays when: a ruler, the strokes, a lane for each tactor. They are drawn only when something has changed; the moment
-// is an element above them.
+// SPDX-License-Identifier: MIT Lanes that show the times at which tactors play: a ruler, the strokes, a lane for each tactor. They are drawn only
+// when something has changed; the moment is an element above them.
 import {state, current_take, marks} from "../state.js";
 import {colour, is_dark, paint, write, plot} from "../look.js";
 import {array} from "../drawing/view.js";
@@ -14,7 +13,7 @@ import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";
 import {algorithm} from "../takes/takes.js";
 
-const STEPS_S = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120]; // of the ruler
+const STEPS_S = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120]; // steps of the ruler
 
 function draw_lane(l) {
   const p = l.canvas.getContext("2d");
@@ -68,7 +67,7 @@ function draw_ruler(p, l, bottom) {
 function draw_bars(p, l, h, top, lanes) {
   const plan = state.plan, t = plan.tactors, n = plan.onsets.length, row = new Map(lanes.map((k, i) => [k, i]));
   const from = l.from, to = l.from + shown(l), all = plan.total_s || 1, is_brush = algorithm() === "tactile-brush";
-  // Draws the largest burst of each pixel where they are narrower than that.
+  // Draws the largest burst of each pixel if bursts are narrower than a pixel.
   const rows = !plan.continuous && l.width / n < 1.5 && merged_rows(l, plan, t);
   const one = (onset, seconds, k, a) => {
     if (a < LEAST_AMPLITUDE) return;
@@ -105,7 +104,7 @@ function merged_rows(l, plan, t) {
   }
   return [...bins].map(([key, a]) => [l.from + Math.floor(key / t) * width, width * 1.4, key % t, a]);
 }
-// Writes how long nothing plays before a stroke.
+// Writes the length of the silence before a stroke.
 function draw_gaps(p, l) {
   const strokes = current_take()?.strokes ?? [];
   strokes.forEach((s, i) => {
@@ -117,17 +116,17 @@ function draw_gaps(p, l) {
 
 export function draw_lanes() {
   for (const l of [full, mini]) {
-    if (!l.width || !l.height || state.drawing && !l.stale) continue; // a drawing is longer with each of its plans
+    if (!l.width || !l.height || state.drawing && !l.stale) continue; // each plan of a drawing makes it longer
     if (l.stale) { draw_lane(l); l.stale = false; }
     const x = to_x(l, state.drawing ? total() : state.at_s);
     l.moment.style.translate = `${x}px`;
     l.moment.hidden = x < left(l) - 1 || x > l.width - right(l) + 20;
   }
-  // The moment follows where it leaves what is shown.
+  // Scrolls so that the current moment stays visible.
   if (state.playing && full.span && !full.held_s && (state.at_s > full.from + full.span * 0.95
     || state.at_s < full.from)) { full.from = Math.max(0, state.at_s - full.span * 0.1); full.stale = true; }
 }
-// Goes one burst on or back.
+// Goes to the next or the previous burst.
 export function step_burst(by) {
   const onsets = [...(state.plan?.onsets ?? [])].sort((a, b) => a - b);
   const next = by > 0 ? onsets.find(t => t > state.at_s + 1e-4) : onsets.filter(t => t < state.at_s - 1e-4).pop();

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// The two timelines: seconds to pixels, tactors to lanes, what part of both is shown, and marks on them.
+// SPDX-License-Identifier: MIT The two timelines: seconds to pixels, tactors to lanes, the visible part of both, and marks on them.
 import {state, changed, on_change, current_take, marks} from "../state.js";
 import {colour, write, paint, plot} from "../look.js";
 import {by_id, make} from "../../../net/page/dom.js";
@@ -12,7 +11,7 @@ export const CLIP = 26;
 const RULER = 30, TOUCHED_RULER = 44, CURVES = 58;
 const STRIP_PX = 100, ROOM_FOR_CURVES_PX = 230; // heights of the timeline
 const LEAST_LANE_PX = 18, MOST_LANE_PX = 30;
-const MANY_TACTORS = 16;   // above this only those that play have a lane
+const MANY_TACTORS = 16;   // with more, only tactors that play have a lane
 export const LEAST_AMPLITUDE = 0.004;
 export const LEAST_S = 0.06;
 export const MOST_S = 599.9; // with its last burst a stroke has at most 600 s
@@ -40,10 +39,10 @@ function measure(l) {
   l.canvas.width = Math.round(r.width * dpr); l.canvas.height = Math.round(r.height * dpr);
   l.moment.classList.toggle("thin", thin);
 }
-// Part of a take that is shown, or all of it.
+// Returns the total length of the shown time.
 export const total = () => Math.max(state.plan?.total_s ?? 0, state.drawing ? 0 : take_s(current_take()));
 const whole = () => Math.max(total(), LEAST_S) * 1.02;
-// While a pointer is down (held_s) the axis stays as it is, whatever a drag makes longer or shorter.
+// Returns the visible time span. While a pointer is down (held_s) the axis stays the same, even if a drag changes the length.
 export const shown = l => l.span ?? l.held_s ?? whole();
 export const left = l => l.thin ? EDGE : LABEL;
 export const right = l => l.mini ? EDGE : RIGHT;
@@ -51,7 +50,7 @@ export const to_x = (l, t) => left(l) + (t - l.from) / shown(l) * (l.width - lef
 export const to_time = (l, x) => l.from + (x - left(l)) / (l.width - left(l) - right(l)) * shown(l);
 export const clip_box = (l, s) => [to_x(l, s.start_s), to_x(l, end_s(s))];
 
-// Lanes: the tactors in the order in which they begin where there are many, else all.
+// Returns the tactors with a lane: if there are many, those that play, in the order in which they begin.
 const in_order = kept_for(plan => {
   const first = new Map(), n = plan.tactors;
   plan.onsets.forEach((t, i) => { for (let k = 0; k < n; ++k) if (plan.amplitudes[i * n + k] >= LEAST_AMPLITUDE
@@ -66,7 +65,7 @@ export function lane_height(l) {
   const h = (l.bottom - l.top) / lane_count();
   return l.thin ? h : Math.min(MOST_LANE_PX, Math.max(LEAST_LANE_PX, h));
 }
-// Returns how far the lanes can be scrolled, px.
+// Returns the greatest scroll offset of the lanes, px.
 export const most_scroll = l => Math.max(0, lane_count() * lane_height(l) - (l.bottom - l.top));
 export function scroll_to(l, px) {
   l.scroll = Math.min(most_scroll(l), Math.max(0, px));
@@ -74,7 +73,7 @@ export function scroll_to(l, px) {
   changed("frame");
 }
 
-// The part of the time that is shown.
+// Shows the whole time.
 export function show_all_time() { Object.assign(full, {from: 0, span: null, stale: true}); changed("frame"); }
 export function show_time(from, span) {
   full.span = span >= whole() ? null : Math.max(0.1, span);
@@ -95,12 +94,12 @@ on_change(() => {
   shown_take = state.current;
 }, "take");
 
-// Marks: where Play starts and the range that it plays; and the moments to which pointers snap.
+// Changes marks: the start and the range of Play.
 export function set_marks(change) { state.marks = {...marks(), ...change, take: state.current}; changed("curves"); }
 export const clear_marks = () => set_marks({start_s: 0, range: null});
 export function set_range(a, b) { if (Math.abs(b - a) >= LEAST_S) set_marks({range: [a, b].sort((p, q) => p - q)}); }
 
-// Returns a moment, or what it is so near to that it snaps: the start, an end of a stroke but the one that is moved, a burst.
+// Returns a moment, snapped to the start, to a burst, or to an end of another stroke if it is near.
 export const snapped = (l, t, e, moved, to_bursts = true) => e.altKey || !state.snap ? t : [marks().start_s,
   ...current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [],
   ...to_bursts && state.plan?.onsets || []].find(v => Math.abs(to_x(l, v) - to_x(l, t)) <= SNAP_PX) ?? t;

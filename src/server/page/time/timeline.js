@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: MIT
-// Pointers and keys on the timelines: look at a moment, move and trim clips, drag points of speed and strength.
+// SPDX-License-Identifier: MIT Pointers and keys on the timelines: choose a moment, move and trim clips, drag points of speed and strength.
 import {listen} from "../../../net/page/dom.js";
 import {state, changed, current_take, marks, say, now_ms} from "../state.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
@@ -13,7 +12,7 @@ import {choose_clip, toggle_append, copy_clip, with_copies, starting_at} from ".
 import {tell} from "../service/connection.js";
 
 const REACH = 14;
-const REPEAT_PX = 24, DOUBLE_MS = 350; // for each copy; of two taps
+const REPEAT_PX = 24, DOUBLE_MS = 350; // distance for each copy; interval of a double tap
 
 let held = null, tapped_ms = 0;
 const touching = new Map(); // pointers on the timeline, by id: x, px
@@ -44,7 +43,7 @@ function lane_down(l, e) {
   }
   look_at(to_time(l, x));
 }
-// Takes hold of what lies on the ruler: an end of the range, the moment, or a place where a range begins.
+// Grasps a thing on the ruler: an end of the range, the moment, or a place where a range begins.
 function hold_ruler(l, x, e) {
   const is_near = (t, px) => Math.abs(to_x(l, t) - x) < px, {range} = marks();
   const end = range?.findIndex(t => is_near(t, e.pointerType === "touch" ? 22 : 8)) ?? -1;
@@ -57,7 +56,7 @@ function tap_ruler(t, now = now_ms()) {
   set_marks({start_s: t});
   look_at(t);
 }
-// Trims a clip at its end, or repeats it where the end is pulled on.
+// Trims a clip at its end, or repeats it if the end is pulled farther.
 function pull_end({take, stroke, index, key}, px, t) {
   const end = t < end_s(stroke) ? trimmed(stroke, 0, Math.max(LEAST_S, t - stroke.start_s)) : stroke;
   const strokes = with_copies({...take, strokes: take.strokes.map((s, i) => i === index ? end : s)}, index, px / REPEAT_PX, end_s(stroke) + PAUSE_S);
@@ -70,7 +69,7 @@ function lane_moved(e) {
   const high = (held.l.height - 8 - y) / (held.l.curves - 20) + held.rise, limited = (v, a, b) => Math.min(b, Math.max(a, v));
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
   if (held.kind === "scroll") return scroll_to(held.l, held.from + (y - held.y) * held.by);
-  // A handle that is only chosen stays in its place; a dragged one keeps its distance from the pointer.
+  // A handle that is only chosen does not move; a dragged one keeps its distance from the pointer.
   if (Math.abs(held.rise === undefined ? x - held.x : y - held.y) < 3 && !held.moved) return;
   const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t + held.off_s, e, held.index, held.kind !== "move");
   held.moved = true;
@@ -83,7 +82,7 @@ function lane_moved(e) {
   put_stroke(held.kind === "trim-start" ? () => trimmed(s, limited(near - s.start_s, 0, duration_s(s) - LEAST_S), duration_s(s))
     : k => starting_at(k, near), held.key, held.index);
 }
-// Keeps the moments under two fingers where the fingers are.
+// Zooms so that the moments under two fingers stay under them.
 function zoom_lanes(l, id, x) {
   const other = [...touching].find(([k]) => k !== id)[1], before = touching.get(id);
   touching.set(id, x);
@@ -94,7 +93,7 @@ function zoom_lanes(l, id, x) {
 function lane_up(e) {
   touching.delete(e.pointerId);
   if (held?.kind === "zoom" && touching.size) return;
-  // Another tap takes the next of those that lie at the same time.
+  // Another tap chooses the next clip at the same time.
   if (held?.next !== undefined && !held.moved) choose_clip(held.next);
   if (held?.ruler && !held.moved) tap_ruler(snapped(held.l, to_time(held.l, held.x), e));
   else if (held) { end_edit(); changed("take"); }
@@ -102,12 +101,12 @@ function lane_up(e) {
   full.held_s = mini.held_s = held = null;
 }
 
-// The moment that is dragged is felt: the burst under it, by a live stroke.
-const FELT_STEP_MS = 50, FELT_REST_MS = 500; // between bursts; of a moment that rests, until it is silent
+// Scrubbing: a live stroke plays the burst at the dragged moment.
+const FELT_STEP_MS = 50, FELT_REST_MS = 500; // interval of bursts; time until a resting moment falls silent
 let live = null, moved_ms = 0, feeler;
 
 const has_stopped = since_ms => state.playing || state.stopping || state.stopped?.at > since_ms;
-// Looks at a moment. It is felt unless a stop came after the drag began.
+// Moves to a moment. It is felt unless a stop came after the drag began.
 function scrub_to(s, began_ms) {
   const before = state.at_s;
   look_at(s);
@@ -117,7 +116,7 @@ function scrub_to(s, began_ms) {
 }
 function end_scrub() {
   feeler = clearInterval(feeler);
-  if (live) live.track.down = false; // one that has no number yet ends when it has
+  if (live) live.track.down = false; // a stroke without a number yet ends when it gets one
   if (live?.number) tell("end", {stroke: live.number});
   live = null;
 }
@@ -140,7 +139,7 @@ for (const l of [full, mini]) {
     e.preventDefault();
     const x = e.clientX - l.canvas.getBoundingClientRect().left;
     if (e.ctrlKey) return zoom_time(Math.exp(e.deltaY / 300), to_time(l, x));
-    const along = e.deltaX || (e.shiftKey || !most_scroll(l) ? e.deltaY : 0); // lanes that all show have nothing to scroll
+    const along = e.deltaX || (e.shiftKey || !most_scroll(l) ? e.deltaY : 0); // if all lanes show, there is nothing to scroll
     if (along) show_time(full.from + along / l.width * shown(l), shown(l)); else scroll_to(l, l.scroll + e.deltaY);
   }, {passive: false});
   listen(l.canvas, "keydown", e => {
