@@ -26,7 +26,7 @@ class Session:
         while not (found := re.search(pattern, self.said)):
             if not select.select([self.process.stderr], [], [], PATIENCE_S)[0]:
                 raise AssertionError(self.said)
-            # Not by the stream, which would hide the lines after this one from select().
+            # Does not read by the stream, which would hide the lines after this one from select().
             more = os.read(self.process.stderr.fileno(), 4096)
             assert more, self.said
             self.said += more.decode()

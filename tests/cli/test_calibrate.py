@@ -69,7 +69,7 @@ class Simulated(CalibrateTest):
                        "--tactors", "0-6", *SHORT)
         self.assertIn("thresholds are P07's, simulated: those of tactors 7, 8 are left out", said.stderr)
         self.assertEqual(["threshold_dbfs" in t for t in self.toml("P08.toml")["tactor"]], [True] * 7 + [False] * 2)
-        # The same participant's stay, also those of another carrier.
+        # Thresholds of the same participant stay, also those of another carrier.
         said = self.simulated("both.toml", "--array", "P07.toml", "--tactors", 0, "--carrier", 100, *SHORT)
         self.assertNotIn("left out", said.stderr)
         thresholds = [t["threshold_dbfs"] for t in self.toml("both.toml")["tactor"]]

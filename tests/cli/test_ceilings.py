@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where two files say how loud it may get, and for how long: the lower ceiling holds, also where an array is named by a preset."""
+"""Tests ceilings on level and time in two files: the lower one applies, also if a preset names the array."""
 import array
 import json
 import subprocess
@@ -52,7 +52,7 @@ class Service(ServeTest):
         loud = self.write("loud.toml", QUIET.format(-20))
         self.check_ceiling(-40, "--array", loud, config="[serve]\nmax_level_dbfs = -40\n")
         self.check_ceiling(-20, "--array", loud, config="[defaults]\nlevel-dbfs = -40\n")
-        # So is that of a file which another file names.
+        # The ceiling of a file that another file names applies, too.
         outer = self.write("outer.toml", '[array]\nfile = "quiet.toml"\n[serve]\nmax_level_dbfs = -12\n')
         self.check_ceiling(-40, "--array", outer)
 

@@ -93,7 +93,7 @@ class CommandLine(ErrorsTest):
             "play park2016-1 -duration 1", "plan park2016-1 --array plam-3x3", "play park2016-1 --level-dbfs 12", "serve --http 80000",
             "serve --tcp 80000", "serve --osc 80000", "serve --level-dbfs -40", "serve --sl 7", "experiment park2016 --level-dbfs -20", "experiment park2016 --sl 7",
             "calibrate --level-dbfs -20", "plan park2016_3",
-            # These are near nothing.
+            # Names that are not near any known one.
             "plan park2016-1 --seed 3", "plan park2016-1 --loop", "plan park2016-1 --soap-opera", "plan park2016-1 -s")
 
     def test_the_command_comes_first_and_blanks_need_quotes(self):

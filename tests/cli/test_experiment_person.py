@@ -245,7 +245,7 @@ class ByLines(PersonTest):
         self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n").stderr)
         self.refused(3, *self.args(device="hw:CARD=Nowhere"))
         self.assertEqual(list((self.dir / "study").iterdir()), [])
-        # Nor is the folder of one kind of session after that.
+        # After that the folder does not accept the other kind of session, either.
         self.ok("experiment", "short.toml", "--participant", "02", "-o", "study", "--simulate", "seed=1")
         for name in ("README", "dataset_description.json", "participants.json", "task-pairs_beh.json"):
             self.assertIn("simulated", (self.dir / "study" / name).read_text().lower(), name)

@@ -334,7 +334,7 @@ class Tasks(ExperimentTest):
             self.write("tasks.toml", head + text)
             told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says]).stderr
             self.assertIn(f"tasks.toml:{1 + [x.split(' =')[0] for x in (head + text).splitlines()].index(line)}:", told)
-        # No value mends a motion that leaves the array.
+        # A motion that leaves the array fails at every value.
         text = head.replace("H 38", "H 380") + toml("method", "a") + adaptive.replace("0.13", "0.07").replace("0.09", "0.06")
         self.write("tasks.toml", text)
         told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=["leaves the array"]).stderr

@@ -288,7 +288,7 @@ class Schemas(ToolTest):
 
 
 class Examples(ToolTest):
-    """What ships, through every command that prints JSON of it."""
+    """Runs the shipped files through every command that prints JSON of them."""
 
     def valid(self, *args):
         told = json.loads(self.ok(*args, "--format", "json").stdout)

@@ -428,7 +428,7 @@ class Limits(ServeTest):
         c = s.client()
         c.await_end(c.ok("play", **SHORT)["stroke"])
         self.assertRegex(log.read_text(), r" info stroke 1 \"path\" at -12 dBFS of client \d+ \(this computer\): began \S+Z \(\d+\.\d{6} s by CLOCK_MONOTONIC\), finished after 0\.05")
-        # No further byte, like on a full disk: the log ends with the reason, and nothing else does.
+        # Accepts no further byte, like a full disk: the log ends with the reason, and nothing else ends.
         resource.prlimit(s.process.pid, resource.RLIMIT_FSIZE, (log.stat().st_size, resource.RLIM_INFINITY))
         self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
         status, _, err = s.terminate()

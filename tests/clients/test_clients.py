@@ -83,7 +83,7 @@ class Wscat(ServeTest):
         return m["result"]
 
     def run_wscat(self, s, *args):
-        # It ends where its input does.
+        # Ends at the end of its input.
         held = os.pipe()
         for end in held:
             self.addCleanup(os.close, end)

@@ -24,8 +24,9 @@ namespace tactor::test {
 enum class call_kind {
     plain,
     opens, ///< needs a descriptor
-    /// Not tried without memory, where other people's code ends the process: reads TOML (toml++ 3 is noexcept
-    /// where it allocates), or ALSA's configuration (alsa-lib 1.2.8 does not check its allocations).
+    /// Call that is not tried without memory, because other people's code would end the process: reads TOML
+    /// (toml++ 3 is noexcept where it allocates), or ALSA's configuration (alsa-lib 1.2.8 does not check its
+    /// allocations).
     ends,
     opens_ends, ///< both
 };

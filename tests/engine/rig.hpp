@@ -205,7 +205,7 @@ public:
         for (int i = 0; i < 100'000 && ended.size() < last_id && !loop.over(); ++i)
             play(options.period);
     }
-    /// The same; returns this stroke's only report, and fails without one.
+    /// Does the same and returns this stroke's only report; fails without one.
     stroke_report play_out(stroke_id id)
     {
         play_out();

@@ -93,7 +93,7 @@ private:
     std::atomic<int>* gone_;
 };
 
-/// The same, also whenever it is asked for something.
+/// A phantom model that does the same, also at each of its calls.
 class asking_model final : public phantom_model {
 public:
     asking_model(const player& p, std::atomic<int>& gone) : player_(&p), goes_(p, gone) {}

@@ -167,7 +167,7 @@ TEST_CASE("sizes that a recorder left open end with the file")
         CHECK(r.samples == expected);
         CHECK(r.missing == 0);
     }
-    // No samples are no open size.
+    // An empty recording does not count as one of unknown size.
     has(caught_message([] { return load(wav(head + open_data(0, chunk("LIST", "INFO")))); }), "0 samples");
 }
 

@@ -83,7 +83,7 @@ TEST_CASE("starts count from the piece, from the start of the one before, or fro
     check_starts(one + line(1, "start_s = 2") + one + line(2, "start_from = \"start\""), {2.0, 2.0});
     check_starts(one + line(1, "start_s = 2") + one + line(2, "start_from = \"piece\""), {2.0, 0.0});
     check_starts(one + line(1, "start_s = 2\nstart_from = \"end\"") + one + line(1), {2.0, 3.0});
-    // The same to the bit and to the frame.
+    // Equal to the bit and to the frame.
     const auto s = parse_all(one + line(1, "start_s = 0.1") + one + line(2, "start_s = 0.3") + one + line(1) +
                              one + line(1, "start_from = \"end\""));
     CHECK(s[1].start_s == 0.3);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `meson install` leaves behind: complete, movable, of use to another program, and gone when asked.
+"""Tests the files of `meson install`: complete, movable, usable by another program, and gone after uninstalling.
 
 Usage: test_install.py TOOL SOURCE_ROOT BUILD_ROOT PREFIX
 """

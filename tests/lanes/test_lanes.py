@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What each lane begins with, so that none rots between its runs: scripts that can be read, packages, inputs, names. Usage: test_lanes.py TOOL SOURCE_ROOT"""
+"""Checks the beginnings of each lane, so that none breaks between its runs: readable scripts, packages, inputs, names. Usage: test_lanes.py TOOL SOURCE_ROOT"""
 import ast
 import importlib.machinery
 import importlib.util
@@ -22,7 +22,7 @@ def said(*command, **more):
 
 
 def scripts():
-    """All scripts of the source: (file, its text), by its first line or its name."""
+    """Returns the scripts of the source, by first line or name: (file, its text)."""
     for file in sorted(f for f in ROOT.rglob("*") if f.is_file() and not f.relative_to(ROOT).parts[0].startswith((".git", ".cache", "build"))):
         if file.suffix in ("", ".py", ".sh"):
             try:

@@ -99,7 +99,7 @@ class Machine:
 
 
 class Recording(threading.Thread):
-    """What the card of a machine plays, with the time at which each piece came."""
+    """Reads the frames that the card of a machine plays, with the arrival time of each piece."""
 
     def __init__(self, machine):
         super().__init__(daemon=True)

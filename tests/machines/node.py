@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One of the two virtual machines of clocks.py: a card, a clock, an amplifier and half of an array."""
+"""A virtual machine of clocks.py, which has two: a card, a clock, an amplifier and half of an array."""
 import contextlib
 import ctypes
 import json

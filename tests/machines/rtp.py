@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One array of 24 tactors on two machines, over PipeWire's RTP: equal samples, when each plays, and what faults do.
+"""Tests an array of 24 tactors on two machines, over PipeWire's RTP: equal samples, their times, and faults.
 
 Usage: rtp.py TOOL [MINUTES]     as root, with PipeWire 1.4. Three network namespaces with the files of examples/rtp are the
 machines; they and all processes end with this one. MINUTES (default 2): how long the two receivers' times are compared.

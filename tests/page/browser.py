@@ -175,7 +175,7 @@ class Page:
             raise unittest.SkipTest("axe-core is not there (tests/lanes/page gets it)")
         if not self.value("'axe' in window"):
             self.value(pathlib.Path(AXE).read_text(encoding="utf-8") + "\n0")
-        # It asks for nothing: styles of elsewhere there are none.
+        # Requests nothing, because the page has no styles from elsewhere.
         return self.value("""axe.run(document, {resultTypes: ["violations"], preload: false}).then(r => r.violations.flatMap(v =>
             v.nodes.map(n => `${v.id}: ${n.target.join(" ")}: ${n.failureSummary}`)))""")
 

@@ -82,7 +82,7 @@ class Elements(html.parser.HTMLParser):
 
 class Modules(ToolTest):
     def test_a_module_imports_what_it_uses_and_no_more(self):
-        """What a module uses and does not import is a name that is missing when it runs."""
+        """Holds that a module imports all that it uses: a missing name shows only when it runs."""
         files = {f: f.read_text(encoding="utf-8") for f in ROOT.glob("src/**/page/**/*.js")}
         exported = {name for text in files.values() for name in re.findall(EXPORTED, text, re.M)}
         self.assertGreater(len(exported), 100)

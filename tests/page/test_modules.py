@@ -16,7 +16,7 @@ def main():
         return 0
     passed = failed = skipped = 0
     for file in sorted(pathlib.Path(__file__).parent.glob(f"{(sys.argv[1:] or '*')[0]}.test.mjs")):
-        # Not by `node --test`, which in some versions counts files as cases, too.
+        # Does not use `node --test`, which in some versions counts files as cases, too.
         result = subprocess.run([node, "--test-reporter=tap", file], capture_output=True, text=True, check=False)
         bad = []
         for failure, name, why in CASE.findall(result.stdout):

@@ -165,7 +165,7 @@ TEST_CASE("a spinning thread with real-time priority loses it, and is warned onc
     spinning.join();
     CHECK(policy == SCHED_OTHER);
     CHECK_FALSE(again);
-    // Else only checks that the watch leaves other threads alone.
+    // Without SCHED_FIFO only checks that the watch leaves other threads alone.
     WARN(spinning.fifo_error() == 0);
 }
 

@@ -18,7 +18,7 @@ namespace tactor::test {
 /// Returns false under sanitizers, where this program cannot count.
 bool counts_allocations() noexcept;
 
-/// The same; says "SKIPPED" for the test case where it does not.
+/// Returns the same; prints "SKIPPED" for the test case if allocations are not counted.
 bool can_count(const char* test_case) noexcept;
 bool can_exhaust(const char* test_case) noexcept;
 

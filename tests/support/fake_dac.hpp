@@ -43,7 +43,7 @@ public:
 
     /// Plays frames; the stream has an xrun where there are none left.
     void advance(std::uint64_t frames);
-    /// The same, but plays at most the queued frames: never an xrun. Returns how many.
+    /// Does the same, but plays at most the queued frames, so never with an xrun. Returns their number.
     std::uint64_t advance_queued(std::uint64_t frames);
 
     void suspend();             ///< the system sleeps

@@ -32,7 +32,7 @@ inline int rounds(int all)
     return shortened() ? all / 8 : all;
 }
 
-/// The same, but all of them with TACTOR_SOAK=whole.
+/// Returns the same, but all rounds with TACTOR_SOAK=whole.
 inline int rounds(int some, int all)
 {
     return whole() ? all : rounds(some);

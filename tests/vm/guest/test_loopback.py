@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a card receives is what render writes, unless the player reports an xrun or the recorder an overrun; and of two players that
+"""Tests that a card receives the samples that render writes, unless the player reports an xrun or the recorder an overrun; and of two players that
 share it through ALSA's dmix, the sum.
 
 Both happen where the emulated machine gets no time: such a recording says nothing, and another is made. How many there
