@@ -364,7 +364,7 @@ struct player_lines {
 /// 0.2 s at most. Any thread that reads the environment.
 [[nodiscard]] TACTOR_API std::string drive_time_fault(std::string_view device);
 
-/// Owns the sink, the audio thread and the control thread. Any thread but the audio thread may call its
+/// Owner of the sink, the audio thread and the control thread. Any thread but the audio thread may call its
 /// members. They lock, so several producers are safe. An impossible number gives an error, never a crash.
 /// When memory runs out, std::bad_alloc passes through and the failed call has no effect; the player's own
 /// threads wait for memory and lose nothing.

@@ -138,9 +138,9 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Makes a score stroke by stroke. It never keeps a whole plan in memory: an hour of park2016 takes 4 MB
-/// instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so the
-/// builder is no longer usable.
+/// Builder of a score, stroke by stroke. It never keeps a whole plan in memory: an hour of park2016 takes 4
+/// MB instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so
+/// the builder is no longer usable.
 class TACTOR_API score_builder {
 public:
     /// Starts an empty score.
@@ -169,7 +169,7 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-/// Renders a score offline, block by block, with the mixer of the player. Samples do not depend on block
+/// Offline renderer of a score, block by block, with the mixer of the player. Samples do not depend on block
 /// sizes. One thread at a time. A moved-from renderer can be destroyed and assigned to; its other members
 /// throw error (bad_input).
 class TACTOR_API renderer {

@@ -9,10 +9,11 @@
 namespace tactor::amplifier {
 
 struct sequence_options {
-    std::int64_t settle_ns = 10'000'000;  ///< turn-on time of the amplifier, spent in silence
-    std::uint64_t proof_frames = 192;     ///< frames that the DAC must play before it counts as running
-    std::int64_t calm_ns = 1'000'000'000; ///< most_xruns within it mute; that long without one unmutes
-    unsigned most_xruns = 2;              ///< number of xruns within calm_ns that mutes
+    std::int64_t settle_ns = 10'000'000; ///< turn-on time of the amplifier, spent in silence
+    std::uint64_t proof_frames = 192;    ///< frames that the DAC must play before it counts as running
+    std::int64_t calm_ns =
+        1'000'000'000;       ///< time in which most_xruns mute; without an xrun for as long, unmutes
+    unsigned most_xruns = 2; ///< number of xruns within calm_ns that mutes
 };
 
 enum class event {

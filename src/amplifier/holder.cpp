@@ -231,8 +231,8 @@ bool wait_for(int fd, short events, int timeout_ms) noexcept
                          code);
 }
 
-/// Blocks all signals. In the holder they stay blocked for good, because the player's handlers must not run
-/// there.
+/// A block of all signals while it lives. In the holder they stay blocked for good, because the player's
+/// handlers must not run there.
 class signals_blocked {
 public:
     signals_blocked()

@@ -11,8 +11,8 @@
 
 namespace tactor::detail {
 
-/// Takes strokes in order: start() and then lasts() of each. A stroke counts as an earlier one only after
-/// lasts(). Seconds from the start of the score.
+/// Starts of strokes, which come in order: start() and then lasts() for each. A stroke counts as an earlier
+/// one only after lasts(). Seconds from the start of the score.
 class start_times {
 public:
     /// Returns the start of the next stroke.

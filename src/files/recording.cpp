@@ -36,7 +36,7 @@ constexpr std::uint32_t elsewhere = 0xFFFFFFFF; ///< the size is in the chunk ds
 /// Least announced size that counts as unknown. Recorders that write to a pipe announce about 2 GB or 4 GB,
 /// more than a recording may have.
 constexpr std::uint32_t open_from = 0x7FF00000;
-constexpr std::size_t head_bytes = 8; ///< of a chunk
+constexpr std::size_t head_bytes = 8; ///< head of a chunk
 
 template <class T>
 T get(std::string_view bytes, std::size_t at)
@@ -51,8 +51,8 @@ struct wav_format {
     std::uint16_t tag = 0; ///< 1 integers, 3 floats
     std::uint16_t channels = 0;
     std::uint32_t rate = 0;
-    std::uint16_t bits = 0;  ///< of a sample
-    std::uint16_t bytes = 0; ///< of a sample with its padding
+    std::uint16_t bits = 0;  ///< bits of a sample
+    std::uint16_t bytes = 0; ///< bytes of a sample with its padding
 };
 
 /// Format and samples of a WAV file, whatever chunks lie between and even if the recorder did not write the

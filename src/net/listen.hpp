@@ -63,8 +63,8 @@ std::vector<std::pair<std::string, owned_fd>> inherited_sockets();
 /// Sends one datagram such as "READY=1" to NOTIFY_SOCKET, if there is one.
 void notify_manager(std::string_view text) noexcept;
 
-/// Returns the name of the process that listens at a port of TCP (`stream`) or is bound to one of UDP.
-/// Returns "another user's process" if the system hides it; empty if no socket has that port.
+/// Returns the name of the process that listens at a TCP port (`stream`) or is bound to a UDP port. Returns
+/// "another user's process" if the system hides it; empty if no socket has that port.
 std::string find_port_holder(std::uint16_t port, bool stream);
 
 } // namespace tactor::net

@@ -17,7 +17,7 @@ namespace {
 namespace base64 = boost::beast::detail::base64;
 
 constexpr std::size_t most_id_bytes = 80;
-constexpr std::size_t most_requests = 64; // of a batch
+constexpr std::size_t most_requests = 64; // most requests of a batch
 
 // Replaces numbers beyond the range of double with null. Null is not a number, either, but the message can
 // then be answered by its id.

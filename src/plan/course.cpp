@@ -38,7 +38,7 @@ constexpr double last_digits = 1e-12;
 
 /// Largest error of the phase between two points, and the rounding error that it cannot go below.
 constexpr double phase_error = 1e-11; // cycles
-constexpr double rounding = 2e-14;    // of the frequency
+constexpr double rounding = 2e-14;    // rounding, as a part of the frequency
 /// Most carrier cycles between two points of a bent course; beyond it a double cannot resolve 1e-10 of a
 /// cycle.
 constexpr double most_cycles = 4096.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Whole pictures: of strokes with their views, of predicted percepts, and of bars and curves; the
-/// descriptions of a plan in them.
+/// Complete pictures: strokes with their views, predicted percepts, bars and curves; and texts that describe
+/// a plan.
 #pragma once
 
 #include <cstddef>
@@ -82,7 +82,7 @@ struct matrix_panel {
     std::string title = {};
     std::string row_title = {};
     std::string column_title = {};
-    std::vector<std::string> names = {};               ///< of the rows, and of the columns
+    std::vector<std::string> names = {};               ///< names of the rows, and of the columns
     std::vector<std::vector<std::size_t>> counts = {}; ///< by row, then column
 };
 
@@ -113,8 +113,8 @@ struct curve_panel {
     std::string title = {};
     curve_axis x = {};
     curve_axis y = {};
-    std::vector<curve> curves = {}; ///< the first lowest
-    std::string key = {};           ///< beside the title, such as what the largest dot means
+    std::vector<curve> curves = {}; ///< drawn in order: the first one is lowest
+    std::string key = {};           ///< next to the title, such as what the largest dot means
 };
 
 struct panel_figure {
@@ -128,12 +128,12 @@ struct panel_figure {
     std::vector<matrix_panel> matrices = {}; ///< after the curves
 };
 
-/// Draws the panels, two beside each other from 120 mm width on. Each panel of bars is an SVG group of kind
-/// "bars" with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar",
-/// its error bar of kind "error", a dot of kind "value", a line between dots of kind "value-line". One of
-/// curves is of kind "curves", with data-x0 and data-x-scale, too: lines are of kind "curve" or "mean-curve",
-/// dots of kind "dot". A matrix is a group of kind "matrix" with data-title: each cell, of kind "cell", is
-/// the darker the larger its share of the row.
+/// Draws the panels, in two columns from 120 mm width on. Each panel of bars is an SVG group of kind "bars"
+/// with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error
+/// bar of kind "error", a dot of kind "value", a line between dots of kind "value-line". One of curves is of
+/// kind "curves", with data-x0 and data-x-scale, too: lines are of kind "curve" or "mean-curve", dots of kind
+/// "dot". A matrix is a group of kind "matrix" with data-title: each cell, of kind "cell", is the darker the
+/// larger its share of the row.
 canvas draw_panels(const panel_figure& f);
 
 /// Returns the vibration, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of

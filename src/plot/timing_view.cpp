@@ -398,8 +398,8 @@ private:
     bool colours_;
     lanes rows_;
     scale x_ = {};
-    double top_ = 0.0;                     // of the first row, pt
-    std::vector<std::size_t> levels_ = {}; // of each stroke in each row; empty: all have the same
+    double top_ = 0.0;                     // top of the first row, pt
+    std::vector<std::size_t> levels_ = {}; // level of each stroke in each row; empty: all have the same
     std::vector<std::string> notes_ = {};
     bool dense_ = false;
     bool conflicts_ = false;

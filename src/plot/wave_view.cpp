@@ -73,7 +73,7 @@ waveform measure(const score& s, const std::vector<unsigned>& channels, std::siz
     return w;
 }
 
-constexpr double highest_wave = 17.6; // of a row, pt: higher than in the timing diagram
+constexpr double highest_wave = 17.6; // height of a row, pt: higher than in the timing diagram
 constexpr double peak_column = 26.0;  // for the levels on the right, pt
 constexpr double least_cycle = 1.5;   // pt: for shorter cycles the envelope is shown
 constexpr double carrier_column = 0.2;

@@ -19,7 +19,7 @@ struct thread_options {
     std::string name;                                  ///< at most 15 characters are visible
     std::size_t stack_bytes = std::size_t{256} * 1024; ///< small: mlockall(MCL_FUTURE) charges all of it
     bool fifo = false;                                 ///< request SCHED_FIFO, reset in children
-    int priority = 65;                                 ///< of SCHED_FIFO; lower if RLIMIT_RTPRIO allows less
+    int priority = 65; ///< priority of SCHED_FIFO; lower if RLIMIT_RTPRIO allows less
     /// Sets denormals to zero and uses the finest timer slack.
     bool audio = false;
 };

@@ -18,7 +18,7 @@ struct service_options;
 std::string import_strokes(const planning& with, const layout& faces, const net::json& params);
 
 /// Returns the result of `export` as JSON on one line.
-/// \throws fault_error, and exceptions of settle_options() and `go_on`.
+/// \throws fault_error, and exceptions of resolve_options() and `go_on`.
 std::string export_strokes(const service_options& o, const layout& faces, const net::json& params,
                            const go_on_check& go_on);
 

@@ -18,7 +18,7 @@ enum class view_kind { full, bursts, percept, peaks };
 
 struct view_choice {
     view_kind kind = view_kind::full;
-    std::size_t bins = 400; ///< of peaks
+    std::size_t bins = 400; ///< bins of the view peaks
 };
 
 /// Reads `view` and `bins`.

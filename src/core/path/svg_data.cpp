@@ -76,7 +76,7 @@ std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_de
                     std::atan2(h.y_mm - centre.y_mm, h.x_mm - centre.x_mm), clockwise ? way : -way};
 }
 
-/// Draws the commands of path data.
+/// A pen that draws the commands of path data.
 class path_pen {
 public:
     /// Draws one of M L H V C S Q T A. Lower case counts from the place of the pen.

@@ -34,8 +34,8 @@ struct progress_point {
 };
 
 /// Returns the covered part from time 0 to the duration, times strictly ascending; linear between the points.
-/// Where the speed changes, points are so dense that the error is at most 1e-4 of the change between two
-/// rests or changes. For a target that never moves, `part` is 0.
+/// If the speed changes, points are so dense that the error is at most 1e-4 of the change between two rests
+/// or changes. For a target that never moves, `part` is 0.
 std::vector<progress_point> progress_over_time(const trajectory& t);
 
 /// Covered part over time, smooth from one point to the next.

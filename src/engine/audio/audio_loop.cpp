@@ -310,7 +310,7 @@ void audio_loop::publish() noexcept
     reported_stage_ = s.stage;
     reported_epoch_ = s.epoch;
     reported_clocked_ = clocked;
-    // Until strokes may sound, every played frame counts.
+    // Reports every played frame until strokes may sound.
     if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
         link_.amplifier.wake.signal();
 

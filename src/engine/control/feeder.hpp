@@ -24,7 +24,7 @@ namespace tactor::engine {
 
 class trigger_thread;
 
-/// Merges the drives of the submitted scores by start frame and keeps the ring filled. A full ring or table
+/// Merger of the submitted scores' drives by start frame, which keeps the ring filled. A full ring or table
 /// makes scores wait here. Nothing is lost, and memory does not grow with the length of a score. No threads:
 /// one caller at a time.
 class feeder {
@@ -157,7 +157,7 @@ private:
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in the order in which they began
     std::vector<next_drive> next_;      ///< a heap, the earliest first; of fixed capacity
-    std::vector<command> batch_;        ///< of fixed capacity
+    std::vector<command> batch_;        ///< buffer of fixed capacity
     std::map<stroke_id, float> gains_;  ///< only of strokes that have one
     std::list<stroke_report> reports_;
     std::list<stroke_start> beginnings_;

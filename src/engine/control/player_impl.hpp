@@ -100,12 +100,12 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::shared_ptr<const begin_handler> on_begun;
     std::multimap<stroke_id, report_handler> watchers;
     array tactors;
-    std::vector<double> limits;  ///< of the array, by channel of the stream
+    std::vector<double> limits;  ///< limits of the array, by channel of the stream
     std::optional<layout> faces; ///< faces of the array, once a live stroke needs them
     stroke_id last_id = {};
     bool stopping = false;
     std::string handler_failed; ///< text of an exception from a handler of the program; empty: none
-    int empty_reads = 0;        ///< of the trigger line, control thread
+    int empty_reads = 0;        ///< empty reads of the trigger line, control thread
     const stroke_report* reporting = nullptr; ///< report that the handlers get now; control thread
     std::optional<std::int64_t> unfired;      ///< an edge for which there was no memory; control thread
     bool all_delivered = false;               ///< the stream is over and the handlers have got everything
@@ -113,7 +113,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     engine::stream_log log;  ///< control thread, once that runs
     engine::drive_book book; ///< control thread, once that runs
 
-    const std::vector<double> drive_levels_s; ///< of the book, when the stream began
+    const std::vector<double> drive_levels_s; ///< levels of the book when the stream began
     engine::audio_loop loop;
     engine::audio_thread audio;
     std::unique_ptr<control_thread> control;

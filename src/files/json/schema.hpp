@@ -22,7 +22,7 @@
 
 namespace tactor::files {
 
-/// Collects the schema of one object, which allows no other member.
+/// Collector of the schema of one object, which allows no other member.
 class json_schema {
 public:
     template <class T>

@@ -55,7 +55,7 @@ std::optional<waveform> find_beside(const std::string& file, const plan_sound& s
     }
 }
 
-// Reads the waveform, from its file or the one beside the plan.
+// Reads the waveform, from its file or from one in the plan's folder.
 waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings_kind recordings)
 {
     if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
@@ -281,7 +281,7 @@ private:
 
     std::string file_;
     recordings_kind recordings_;
-    std::vector<std::string> keys_; ///< by depth
+    std::vector<std::string> keys_; ///< keys of the open objects, by depth
     std::vector<burst> bursts_;
     curve_samples samples_;
     plan_file read_;

@@ -39,7 +39,7 @@ struct piece {
 struct plan_record {
     const piece& made;
     const array& tactors;
-    const score& samples;          ///< of all plans, made with `options`
+    const score& samples;          ///< score of all plans, made with `options`
     const render_options& options; ///< with rate and channels
 };
 

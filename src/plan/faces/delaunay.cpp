@@ -244,7 +244,7 @@ std::vector<unsigned> find_border(const std::vector<triangle>& group)
 /// Returns true if four points lie on one circle when each may move by same_place_mm.
 bool cocircular(const std::array<point, 4>& p)
 {
-    std::array<double, 4> area{}; // of the triangle without point i, twice
+    std::array<double, 4> area{}; // twice the area of the triangle without point i
     for (std::size_t i = 0; i < 4; ++i)
         area[i] = std::abs(turn(p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]));
     const auto best = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());

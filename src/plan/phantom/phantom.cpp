@@ -362,7 +362,7 @@ private:
 };
 
 constexpr double sigma_in_pitches = 0.6;
-constexpr double least_share = 0.01; // of the largest weight; smaller ones are dropped
+constexpr double least_share = 0.01; // part of the largest weight; smaller weights are dropped
 
 /// The model of Yun, Oh and Choi, WHC 2019: all tactors near the point, by distance.
 class gaussian final : public phantom_model {

@@ -23,7 +23,7 @@ struct same_tactors {
     std::array<std::uint8_t, 3> by_index = {}; ///< places in `ranks`, by the tactors' indices
     unsigned count = 3;                        ///< 2: they are the ends of the segment
     bool on_segment = false;                   ///< only on the segment, not in the whole disc
-    std::array<point, 2> ends = {};            ///< of the segment
+    std::array<point, 2> ends = {};            ///< ends of the segment
     unsigned skips = 0;                        ///< number of next places at which look_around() does nothing
 
     bool holds(point p) const noexcept

@@ -79,7 +79,7 @@ inline constexpr double loop_pause_s = 0.8; ///< pause of an animated picture be
 struct style {
     std::optional<colour> fill = {};
     std::optional<colour> stroke = {};
-    double width = 0.5; ///< of the stroke, pt
+    double width = 0.5; ///< width of the line, pt
     double dash = 0.0;  ///< length of dashes and gaps, pt; 0: none
 };
 
@@ -155,7 +155,7 @@ struct canvas {
 
     double width = 0.0;  ///< pt
     double height = 0.0; ///< pt
-    double loop_s = 0.0; ///< of an animated picture, its pause included; 0: it stands still
+    double loop_s = 0.0; ///< loop of an animated picture with its pause; 0: it stands still
     std::string title = {};
     std::string description = {};
     std::vector<element> elements = {};

@@ -115,7 +115,8 @@ void check(cairo_status_t status)
         throw error(error_kind::runtime, "picture", cairo_status_to_string(status));
 }
 
-// Paints on white; `scale` is units of the surface to the point. \throws error (runtime).
+// Paints on white; `scale`: units of the surface for each point.
+// \throws error (runtime).
 void paint(const canvas& c, cairo_surface_t* surface, double scale)
 {
     check(cairo_surface_status(surface));

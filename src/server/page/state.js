@@ -9,11 +9,11 @@ export const LEAST_PART_S = 0.05; // shortest part of a take or a stroke that is
 export const state = {
   // The service.
   hello: null, link: "connecting", stream: {state: "", reason: ""}, status: null, slow: false, asks_token: "",
-  lost_reason: "", retry_at: 0, // of a lost connection
+  lost_reason: "", retry_at: 0, // reason of a lost connection, and time of the next attempt
   fault: null,           // failure, for the banner
   stopped: null,         // {name, at}
   stopping: null,        // a stop without an answer: {since_ms, sent_ms}
-  touches: new Map(),    // of other clients, by stroke: {x_mm, y_mm, client, at}
+  touches: new Map(),    // touches of other clients, by stroke: {x_mm, y_mm, client, at}
   dbfs: [],              // level of each tactor
   options: [],           // rows of the table of options that a client may set
   // Takes.
@@ -30,7 +30,7 @@ export const state = {
   playing: null,         // {take, began_ms, numbers, felt, waits, again, next, ending} and its round; see service/player.js
   at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
-  compare: null,         // of two methods, see settings/compare.js
+  compare: null,         // comparison of two methods, see settings/compare.js
   tab: "method", sheet: "", placing: false, show_speed: true, show_strength: true,
 };
 

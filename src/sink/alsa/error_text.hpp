@@ -23,7 +23,7 @@ namespace tactor::alsa {
 /// Calls snd_lib_error_set_local(), which alsa-lib 1.2.8 declares without extern "C".
 snd_local_error_handler_t set_local_handler(snd_local_error_handler_t h) __asm__("snd_lib_error_set_local");
 
-/// Silences libasound on this thread while an object lives, unless the host has its own handler. The audio
+/// Silence of libasound on this thread while the object lives, unless the host has its own handler. The audio
 /// thread uses it: no lock and no allocation.
 class quiet {
 public:
@@ -41,8 +41,8 @@ private:
     snd_local_error_handler_t before_;
 };
 
-/// Collects libasound's messages on this thread while an object lives. A second object takes the
-/// messages while it lives.
+/// Collector of libasound's messages on this thread while it lives. A second one takes the messages while
+/// that lives.
 class library_messages : quiet {
 public:
     library_messages() noexcept;

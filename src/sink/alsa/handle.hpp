@@ -31,7 +31,7 @@ configuration read_configuration(const std::string& text = {});
 
 inline constexpr unsigned most_channels = max_pcm_channels;
 
-/// Closes a PCM and keeps a plugin's messages off standard error.
+/// Deleter that closes a PCM and keeps a plugin's messages off standard error.
 struct closer {
     void operator()(snd_pcm_t* p) const noexcept
     {

@@ -22,10 +22,10 @@ namespace tactor::alsa {
 
 /// A sink that writes with snd_pcm_writei(). If start() shows that a device has no clock, a timer paces it.
 ///
-/// A card plays its buffer round and round, and tells the kernel its place in the buffer. If no process
-/// reads this place during a whole round (interrupts were off, the processor or the machine stood still), the
-/// round is missing from the position, and no xrun is reported. So this sink reports an xrun for a stream
-/// that moved and was not looked at during a whole round, whatever the kernel says.
+/// A card plays its buffer round and round, and tells the kernel its place in the buffer. If no process reads
+/// this place during a whole round (interrupts were off, the processor or the machine stood still), the round
+/// is missing from the position, and no xrun is reported. So this sink reports an xrun for a stream that
+/// moved and whose position was not read during a whole round, whatever the kernel says.
 class pcm_sink final : public sink {
 public:
     /// Takes over a PCM. `on_card`: it plays on a sound card of the kernel.

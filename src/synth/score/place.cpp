@@ -148,7 +148,7 @@ private:
     void append_joined()
     {
         std::vector<run> runs(tactors_);
-        std::vector<std::vector<item_member>> members(tactors_); // of the latest run
+        std::vector<std::vector<item_member>> members(tactors_); // members of the latest run
         const std::size_t before = out_.items.size();
         std::size_t number = 0;
         for (const placed_burst& s : bursts_)

@@ -68,7 +68,7 @@ function draw_label(p, text, [x, y], tone) {
   p.fillStyle = colour(tone);
   p.fillText(text, x, y + 4);
 }
-// Writes a part of full amplitude beside its tactor.
+// Writes a part of full amplitude next to its tactor.
 export function draw_share(p, i, share) {
   if (!share_places[i]) return;
   p.font = font(12, 600);

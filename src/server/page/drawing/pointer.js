@@ -17,7 +17,7 @@ const LEAST_MM = 1;        // a shorter touch is a tap
 const HOLD_MS = 500;
 const LEAST_STEP_MS = 2;   // least interval of sent points
 const REACH_PX = 22, LEAST_PX = 3; // reach of a point, and the distance from which on it is dragged
-const LINE_PX = 16, PINCH_PX = 200; // of a wheel: height of a line, and the distance that zooms by e
+const LINE_PX = 16, PINCH_PX = 200; // height of a wheel's line, and the wheel's distance that zooms by e
 const LINE_MM_S = 60;
 const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1; // steps of a point that keys move
 export const PAUSE_S = 0.1; // pause between strokes of a take that were drawn, or copied, one after the other
@@ -136,7 +136,7 @@ function up(id, cancelled = false) {
   if ([...fingers.values()].some(o => o.mode === "draw")) return changed("drawing");
   finish();
 }
-// Takes back a touch that the system cancels beside others: it was a palm. A drawing of one finger is kept.
+// Takes back a touch that the system cancels while others go on: it was a palm. A drawing of one finger is kept.
 function take_back(id) {
   const f = fingers.get(id), others = [...fingers.values()].some(o => o !== f && o.mode === "draw");
   if (f?.mode !== "draw" || !(others || f.kind === "touch" && state.drawing.kind === "pen")) return up(id, true);

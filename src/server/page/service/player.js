@@ -8,7 +8,7 @@ import {fault_text, fault_sentence} from "../words.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // time before the end of a round at which changes are requested
-const TOGETHER_S = 0.3, ROUNDING_S = 0.001; // of sides of a comparison: time until both begin
+const TOGETHER_S = 0.3, ROUNDING_S = 0.001; // time until both sides of a comparison begin, and its rounding
 const STOP_AGAIN_MS = 500; // interval of stops without an answer
 const ended = new Set(), begun = new Map(); // ends and starts of strokes that came before the answer with their numbers
 let speaker = null;

@@ -13,7 +13,7 @@ const LONGEST_MM = 40;     // greatest distance of two knots
 const STEP_MM = 0.5;
 const STEP_S = 0.02;
 const MOST_POINTS = 20000;
-const TIMED_WEIGHTS = [1, 1, 4]; // of x, y and intensity
+const TIMED_WEIGHTS = [1, 1, 4]; // weights of x, y and intensity
 const CORNER_RAD = 50 * Math.PI / 180; // within 1 mm
 
 export const duration_s = s => s.timed.at(-1)[0];

@@ -5,7 +5,7 @@ import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.j
 import {total_s, duration_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
 
 const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // limits of undo
-const ROW_BYTES = 40;         // of a list of points, in memory
+const ROW_BYTES = 40;         // memory of a row of points
 
 // Steps: {changes: [[id, take before, take after], ...], current: [before, after], stroke}.
 let done = [], undone = [];

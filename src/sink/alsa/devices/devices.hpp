@@ -38,7 +38,8 @@ std::optional<device_name> named_device(std::string_view pcm);
 /// Returns the card with that id or index, if any.
 std::optional<card_info> find_card(const std::vector<card_info>& cards, const std::string& id_or_index);
 
-/// A playback device of a card. Without `device`: any of the card. Without both: any of any card.
+/// A playback device of a card. Without `device` it means any device of the card; without both, any device of
+/// any card.
 struct which_device {
     std::optional<unsigned> card = {};
     std::optional<unsigned> device = {};

@@ -25,8 +25,9 @@ namespace {
 
 using types = std::vector<std::string>;
 
-constexpr int deepest = 32;              // levels of plugins that are followed: a definition may name itself
-constexpr std::size_t most_types = 1024; // of one PCM; also stops definitions that double at each step
+constexpr int deepest = 32; // levels of plugins that are followed: a definition may name itself
+constexpr std::size_t most_types =
+    1024; // most types of one PCM; also stops definitions that double at each step
 
 // Types that affect only the device at their end.
 constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "copy",  "route", "rate",
@@ -327,7 +328,8 @@ std::vector<known_name> known_names(snd_config_t* top)
 
 namespace {
 
-constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
+constexpr int most_definitions =
+    64; // most definitions of one PCM; also stops definitions that double at each step
 constexpr std::size_t most_links = 1U << 19; // a table may connect each channel to each
 
 // Types that pass each channel on unchanged.
