@@ -77,14 +77,14 @@ struct limit_settings {
 /// values.
 struct written_value {
     std::string name = {}; ///< as written in the file
-    std::variant<std::monostate, bool, double, std::string> said = {};
+    std::variant<std::monostate, bool, double, std::string> value = {};
     bool in_list = false;      ///< an entry of a list
-    source_place at = {};      ///< of the value
-    source_place name_at = {}; ///< of the name
+    source_place at = {};      ///< place of the value
+    source_place name_at = {}; ///< place of the name
 
     friend bool operator==(const written_value& a, const written_value& b)
     {
-        return a.name == b.name && a.said == b.said && a.in_list == b.in_list;
+        return a.name == b.name && a.value == b.value && a.in_list == b.in_list;
     }
 };
 

@@ -30,7 +30,7 @@
 #include "cli/usage.hpp"
 #include "core/split.hpp"
 #include "files/text_file.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "session/process.hpp"
 #include "study/experiment/definition.hpp"
 

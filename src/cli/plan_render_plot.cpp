@@ -120,7 +120,7 @@ void print_plan(settings& s, const std::string& format)
 {
     const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
-    const render_options sound = session::settle_render(s, e);
+    const render_options sound = session::find_render(s, e);
     const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
     session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
@@ -178,7 +178,7 @@ int render(settings& s, const std::string& name)
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
-    const render_options how = session::settle_render(s, e);
+    const render_options how = session::find_render(s, e);
     const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);
     say_warnings(collect_warnings(sc.plans()));
@@ -218,7 +218,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     // Only the samples have levels: a picture of a plan needs none that a card could play.
     std::optional<score> sound;
     if (f.view == plot::figure_view::wave)
-        sound = make_score(q, e, session::settle_render(s, e));
+        sound = make_score(q, e, session::find_render(s, e));
     const std::string name = plot::name_scene(q.strokes, fs::path(shown_name(q.name)).filename().string());
     const plot::canvas picture = plot::draw_figure(
         {e.tactors, o.choose_title(name), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, f);

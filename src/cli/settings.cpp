@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -170,7 +170,7 @@ void check_movement(const movement& m)
                             "give a factor from 0 to 1");
 }
 
-pace::pace(movement m, double moving_s) : given_(std::move(m)), moving_s_(moving_s)
+pace::pace(movement m, double moving_s) : definition_(std::move(m)), moving_s_(moving_s)
 {
     lay_stretches();
     lay_phases();
@@ -178,8 +178,8 @@ pace::pace(movement m, double moving_s) : given_(std::move(m)), moving_s_(moving
 
 void pace::lay_stretches()
 {
-    const std::vector<profile_point> speeds = whole(given_.speed_mm_s);
-    const double scale = moving_s_ / time_at_speeds_s(given_, 1.0);
+    const std::vector<profile_point> speeds = whole(definition_.speed_mm_s);
+    const double scale = moving_s_ / time_at_speeds_s(definition_, 1.0);
     double begin = 0.0;
     for (std::size_t i = 0; i + 1 < speeds.size(); ++i) {
         const double v = speeds[i].value;
@@ -202,7 +202,7 @@ void pace::lay_phases()
         part = to;
         moved = until;
     };
-    for (const rest& r : given_.rests) {
+    for (const rest& r : definition_.rests) {
         move_to(r.part, r.part < 1.0 ? moving_until(r.part) : moving_s_);
         phases_.push_back({total_s_, total_s_ + r.time_s, part, part, moved, moved, r.intensity});
         total_s_ = phases_.back().end_s;
@@ -243,7 +243,8 @@ double pace::part_within(const phase& p, double t_s) const noexcept
     if (t_s >= p.end_s)
         return p.to;
     const double u = (t_s - p.begin_s) / (p.end_s - p.begin_s);
-    const double moved = p.begin_moving_s + eased(given_.easing, u) * (p.end_moving_s - p.begin_moving_s);
+    const double moved =
+        p.begin_moving_s + eased(definition_.easing, u) * (p.end_moving_s - p.begin_moving_s);
     return std::clamp(part_after(moved), p.from, p.to);
 }
 
@@ -255,20 +256,20 @@ double pace::part(double t_s) const noexcept
 double pace::intensity(double t_s) const noexcept
 {
     const phase& p = at(t_s);
-    return p.intensity * profile_at(given_.intensity, part_within(p, t_s));
+    return p.intensity * profile_at(definition_.intensity, part_within(p, t_s));
 }
 
 double pace::arrival_s(double part) const noexcept
 {
-    const auto there = std::lower_bound(phases_.begin(), phases_.end(), part,
+    const auto found = std::lower_bound(phases_.begin(), phases_.end(), part,
                                         [](const phase& p, double v) noexcept { return p.to < v; });
-    const phase& p = there == phases_.end() ? phases_.back() : *there;
+    const phase& p = found == phases_.end() ? phases_.back() : *found;
     if (p.rests() || !(part > p.from))
         return p.begin_s;
     if (part >= p.to)
         return p.end_s;
     const double way = (moving_until(part) - p.begin_moving_s) / (p.end_moving_s - p.begin_moving_s);
-    return std::min(p.begin_s + uneased(given_.easing, way) * (p.end_s - p.begin_s), p.end_s);
+    return std::min(p.begin_s + uneased(definition_.easing, way) * (p.end_s - p.begin_s), p.end_s);
 }
 
 std::vector<double> pace::bends() const
@@ -287,7 +288,7 @@ std::vector<double> pace::bends() const
 
 double pace::greatest(double from_part, double to_part) const noexcept
 {
-    return greatest_between(given_.intensity, from_part, to_part);
+    return greatest_between(definition_.intensity, from_part, to_part);
 }
 
 } // namespace tactor::detail

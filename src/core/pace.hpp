@@ -24,7 +24,7 @@ public:
 
     double total_s() const noexcept { return total_s_; }
     double moving_s() const noexcept { return moving_s_; }
-    const movement& given() const noexcept { return given_; }
+    const movement& definition() const noexcept { return definition_; }
 
     /// Returns the part of the path at a time, clamped. O(log n).
     double part(double t_s) const noexcept;
@@ -67,7 +67,7 @@ private:
     double part_after(double moving_s) const noexcept;
     double moving_until(double part) const noexcept;
 
-    movement given_;
+    movement definition_;
     double moving_s_;
     double total_s_ = 0.0;
     std::vector<stretch> stretches_;

@@ -27,7 +27,7 @@ namespace tactor::engine {
 namespace {
 
 constexpr std::size_t live_knots = 33;    // most knots of a course
-constexpr double least_live_soa_s = 0.01; // of bursts
+constexpr double least_live_soa_s = 0.01; // least SOA of bursts
 
 // Adds one more point with its delay.
 void count(live_delay& d, std::int64_t ns) noexcept
@@ -398,16 +398,16 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
 /// Mark of the thread that runs a model, while it lives.
 class model_call {
 public:
-    explicit model_call(std::atomic<std::thread::id>& who) noexcept : who_(who)
+    explicit model_call(std::atomic<std::thread::id>& owner) noexcept : owner_(owner)
     {
-        who_.store(std::this_thread::get_id(), std::memory_order_relaxed);
+        owner_.store(std::this_thread::get_id(), std::memory_order_relaxed);
     }
-    ~model_call() { who_.store({}, std::memory_order_relaxed); }
+    ~model_call() { owner_.store({}, std::memory_order_relaxed); }
     model_call(const model_call&) = delete;
     model_call& operator=(const model_call&) = delete;
 
 private:
-    std::atomic<std::thread::id>& who_;
+    std::atomic<std::thread::id>& owner_;
 };
 
 /// Returns all tactors' levels. A point may come anywhere, so all must have one.
@@ -515,7 +515,7 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
         return amplitudes_at(p.at, p.intensity, all);
     engine::smoothing next = smooth; // keeps `smooth` if a model throws
     next.to(course.start, p);
-    course.length = next.settles_in();
+    course.length = next.frames_to_target();
     if (course.length != 0)
         course.knots = most_knots;
     bool limited = false;

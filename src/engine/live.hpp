@@ -49,7 +49,7 @@ struct live_setup {
     std::uint32_t cut_ramp = 0; ///< for the other bursts
     bool restart = false;       ///< bursts: each restarts the carrier, instead of continuing the stroke's
     std::shared_ptr<const synth::timbre> sound = {}; ///< null: a sine
-    burst_envelope envelope = {};                    ///< of bursts
+    burst_envelope envelope = {};                    ///< envelope of bursts
     unsigned rate = 48000;
 };
 
@@ -200,7 +200,7 @@ public:
     /// Returns the place of the stroke at a frame after the newest, if no other place comes.
     place at(std::uint64_t frame) const;
     /// Returns the number of frames after the newest point until the stroke has reached it.
-    std::uint64_t settles_in() const noexcept { return places_.size() < 2 ? 0 : window_; }
+    std::uint64_t frames_to_target() const noexcept { return places_.size() < 2 ? 0 : window_; }
 
 private:
     struct entry {

@@ -64,15 +64,15 @@ bool is_shared(const fs::path& folder)
 
 /// Returns the file that a chain of links names, so that the link stays and its target is replaced. Stops at
 /// a descriptor's name.
-fs::path follow_links(const fs::path& asked)
+fs::path follow_links(const fs::path& named)
 {
     std::error_code ignored;
-    fs::path p = asked;
+    fs::path p = named;
     for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
         if (is_shared(parent_folder(p))) {
-            refuse(asked,
+            refuse(named,
                    fmt::format("{}is a link in a folder that others can write to",
-                               p == asked ? "" : p.string() + " "),
+                               p == named ? "" : p.string() + " "),
                    "name the file that you mean");
         }
         const fs::path next = fs::read_symlink(p, ignored);
@@ -110,11 +110,11 @@ void check_replaced(const fs::path& file, bool force,
 {
     constexpr std::size_t begin_bytes = 16384;
     constexpr std::size_t end_bytes = 1024;
-    struct stat there {};
-    if (::stat(file.c_str(), &there) != 0)
+    struct stat existing {};
+    if (::stat(file.c_str(), &existing) != 0)
         return;
-    refuse_input(there, file);
-    if (force || !S_ISREG(there.st_mode) || there.st_size == 0)
+    refuse_input(existing, file);
+    if (force || !S_ISREG(existing.st_mode) || existing.st_size == 0)
         return;
     std::ifstream in(file, std::ios::binary);
     std::string begin(begin_bytes, '\0');
@@ -147,7 +147,7 @@ void sync_folder(const fs::path& folder) noexcept
 }
 
 output_file::output_file(const fs::path& file, patience go_on, owner_kind writer)
-    : asked_(file), go_on_(std::move(go_on))
+    : name_(file), go_on_(std::move(go_on))
 {
     if (file.empty())
         throw error(error_kind::bad_input, "file", "its name is empty", "name a file");
@@ -157,22 +157,22 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
         return;
     }
     std::error_code failed;
-    const fs::file_status there = fs::status(target_, failed);
-    if (fs::is_directory(there) || !target_.has_filename())
-        refuse(asked_, "is a folder", "name a file in it", EISDIR);
+    const fs::file_status existing = fs::status(target_, failed);
+    if (fs::is_directory(existing) || !target_.has_filename())
+        refuse(name_, "is a folder", "name a file in it", EISDIR);
     struct stat s {};
     if (::stat(target_.c_str(), &s) == 0)
-        refuse_input(s, asked_, writer);
-    if (fs::exists(there) && !fs::is_regular_file(there)) {
+        refuse_input(s, name_, writer);
+    if (fs::exists(existing) && !fs::is_regular_file(existing)) {
         open_directly();
         return;
     }
     const fs::path folder = parent_folder(target_);
     if (!fs::is_directory(folder, failed)) {
-        refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
+        refuse(name_, fmt::format("the folder \"{}\" does not exist", folder.string()),
                "create it first, or name another", ENOENT);
     }
-    if (fs::exists(there) && ::access(target_.c_str(), W_OK) != 0)
+    if (fs::exists(existing) && ::access(target_.c_str(), W_OK) != 0)
         fail(errno);
     open_beside();
 }
@@ -185,7 +185,7 @@ void output_file::open_descriptor(int descriptor, owner_kind writer)
     struct stat s {};
     if (!fd_ || ::fstat(fd_.get(), &s) != 0)
         fail(errno);
-    refuse_input(s, asked_, writer);
+    refuse_input(s, name_, writer);
 }
 
 // Opens without blocking: a pipe without a reader would stop the program for ever.
@@ -272,7 +272,7 @@ void output_file::fail(int code) const
     } else if (code == EACCES || code == EPERM || code == EROFS) {
         hint = "name a file that you may write";
     }
-    throw_caused(error(error_kind::runtime, source_place{asked_.string()},
+    throw_caused(error(error_kind::runtime, source_place{name_.string()},
                        fmt::format("cannot be written: {}", why), hint),
                  code);
 }

@@ -33,10 +33,10 @@ void check_replaced(const std::filesystem::path& file, bool force,
 /// failures: some file systems cannot do it.
 void sync_folder(const std::filesystem::path& folder) noexcept;
 
-/// A new file beside `file`. commit() gives it that name; the destructor removes it otherwise. So other
-/// programs see the old file or the whole new one, which keeps the old one's owner and rights. Follows links,
-/// except in a folder in which any user may put one (sticky, such as /tmp). Writes directly, in order, to
-/// existing files that are not regular (a device, a pipe) and to names of descriptors (/dev/stdout,
+/// A new file in the folder of `file`. commit() gives it that name; the destructor removes it otherwise. So
+/// other programs see the old file or the whole new one, which keeps the old one's owner and rights. Follows
+/// links, except in a folder in which any user may put one (sticky, such as /tmp). Writes directly, in order,
+/// to existing files that are not regular (a device, a pipe) and to names of descriptors (/dev/stdout,
 /// /dev/fd/N). One thread at a time; the members may block on the file system, and on a pipe's reader.
 class output_file {
 public:
@@ -75,9 +75,9 @@ private:
     bool still_wanted();
     bool wait_for_room();
 
-    std::filesystem::path asked_;     ///< as the user named it, for messages
+    std::filesystem::path name_;      ///< as the user named it, for messages
     std::filesystem::path target_;    ///< links followed
-    std::filesystem::path temporary_; ///< beside the target, until it replaces that
+    std::filesystem::path temporary_; ///< in the target's folder, until it replaces the target
     bool directly_ = false;           ///< written without a temporary file: a pipe, a device, a descriptor
     patience go_on_;
     owned_fd fd_;

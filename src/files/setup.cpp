@@ -29,7 +29,7 @@ namespace {
 // Source of a text.
 struct setup_source {
     std::string name;             // in messages
-    std::filesystem::path folder; // of relative names; empty: the current one
+    std::filesystem::path folder; // folder of relative names; empty: the current one
     unsigned depth = 1;           // number of nested files, this one included
 };
 
@@ -63,7 +63,7 @@ std::optional<double> seconds(std::optional<double> ms)
     return ms ? std::optional(*ms * 1e-3) : std::nullopt;
 }
 
-written_value read_value(const toml_table& t, const toml_table::said_key& e, const toml::node& n,
+written_value read_value(const toml_table& t, const toml_table::key_value& e, const toml::node& n,
                          bool in_list)
 {
     return {std::string(e.key), t.plain(n, e.key), in_list, t.where(n), e.key_at};
@@ -218,7 +218,7 @@ void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, arr
     }
 }
 
-// Reads entries beside a grid, a preset or a file: each adds to the tactor that it names.
+// Reads entries in addition to a grid, a preset or a file: each adds to the tactor that it names.
 void adjust_tactors(const std::vector<toml_table>& entries, std::string_view base, array& a)
 {
     std::vector<const toml_table*> by_tactor(a.tactors.size());
@@ -494,7 +494,7 @@ void read_limits(const toml_table& t, located_setup& out)
 // Reads [defaults] without interpretation.
 void read_defaults(const toml_table& t, located_setup& out)
 {
-    for (const toml_table::said_key& e : t.entries())
+    for (const toml_table::key_value& e : t.entries())
         add_default(out.contents.defaults, read_value(t, e, *e.value, false));
 }
 
@@ -502,7 +502,7 @@ void read_defaults(const toml_table& t, located_setup& out)
 void read_serve(const toml_table& t, located_setup& out)
 {
     std::vector<written_value> all;
-    for (const toml_table::said_key& e : t.entries())
+    for (const toml_table::key_value& e : t.entries())
         if (const toml::array* list = e.value->as_array())
             for (const toml::node& n : *list)
                 all.push_back(read_value(t, e, n, true));

@@ -21,8 +21,8 @@ bool keeps_ceiling(const written_value& earlier, const written_value& later)
 {
     if (!earlier.name.starts_with("max_"))
         return false;
-    const auto* before = std::get_if<double>(&earlier.said);
-    const auto* after = std::get_if<double>(&later.said);
+    const auto* before = std::get_if<double>(&earlier.value);
+    const auto* after = std::get_if<double>(&later.value);
     return before == nullptr || (after != nullptr && *before <= *after);
 }
 

@@ -146,11 +146,11 @@ void add_lines(lines& out, const setup& u)
 
 std::string value_text(const written_value& d)
 {
-    if (const auto* text = std::get_if<std::string>(&d.said))
+    if (const auto* text = std::get_if<std::string>(&d.value))
         return toml_string(*text);
-    if (const bool* flag = std::get_if<bool>(&d.said))
+    if (const bool* flag = std::get_if<bool>(&d.value))
         return fmt::format("{}", *flag);
-    return fmt::format("{}", std::get<double>(d.said));
+    return fmt::format("{}", std::get<double>(d.value));
 }
 
 void add_serve(lines& out, const std::vector<written_value>& serve)
@@ -218,7 +218,7 @@ void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
 void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 {
     const pace& p = *law.moves;
-    const movement& m = p.given();
+    const movement& m = p.definition();
     const double longer = i.duration_s / p.total_s();
     out.add_unusual("easing", m.easing, easing_kind::linear);
     if (m.speed_mm_s.empty())
@@ -236,10 +236,10 @@ void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 void add_path(lines& out, const stroke& s, const trajectory::impl& i, const drawn_path& law)
 {
     out.add("path", law.way.svg());
-    const bool varies = law.moves && !law.moves->given().intensity.empty();
+    const bool varies = law.moves && !law.moves->definition().intensity.empty();
     const double strength = law.intensity * i.gain;
     if (varies)
-        out.add_rows("intensity", law.moves->given().intensity, [strength](const profile_point& p) {
+        out.add_rows("intensity", law.moves->definition().intensity, [strength](const profile_point& p) {
             return pair({p.part, p.value * strength});
         });
     else

@@ -205,19 +205,19 @@ toml_table::toml_table(const toml::table& t, std::string title, const std::strin
 
 void toml_table::only(const std::vector<std::string_view>& known) const
 {
-    for (const said_key& e : entries())
+    for (const key_value& e : entries())
         if (std::find(known.begin(), known.end(), e.key) == known.end())
             throw unknown_key(e.key_at, e.key, title_, known);
 }
 
-std::vector<toml_table::said_key> toml_table::entries() const
+std::vector<toml_table::key_value> toml_table::entries() const
 {
-    std::vector<said_key> all;
+    std::vector<key_value> all;
     for (auto&& [key, value] : *table_) {
         const auto& begin = key.source().begin;
         all.push_back({key.str(), &value, {*file_, begin.line, begin.column}});
     }
-    std::sort(all.begin(), all.end(), [](const said_key& a, const said_key& b) {
+    std::sort(all.begin(), all.end(), [](const key_value& a, const key_value& b) {
         return std::pair(a.key_at.line, a.key_at.column) < std::pair(b.key_at.line, b.key_at.column);
     });
     return all;

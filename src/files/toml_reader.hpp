@@ -43,13 +43,13 @@ public:
     void only(const std::vector<std::string_view>& known) const;
 
     /// A key of the table with its value.
-    struct said_key {
+    struct key_value {
         std::string_view key;
         const toml::node* value = nullptr;
         source_place key_at;
     };
     /// Returns the keys in the order of the file.
-    std::vector<said_key> entries() const;
+    std::vector<key_value> entries() const;
 
     bool has(std::string_view key) const { return node(key) != nullptr; }
     const std::string& title() const noexcept { return title_; }

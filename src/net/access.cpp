@@ -108,8 +108,8 @@ bool is_accepted(const ip::address& from, const std::vector<address_prefix>& pee
 
 bool host_is_ours(std::string_view host, std::string_view local, const std::vector<std::string>& allowed)
 {
-    const auto [name, said_port] = split(host);
-    const std::string_view port = said_port.empty() ? usual_port : said_port;
+    const auto [name, own_port] = split(host);
+    const std::string_view port = own_port.empty() ? usual_port : own_port;
     const auto [address, local_port] = split(local);
     if (name.empty())
         return false;

@@ -70,7 +70,7 @@ bool connection::handled(bool go_on)
     if (closed_ || finishing_)
         return false;
     if (!go_on)
-        turn_out("this is not accepted");
+        dismiss("this is not accepted");
     if (reading_ && !met_ && (!handlers_.met || handlers_.met())) {
         met_ = true;
         disarm();
@@ -162,9 +162,9 @@ void connection::fail(connection_fault f)
         return close();
     if (handlers_.fault)
         handlers_.fault(f);
-    turn_out(f == connection_fault::memory ? "there is not enough memory for it"
-             : met_                        ? "a message took too long"
-                                           : "the first message did not come");
+    dismiss(f == connection_fault::memory ? "there is not enough memory for it"
+            : met_                        ? "a message took too long"
+                                          : "the first message did not come");
 }
 
 void connection::stop_reading()
@@ -301,7 +301,7 @@ void line_connection::write()
 void line_connection::shut()
 {
     boost::system::error_code ignored;
-    // Reads the remaining input, which would turn the last message into a reset.
+    // Reads the remaining input: unread input would turn the last message into a reset.
     socket_.shutdown(asio::socket_base::shutdown_send, ignored);
     for (std::size_t drained = 0; drained < most_drained && socket_.available(ignored) != 0 && !ignored;)
         drained += socket_.read_some(asio::buffer(chunk_), ignored);

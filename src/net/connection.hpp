@@ -47,7 +47,7 @@ public:
     /// Stops reading, and closes when everything is written, or after a second.
     virtual void finish() = 0;
     /// Closes in the same way. `why`: reason, at most 123 bytes, for peers whose protocol carries one.
-    virtual void turn_out(const char* /*why*/) { finish(); }
+    virtual void dismiss(const char* /*why*/) { finish(); }
 };
 
 /// Reason for which a connection is given up.

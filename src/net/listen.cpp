@@ -68,7 +68,7 @@ std::string process_name(pid_t pid)
 
 // Removes a socket at which no process listens, so that its name is free. Throws if a process listens there,
 // and for other files.
-void make_free(const std::string& path)
+void free_name(const std::string& path)
 {
     struct stat s {};
     if (::lstat(path.c_str(), &s) != 0) {
@@ -83,11 +83,11 @@ void make_free(const std::string& path)
     const sockaddr_un a = unix_address(path);
     // EAGAIN: the queue is full, so a process listens.
     if (::connect(probe.get(), generic(a), sizeof a) == 0 || errno == EAGAIN) {
-        ucred who{};
-        socklen_t n = sizeof who;
-        const bool known = ::getsockopt(probe.get(), SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && who.pid > 0;
+        ucred peer{};
+        socklen_t n = sizeof peer;
+        const bool known = ::getsockopt(probe.get(), SOL_SOCKET, SO_PEERCRED, &peer, &n) == 0 && peer.pid > 0;
         throw error(error_kind::not_available, "socket " + path,
-                    fmt::format("{} listens there already", known ? process_name(who.pid) : "somebody"),
+                    fmt::format("{} listens there already", known ? process_name(peer.pid) : "somebody"),
                     "use that one, end it, or name another socket");
     }
     if (errno != ECONNREFUSED)
@@ -240,13 +240,13 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     }
     constexpr int tries = 200;
     static_cast<void>(detail::lock_file(lock, tries)); // continues even without the lock
-    make_free(path);
+    free_name(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     // The name gets the socket's own mode, less the umask: never more than this, not for a moment.
     if (!fd || ::fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0 || ::bind(fd.get(), generic(a), sizeof a) != 0)
         refused(what, errno);
-    const bool given = !group || ::lchown(path.c_str(), static_cast<uid_t>(-1), *group) == 0;
-    if (!given || ::chmod(path.c_str(), mode) != 0 || ::listen(fd.get(), SOMAXCONN) != 0) {
+    const bool has_group = !group || ::lchown(path.c_str(), static_cast<uid_t>(-1), *group) == 0;
+    if (!has_group || ::chmod(path.c_str(), mode) != 0 || ::listen(fd.get(), SOMAXCONN) != 0) {
         const int code = errno;
         ::unlink(path.c_str());
         refused(what, code);

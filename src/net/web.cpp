@@ -62,7 +62,7 @@ public:
 
     void finish() override;
     /// Closes with status 1008.
-    void turn_out(const char* reason) override;
+    void dismiss(const char* reason) override;
 
 private:
     void shut() override;
@@ -232,7 +232,7 @@ void web_connection::upgrade()
 }
 
 // Checks by pings, every 10 s, that the browser is there and does not stop within a frame's header. Off while
-// nothing is read, because the answers would not be read, either.
+// nothing is read, because the answers would be unread, too.
 void web_connection::look_after(bool is_read)
 {
     websocket::stream_base::timeout t{};
@@ -299,7 +299,7 @@ void web_connection::say_farewell()
     ws_->async_close(why_, [this, self = shared_from_this()](const beast::error_code&) { close(); });
 }
 
-void web_connection::turn_out(const char* reason)
+void web_connection::dismiss(const char* reason)
 {
     if (!finishing())
         why_ = {websocket::close_code::policy_error, reason};
@@ -405,12 +405,12 @@ void page_server::take(listener::socket_type s)
         return;
     all_.insert(c);
     const visitor n = ++last_;
-    c->start({.message = [this, n](std::string_view text) { return calls_.said(n, text); },
+    c->start({.message = [this, n](std::string_view text) { return calls_.on_text(n, text); },
               .closed =
                   [this, n, weak = std::weak_ptr(c)] {
                       all_.erase(weak.lock());
                       if (visitors_.erase(n) != 0)
-                          calls_.left(n);
+                          calls_.on_leave(n);
                   },
               .get =
                   [this](std::string_view path, std::string_view host, std::string_view) {

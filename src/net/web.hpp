@@ -39,7 +39,7 @@ struct page_document {
 /// talk to that host only.
 web_reply make_page(const page_document& document, std::string_view host);
 
-/// Sends the browser on this socket as much as it takes of the reply that there is no place.
+/// Replies to the browser on this socket that no place is free, as far as the socket takes the reply.
 void turn_away(int socket);
 
 /// Returns the reply to a browser for which no descriptor is free.
@@ -55,9 +55,9 @@ public:
     /// Handlers, called on the page's thread.
     struct handlers {
         /// Handles a text message. Returns false to close the connection.
-        std::function<bool(visitor, std::string_view)> said;
+        std::function<bool(visitor, std::string_view)> on_text;
         /// Called when the visitor is gone.
-        std::function<void(visitor)> left;
+        std::function<void(visitor)> on_leave;
     };
 
     /// Starts the server. `listening` is a TCP socket.

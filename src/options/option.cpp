@@ -53,11 +53,11 @@ value check_number(const option& o, const value& v)
 }
 
 // Returns the factor from a typed unit to the option's own; 0 if they measure different things.
-double unit_factor(std::string_view given, std::string_view unit)
+double unit_factor(std::string_view typed, std::string_view unit)
 {
     struct entry {
         std::string_view unit;
-        std::string_view given;
+        std::string_view typed;
         double factor;
     };
     constexpr std::array<entry, 10> known{{{"s", "sec", 1.0},
@@ -71,9 +71,9 @@ double unit_factor(std::string_view given, std::string_view unit)
                                            {"dBFS", "dB", 1.0},
                                            {"dB SL", "dB", 1.0}}};
     for (const entry& e : known)
-        if (unit == e.unit && given == e.given)
+        if (unit == e.unit && typed == e.typed)
             return e.factor;
-    return given == unit ? 1.0 : 0.0;
+    return typed == unit ? 1.0 : 0.0;
 }
 
 // Returns the number to write instead of "70ms" (for an option in seconds) or "1,5"; empty if it is not
@@ -227,7 +227,7 @@ value read_value(const option& o, const value& v)
     return v;
 }
 
-void put(wishes& w, const option& o, const value& v)
+void put(option_values& w, const option& o, const value& v)
 {
     try {
         o.to.set(w, v);

@@ -57,7 +57,7 @@ struct stream_options {
 inline constexpr std::size_t most_options = 128;
 
 /// Values of all options: the user's, else that of [defaults], else the built-in default.
-struct wishes {
+struct option_values {
     std::optional<std::string> path_data = {};   ///< SVG path data in place of a stroke
     std::optional<std::string> shape = {};       ///< name of a shape in place of a stroke
     std::optional<std::string> array_name = {};  ///< preset or file
@@ -72,7 +72,7 @@ struct wishes {
     std::optional<unsigned> rate = {};
     std::optional<unsigned> channels = {};
     std::optional<format_kind> format = {};
-    bool compensate = false; ///< for low_speed
+    bool compensate = false; ///< used with the observer low_speed
     observer_kind observer = observer_kind::centroid;
     low_speed_observer low_speed = {};
     detail::spread_choice spread = {};
@@ -81,7 +81,7 @@ struct wishes {
     stream_options stream = {};
 
     std::uint64_t place = 0;                          ///< front end: bits of `place`
-    std::bitset<most_options> given = {};             ///< rows that the user set
+    std::bitset<most_options> by_user = {};           ///< rows that the user set
     std::map<std::size_t, source_place> in_file = {}; ///< rows of [defaults], with their places
 
     /// Returns true if the user set the option. \pre An option has that name.
@@ -124,7 +124,7 @@ enum place : std::uint64_t {
     in_plan = 1 << 15,        ///< Python's plan() and Score.plan()
     in_score = 1 << 16,       ///< Python's Score()
     in_compare = 1 << 17,     ///< Python's compare()
-    planning = 1 << 18,       ///< decides how a stroke is planned: refused beside a plan
+    planning = 1 << 18,       ///< decides how a stroke is planned: refused together with a plan
     through_server = 1 << 19, ///< play --socket takes it, though no client sends it
     in_stroke = 1 << 20,      ///< a stroke file has a key of the field's name
     in_player = 1 << 21,      ///< Python's Player()
@@ -149,14 +149,14 @@ struct access {
     /// \pre The value is of the option's kind, in bounds, and one of the choices; or it is empty, which
     ///         clears an option that has a rival.
     /// \throws error (bad_input) for a text that cannot be read.
-    void (*set)(wishes&, const value&) = nullptr;
-    value (*get)(const wishes&) = nullptr;
+    void (*set)(option_values&, const value&) = nullptr;
+    value (*get)(const option_values&) = nullptr;
 };
 
 /// A row of the table.
 struct option {
     std::string_view name = {};  ///< "level_dbfs"; the command line writes - for _
-    std::string_view field = {}; ///< of the library and in stroke files: "soa_s"; empty: the name
+    std::string_view field = {}; ///< name in the library and in stroke files: "soa_s"; empty: the name
     std::string_view unit = {};  ///< "s", "mm", "Hz"; empty: none
     kind what = kind::number;
     detail::bounds allowed = {};
@@ -167,8 +167,8 @@ struct option {
     std::string_view in = group::stroke;
     std::string_view help = {}; ///< one line, with the default
     std::uint64_t where = 0;
-    std::string_view rival = {};           ///< name of the option that cannot stand beside it
-    bool (*used)(const wishes&) = nullptr; ///< returns true if anything uses the value; null: always used
+    std::string_view rival = {};                  ///< name of the option that cannot be set together with it
+    bool (*used)(const option_values&) = nullptr; ///< true if anything uses the value; null: always
     std::string_view needs = {}; ///< options to add if nothing uses it, as marks; alternatives separated by |
     access to = {};
 
@@ -191,12 +191,12 @@ struct option {
     return static_cast<std::size_t>(&o - all().data());
 }
 
-inline bool wishes::gives(const option& o) const
+inline bool option_values::gives(const option& o) const
 {
-    return given[index(o)];
+    return by_user[index(o)];
 }
 
-inline bool wishes::gives(std::string_view name) const
+inline bool option_values::gives(std::string_view name) const
 {
     return gives(*find(name));
 }
@@ -227,7 +227,7 @@ value read_value(const option& o, const value& v);
 
 /// Sets an option to a result of read_text() or read_value().
 /// \throws error (bad_input), about the option, for a text that cannot be read.
-void put(wishes& w, const option& o, const value& v);
+void put(option_values& w, const option& o, const value& v);
 
 /// Returns the bounds in words: "0 to 10 s".
 std::string range_text(detail::bounds b, std::string_view unit);

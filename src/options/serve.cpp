@@ -29,9 +29,9 @@ namespace {
 
 std::string read_text_value(const written_value& d)
 {
-    const auto* text = std::get_if<std::string>(&d.said);
+    const auto* text = std::get_if<std::string>(&d.value);
     if (text == nullptr)
-        fail(d, fmt::format("{} is {}", d.name, shown(d.said)), "give a string in quotes");
+        fail(d, fmt::format("{} is {}", d.name, shown(d.value)), "give a string in quotes");
     if (text->empty() || text->find('\0') != std::string::npos)
         fail(d, fmt::format("{} is {}", d.name, text->empty() ? "empty" : "not a text"), {});
     return *text;
@@ -39,12 +39,12 @@ std::string read_text_value(const written_value& d)
 
 double read_number(const written_value& d, detail::bounds b, bool whole)
 {
-    const auto* v = std::get_if<double>(&d.said);
+    const auto* v = std::get_if<double>(&d.value);
     if (v == nullptr || (whole && *v != std::floor(*v)))
-        fail(d, fmt::format("{} is {}", d.name, shown(d.said)),
+        fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
              whole ? "give a whole number" : "give a number");
     if (!b.holds(*v))
-        fail(d, fmt::format("{} is {}", d.name, shown(d.said)),
+        fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
              fmt::format("allowed: {} to {}", plain_number(b.low), plain_number(b.high)));
     return *v;
 }
@@ -95,7 +95,7 @@ std::string read_host(const written_value& d)
 // Reads "127.0.0.1:4001", or a bare 4001.
 std::string read_address(const written_value& d)
 {
-    if (std::holds_alternative<double>(d.said))
+    if (std::holds_alternative<double>(d.value))
         return plain_number(read_number(d, {0.0, 65535.0}, true));
     std::string text = read_text_value(d);
     if (!is_address(text))
@@ -168,7 +168,7 @@ void take(serve_settings& s, const key& k, const written_value& d)
 {
     const auto* list = std::get_if<list_place>(&k.to);
     if ((list != nullptr) != d.in_list)
-        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : shown(d.said)),
+        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : shown(d.value)),
              d.in_list ? "give one value" : "give a list of texts");
     if (list != nullptr)
         (s.*(*list)).push_back(k.read_text(d));
@@ -184,11 +184,11 @@ void take(serve_settings& s, const key& k, const written_value& d)
 
 } // namespace
 
-serve_settings read_serve(const std::vector<written_value>& said)
+serve_settings read_serve(const std::vector<written_value>& entries)
 {
     serve_settings s;
     const written_value* kept = nullptr;
-    for (const written_value& d : said) {
+    for (const written_value& d : entries) {
         const key& k = find_key(d);
         take(s, k, d);
         if (k.name == "kept_clients")

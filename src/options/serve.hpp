@@ -17,10 +17,10 @@ namespace tactor::options {
 /// Bounds for the requests of a client, and of all together.
 struct serve_limits {
     std::size_t max_clients = 64;
-    std::size_t kept_clients = 8;     ///< of these, places for the Unix socket alone
-    std::size_t max_strokes = 64;     ///< of one client at once, including those that are being planned
+    std::size_t kept_clients = 8; ///< of these, places for the Unix socket alone
+    std::size_t max_strokes = 64; ///< strokes of one client at once, including those that are being planned
     std::size_t max_live_strokes = 4; ///< of these, live ones
-    double max_points_per_s = 2000.0; ///< of one client; as many at once
+    double max_points_per_s = 2000.0; ///< points of one client; as many at once
     double max_stroke_s = 600.0;
     std::size_t max_message_bytes = 1U << 20;
     std::size_t max_nesting = 64;
@@ -45,7 +45,7 @@ struct serve_settings {
 
 /// Reads and checks setup::serve.
 /// \throws error (bad_input) with file, line and column.
-[[nodiscard]] serve_settings read_serve(const std::vector<written_value>& said);
+[[nodiscard]] serve_settings read_serve(const std::vector<written_value>& entries);
 
 /// Returns the limits by their names in [serve].
 [[nodiscard]] std::vector<std::pair<std::string_view, double>> list_limits(const serve_limits& l);

@@ -62,12 +62,12 @@ value make_value(const std::optional<T>& from)
     return from ? make_value(*from) : value();
 }
 
-// Reaches one member: `Member` is a function from wishes to a reference, and has no state.
+// Reaches one member: `Member` is a function from option_values to a reference, and has no state.
 template <class Member>
 constexpr access reach(Member)
 {
-    return {[](wishes& w, const value& v) { put_value(Member{}(w), v); },
-            [](const wishes& w) { return make_value(Member{}(w)); }};
+    return {[](option_values& w, const value& v) { put_value(Member{}(w), v); },
+            [](const option_values& w) { return make_value(Member{}(w)); }};
 }
 
 namespace of = detail::bounds_of;
@@ -90,81 +90,81 @@ constexpr std::uint64_t heard_together = heard & ~(live | std::uint64_t{on_check
 
 constexpr auto low_speed_choices = [] { return std::vector<std::string_view>{"none", "low-speed"}; };
 
-bool has_sigma(const wishes& w)
+bool has_sigma(const option_values& w)
 {
     return w.compensate || w.observer == observer_kind::low_speed;
 }
 
-bool has_noise(const wishes& w)
+bool has_noise(const option_values& w)
 {
     return w.plan.wave.kind == waveform_kind::noise;
 }
 
-bool has_recording(const wishes& w)
+bool has_recording(const option_values& w)
 {
     return w.plan.wave.kind == waveform_kind::recording;
 }
 
-bool has_recording_along_path(const wishes& w)
+bool has_recording_along_path(const option_values& w)
 {
     return has_recording(w) && w.plan.wave.texture == texture_kind::length;
 }
 
-bool has_people(const wishes& w)
+bool has_people(const option_values& w)
 {
     return w.spread.people != 0;
 }
 
 // Keeps seed and texture, which are separate options.
-void set_waveform(wishes& w, const value& v)
+void set_waveform(option_values& w, const value& v)
 {
-    const waveform said = parse_waveform(std::get<std::string>(v));
-    w.plan.wave.kind = said.kind;
-    w.plan.wave.low_hz = said.low_hz;
-    w.plan.wave.high_hz = said.high_hz;
-    w.plan.wave.recorded = said.recorded;
+    const waveform parsed = parse_waveform(std::get<std::string>(v));
+    w.plan.wave.kind = parsed.kind;
+    w.plan.wave.low_hz = parsed.low_hz;
+    w.plan.wave.high_hz = parsed.high_hz;
+    w.plan.wave.recorded = parsed.recorded;
 }
 
-value get_waveform(const wishes& w)
+value get_waveform(const option_values& w)
 {
     return waveform_text(w.plan.wave);
 }
 
 // Reads a number of Hz or the text "HZ:DEPTH".
-void set_modulation(wishes& w, const value& v)
+void set_modulation(option_values& w, const value& v)
 {
     const auto* hz = std::get_if<double>(&v);
     w.plan.am = parse_modulation(hz != nullptr ? fmt::format("{}", *hz) : std::get<std::string>(v));
 }
 
-value get_modulation(const wishes& w)
+value get_modulation(const option_values& w)
 {
     return fmt::format("{}:{}", w.plan.am.hz, w.plan.am.depth);
 }
 
 // Keeps the times in which a burst rises and falls, which are separate options.
-void set_envelope(wishes& w, const value& v)
+void set_envelope(option_values& w, const value& v)
 {
     const auto& text = std::get<std::string>(v);
-    const burst_envelope said = parse_envelope(text);
-    w.render.envelope.kind = said.kind;
+    const burst_envelope parsed = parse_envelope(text);
+    w.render.envelope.kind = parsed.kind;
     if (text.find(':') != std::string::npos)
-        w.render.envelope.tukey_part = said.tukey_part;
+        w.render.envelope.tukey_part = parsed.tukey_part;
 }
 
-value get_envelope(const wishes& w)
+value get_envelope(const option_values& w)
 {
     return envelope_text(w.render.envelope);
 }
 
-void set_shape(wishes& w, const value& v)
+void set_shape(option_values& w, const value& v)
 {
     const auto& name = std::get<std::string>(v);
     static_cast<void>(shape_stroke(name)); // throws for an unknown shape
     w.shape = name;
 }
 
-void set_log(wishes& w, const value& v)
+void set_log(option_values& w, const value& v)
 {
     const auto& name = std::get<std::string>(v);
     if (name.empty())
@@ -172,12 +172,12 @@ void set_log(wishes& w, const value& v)
     w.stream.log = name;
 }
 
-void set_compensation(wishes& w, const value& v)
+void set_compensation(option_values& w, const value& v)
 {
     w.compensate = std::get<std::string>(v) != "none";
 }
 
-value get_compensation(const wishes& w)
+value get_compensation(const option_values& w)
 {
     return std::string(w.compensate ? "low-speed" : "none");
 }
@@ -225,7 +225,7 @@ constexpr std::array table{
     option{.name = "fit_margin", .field = "margin_mm", .unit = "mm", .allowed = of::margin_mm, .in = group::place,
            .help = "{fit}: distance from the array's edge (default 0)",
            .where = drawing | in_python | planning,
-           .used = [](const wishes& w) { return w.fit; }, .needs = "{fit=true}",
+           .used = [](const option_values& w) { return w.fit; }, .needs = "{fit=true}",
            .to = reach([](auto& w) -> auto& { return w.fit_margin_mm; })},
 
     option{.name = "algorithm", .what = kind::choice, .choices = detail::kind_names<algorithm_kind>, .in = group::timing,
@@ -264,7 +264,7 @@ constexpr std::array table{
     option{.name = "min_duration", .field = "min_duration_s", .unit = "s", .allowed = of::min_duration_s, .in = group::timing,
            .help = "timing fit: shortest burst (default 0.02)",
            .where = planned | in_method,
-           .used = [](const wishes& w) { return w.plan.timing == timing_kind::fit; }, .needs = "{timing=fit}",
+           .used = [](const option_values& w) { return w.plan.timing == timing_kind::fit; }, .needs = "{timing=fit}",
            .to = reach([](auto& w) -> auto& { return w.plan.min_duration_s; })},
     option{.name = "snap", .what = kind::flag, .in = group::timing,
            .help = "tactile-brush: move a start or end onto the grid",
@@ -343,7 +343,7 @@ constexpr std::array table{
     option{.name = "tukey_part", .allowed = of::part, .in = group::sound,
            .help = "envelope tukey: part of the burst in which it rises and falls (default 0.5)",
            .where = live | in_plan | in_score,
-           .used = [](const wishes& w) { return w.render.envelope.kind == envelope_kind::tukey; },
+           .used = [](const option_values& w) { return w.render.envelope.kind == envelope_kind::tukey; },
            .needs = "{envelope=tukey}",
            .to = reach([](auto& w) -> auto& { return w.render.envelope.tukey_part; })},
 
@@ -366,7 +366,7 @@ constexpr std::array table{
     option{.name = "stevens_exponent", .allowed = of::stevens_exponent, .shown = "E", .in = group::level,
            .help = "felt = amplitude^E (default 0.6, at 250 Hz; 0.95 at 60 Hz: Stevens 1968)",
            .where = planned | on_check | live | in_method,
-           .used = [](const wishes& w) { return w.plan.scale.kind == scale_kind::stevens; },
+           .used = [](const option_values& w) { return w.plan.scale.kind == scale_kind::stevens; },
            .needs = "{intensity_scale=stevens}",
            .to = reach([](auto& w) -> auto& { return w.plan.scale.exponent; })},
     option{.name = "intensity_max", .allowed = of::intensity_max, .shown = "MAX", .in = group::level,
@@ -398,7 +398,7 @@ constexpr std::array table{
     option{.name = "marker_s", .unit = "s", .allowed = of::marker_s, .in = group::device,
            .help = "duration of the mark (default 0.005)",
            .where = in_score,
-           .used = [](const wishes& w) { return w.render.marker_channel.has_value(); }, .needs = "{marker_channel=N}",
+           .used = [](const option_values& w) { return w.render.marker_channel.has_value(); }, .needs = "{marker_channel=N}",
            .to = reach([](auto& w) -> auto& { return w.render.marker_s; })},
     option{.name = "no_gpio", .what = kind::flag, .in = group::device,
            .help = "do not use the lines of [amplifier] and [sync]",

@@ -27,7 +27,7 @@ constexpr std::size_t most_shown_bursts = 120;
 constexpr double close_pitch = 24.0; // distance of tactors on the page that counts as close, pt
 constexpr double taller = 0.3;       // most additional height, as a part of the width
 constexpr std::size_t few_paths = 20;
-constexpr double places_per_s = 30.0; // of the target in an animated picture
+constexpr double places_per_s = 30.0; // places of the target in an animated picture
 constexpr double most_places = 600.0;
 
 // Sizes of the marks: the more bursts, the finer.
@@ -388,15 +388,15 @@ private:
             return start && end ? "" : "the ring is the start, the square the end";
         }
         std::vector<spot> starts;
-        std::vector<std::vector<std::size_t>> strokes; // that start there
-        std::size_t left_out = 0;
+        std::vector<std::vector<std::size_t>> strokes; // strokes that start there
+        std::size_t omitted = 0;
         for (std::size_t i = 0; i < scene_.strokes.size(); ++i) {
             const spot at = frame_(scene_.strokes[i].motion.position(0.0));
             const auto same = std::find_if(starts.begin(), starts.end(), [&](spot s) {
                 return std::hypot(s.x - at.x, s.y - at.y) < same_start;
             });
             if (!on_page(at) || i >= most_marked) {
-                ++left_out;
+                ++omitted;
             } else if (same != starts.end()) {
                 strokes[static_cast<std::size_t>(same - starts.begin())].push_back(i);
             } else {
@@ -405,8 +405,8 @@ private:
             }
         }
         for (std::size_t k = 0; k < starts.size(); ++k)
-            left_out += number_start(starts, k, strokes[k]) ? 0 : strokes[k].size();
-        return left_out == 0 ? "" : "no space for the number of " + counted(left_out, "stroke");
+            omitted += number_start(starts, k, strokes[k]) ? 0 : strokes[k].size();
+        return omitted == 0 ? "" : "no space for the number of " + counted(omitted, "stroke");
     }
 
     // Draws numbers in a box of the first stroke's colour, because plain numbers are tactors. Returns false

@@ -177,7 +177,7 @@ std::string name_scene(const std::vector<stroke>& strokes, const std::string& fi
 
 canvas draw_figure(const scene& s, const figure_options& o)
 {
-    constexpr double least_array = 0.35; // of the page
+    constexpr double least_array = 0.35; // part of the page
     const timeline t = make_timeline(s);
     if (o.animated && !t.sampled && t.bursts.size() > most_animated_bursts)
         throw error(error_kind::bad_input, "picture",
@@ -188,8 +188,8 @@ canvas draw_figure(const scene& s, const figure_options& o)
     const double page = page_height(d.picture.width);
     if (d.picture.height > page) {
         const double notes = note_height * static_cast<double>(most_array_notes);
-        const double left = d.array_height - notes - (d.picture.height - page);
-        d = draw_within(s, t, o, {std::max(least_array * page, left), page});
+        const double height = d.array_height - notes - (d.picture.height - page);
+        d = draw_within(s, t, o, {std::max(least_array * page, height), page});
     }
     return std::move(d.picture);
 }

@@ -128,7 +128,7 @@ struct type_caster<T, enable_if_t<tactor::python::is_tuple<T>>> {
 namespace tactor::python {
 
 namespace py = pybind11;
-using options::wishes;
+using options::option_values;
 
 /// Calls `f`, which may take the interpreter's lock. Every call that runs Python code must go through this.
 /// `f` calls only C and has no objects, which would be destroyed without the lock. If a program ends while
@@ -146,7 +146,7 @@ decltype(auto) in_python(F&& f)
     }
 }
 
-/// Releases the interpreter's lock, which the caller has, while an object lives.
+/// A release of the interpreter's lock, which the caller has, while the object lives.
 class without_lock {
 public:
     without_lock() : mine_(PyEval_SaveThread()) {}
@@ -161,7 +161,7 @@ private:
     PyThreadState* mine_;
 };
 
-/// Holds the interpreter's lock while an object lives. The caller may have it already.
+/// A hold of the interpreter's lock while the object lives. The caller may have it already.
 class with_lock {
 public:
     with_lock() : before_(in_python([] { return PyGILState_Ensure(); })) {}
@@ -215,15 +215,16 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
 /// them.
 py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns = 0);
 
-/// Sets the options in `given`; None sets nothing. Other options come from the [defaults] of `file`, and for
-/// a score also rate, channels and marker; options that are already set keep their values. `tactors`: number
-/// of tactors that a phantom model in Python may use.
-/// \throws error (bad_input) for impossible values, and for options that nothing uses.
-void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file = nullptr);
+/// Sets the options in `keywords`; None sets nothing. Other options come from the [defaults] of `file`, and
+/// for a score also rate, channels and marker; options that are already set keep their values. `tactors`:
+/// number of tactors that a phantom model in Python may use. \throws error (bad_input) for impossible values,
+/// and for options that nothing uses.
+void take_options(option_values& into, const py::dict& keywords, std::size_t tactors,
+                  const setup* file = nullptr);
 
-/// Sets the options of a player from `given`.
+/// Sets the options of a player from `keywords`.
 /// \throws error (bad_input).
-void give_player_options(wishes& into, const py::dict& given);
+void give_player_options(option_values& into, const py::dict& keywords);
 
 /// Returns the rows of the table, for src/options/write.py.
 py::list option_rows();
@@ -251,7 +252,7 @@ struct plan_handle {
 
 /// Returns a piece of one stroke, fitted and timed as its file and the options require.
 /// \throws error (bad_input) if the stroke belongs to a group that is fitted as a single picture.
-session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w);
+session::piece place_stroke(const stroke& s, const layout& faces, const option_values& w);
 
 /// Compares arrays.
 /// \throws error (bad_input) if the plan is for tactors at other places or on other channels.

@@ -13,7 +13,7 @@
 #include <tactor/setup.hpp>
 
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "session/device.hpp"
 
 namespace tactor::python {
@@ -89,10 +89,10 @@ std::string text(const option& o, py::handle v)
                       o.choices == nullptr ? fmt::format("{} is not a text", shown(v))
                                            : fmt::format("{} is unknown", shown(v)),
                       o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
-    auto said = v.cast<std::string>();
-    if (said.find('\0') != std::string::npos)
+    auto spelled = v.cast<std::string>();
+    if (spelled.find('\0') != std::string::npos)
         throw refusal(o, fmt::format("{} has a zero byte in it", shown(v)), "");
-    return said;
+    return spelled;
 }
 
 options::value read_handle(const option& o, py::handle v)
@@ -113,17 +113,17 @@ options::value read_handle(const option& o, py::handle v)
     return takes_number ? options::value(number(o, v)) : options::value(text(o, v));
 }
 
-void refuse_rivals(const py::dict& given)
+void refuse_rivals(const py::dict& keywords)
 {
-    const auto says = [&given](std::string_view name) {
+    const auto says = [&keywords](std::string_view name) {
         const py::str key(name.data(), name.size());
-        return given.contains(key) && !given[key].is_none();
+        return keywords.contains(key) && !keywords[key].is_none();
     };
     for (const option& o : options::all())
         if (!o.rival.empty() && o.name < o.rival && says(o.name) && says(o.rival))
             throw refusal(o, fmt::format("it cannot be combined with {{{}}}", o.rival), "give one of them");
     if (says("tukey_part") && says("envelope") &&
-        py::str(given["envelope"]).cast<std::string>().find(':') != std::string::npos)
+        py::str(keywords["envelope"]).cast<std::string>().find(':') != std::string::npos)
         throw refusal(*options::find("envelope"), "it has a part, so it cannot be combined with {tukey_part}",
                       "give the part once");
 }
@@ -167,7 +167,7 @@ private:
     std::size_t tactors_;
 };
 
-void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
+void take_phantom(option_values& w, const option& o, py::handle v, std::size_t tactors)
 {
     if (py::hasattr(v, "weights"))
         w.plan.custom_phantom =
@@ -176,10 +176,10 @@ void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
         options::put(w, o, read_handle(o, v));
 }
 
-std::vector<std::pair<const option*, py::handle>> find_given(const py::dict& given)
+std::vector<std::pair<const option*, py::handle>> find_keywords(const py::dict& keywords)
 {
     std::vector<std::pair<const option*, py::handle>> found;
-    for (const auto& [key, value] : given) {
+    for (const auto& [key, value] : keywords) {
         const auto name = key.cast<std::string>();
         const option* o = options::find(name);
         if (value.is_none())
@@ -192,7 +192,7 @@ std::vector<std::pair<const option*, py::handle>> find_given(const py::dict& giv
 }
 
 // Fills in rate, channels and marker of the array's file.
-void apply_output(wishes& w, const setup& file)
+void apply_output(option_values& w, const setup& file)
 {
     if (!w.rate && !w.gives("rate"))
         w.rate = file.output.rate;
@@ -206,7 +206,7 @@ void apply_output(wishes& w, const setup& file)
 }
 
 // Determines rate, channels and limits of a score. A player gets its limits with the stream.
-void settle_score(wishes& w)
+void resolve_score(option_values& w)
 {
     render_options& r = w.render;
     r.rate = w.rate.value_or(r.rate);
@@ -226,39 +226,39 @@ py::dict manual_entry(const option& o)
             takers.append(c.name);
     return py::dict("group"_a = o.in, "letter"_a = o.letter, "commands"_a = takers,
                     "type"_a = o.what == options::kind::flag ? "" : options::type_text(o),
-                    "range"_a = options::range_text(o), "default"_a = o.to.get(options::wishes{}),
+                    "range"_a = options::range_text(o), "default"_a = o.to.get(options::option_values{}),
                     "help"_a = o.help, "rival"_a = o.rival, "needs"_a = o.needs);
 }
 
 } // namespace
 
-void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file)
+void take_options(option_values& into, const py::dict& keywords, std::size_t tactors, const setup* file)
 {
-    refuse_rivals(given);
-    const auto all = find_given(given);
+    refuse_rivals(keywords);
+    const auto all = find_keywords(keywords);
     for (const auto& [o, value] : all)
-        into.given.set(index(*o));
+        into.by_user.set(index(*o));
     if (file != nullptr)
         options::apply_defaults(into, *file);
     if (file != nullptr && (into.place & options::in_score) != 0)
         apply_output(into, *file);
-    if (given.contains("level_dbfs") && !given["level_dbfs"].is_none())
+    if (keywords.contains("level_dbfs") && !keywords["level_dbfs"].is_none())
         into.render.sl_db.reset();
     for (const auto& [o, value] : all)
         if (o->name == "phantom")
             take_phantom(into, *o, value, tactors);
         else
             options::put(into, *o, read_handle(*o, value));
-    options::settle(into);
-    settle_score(into);
+    options::resolve(into);
+    resolve_score(into);
 }
 
-void give_player_options(wishes& into, const py::dict& given)
+void give_player_options(option_values& into, const py::dict& keywords)
 {
     for (const option& o : options::all()) {
         const py::str name(o.name.data(), o.name.size());
-        if ((o.where & options::in_player) != 0 && given.contains(name) && !given[name].is_none())
-            options::give(into, o, read_handle(o, given[name]));
+        if ((o.where & options::in_player) != 0 && keywords.contains(name) && !keywords[name].is_none())
+            options::give(into, o, read_handle(o, keywords[name]));
     }
 }
 
@@ -293,9 +293,9 @@ py::list option_rows()
 
 error in_keywords(const error& e)
 {
-    const error said = options::spell(e, by_python);
+    const error spelled = options::spell(e, by_python);
     const bool in_file = !e.place().file.empty() || e.place().line != 0; // its message names the place itself
-    return in_file ? said : said.with_field(options::spell_field(e.field(), by_python));
+    return in_file ? spelled : spelled.with_field(options::spell_field(e.field(), by_python));
 }
 
 } // namespace tactor::python

@@ -24,14 +24,14 @@ namespace {
 
 using namespace py::literals;
 
-plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given_stroke,
-                    const py::dict& options, const setup* file)
+plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& original, const py::dict& options,
+                    const setup* file)
 {
-    wishes w;
+    option_values w;
     w.place = options::in_plan | options::in_score;
     take_options(w, options, on->value().tactors.size(), file);
     const layout& faces = on->faces();
-    plan_handle p{on, place_stroke(given_stroke, faces, w)};
+    plan_handle p{on, place_stroke(original, faces, w)};
     p.sound = w.render;
     for (const options::option& o : options::all()) {
         const bool is_sound = (o.where & options::in_plan) != 0 && (o.where & options::planning) == 0;
@@ -119,7 +119,7 @@ py::tuple samples(const plan_handle& p)
 py::tuple felt(const plan_handle& p)
 {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> t, targets, places, intensities, asked, shared, speeds;
+    std::vector<double> t, targets, places, intensities, target_intensities, shared, speeds;
     {
         const without_lock free;
         for (const percept_sample& s : predict_percept(p.on->value(), p.drawn(), p.plan())) {
@@ -128,14 +128,14 @@ py::tuple felt(const plan_handle& p)
             const point where = s.felt.value_or(point{none, none});
             places.insert(places.end(), {where.x_mm, where.y_mm});
             intensities.push_back(s.intensity);
-            asked.push_back(s.target_intensity);
+            target_intensities.push_back(s.target_intensity);
             shared.push_back(s.shared ? 1.0 : 0.0);
             speeds.push_back(s.speed_mm_s.value_or(none));
         }
     }
     return py::make_tuple(to_numpy(std::move(t)), to_numpy(std::move(places), 2),
                           to_numpy(std::move(intensities)), to_numpy(std::move(speeds)),
-                          to_numpy(std::move(targets), 2), to_numpy(std::move(asked)),
+                          to_numpy(std::move(targets), 2), to_numpy(std::move(target_intensities)),
                           to_numpy(std::move(shared)).attr("astype")("bool"));
 }
 
@@ -197,7 +197,7 @@ plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>&
 }
 
 // Fills in the channels that the array and the marker need, if no number is given.
-render_options settled(const array& a, render_options o)
+render_options with_channels(const array& a, render_options o)
 {
     const unsigned marker = o.marker_channel ? *o.marker_channel + 1 : 0;
     if (o.channels == 0)
@@ -210,7 +210,7 @@ std::string write_json(const plan_handle& p)
 {
     const without_lock free;
     const array& tactors = p.on->value();
-    const render_options sound = settled(tactors, p.sound);
+    const render_options sound = with_channels(tactors, p.sound);
     return files::plans_text({p.one, tactors, score(tactors, p.one.plans, sound), sound});
 }
 
@@ -233,15 +233,15 @@ constexpr std::uint64_t frames_at_once = 1 << 18;
 // lacks.
 using score_part = std::tuple<std::optional<double>, const plan_handle*, bool, const setup*>;
 
-render_options settle_sound(const plan_handle& p, const py::dict& given, bool elsewhere, const setup* file)
+render_options find_sound(const plan_handle& p, const py::dict& keywords, bool elsewhere, const setup* file)
 {
-    wishes w;
+    option_values w;
     w.place = options::in_score;
     w.render = p.sound;
     if (elsewhere)
         for (const std::string& name : p.sound_options)
-            w.given.set(index(*options::find(name)));
-    take_options(w, given, 0, file);
+            w.by_user.set(index(*options::find(name)));
+    take_options(w, keywords, 0, file);
     // A recorded plan contains its number of channels without a marker.
     if (w.render.marker_channel && w.render.channels != 0 && !w.channels)
         w.render.channels = std::max(w.render.channels, *w.render.marker_channel + 1);
@@ -316,11 +316,11 @@ py::tuple recipe(const render_options& o)
 // Returns the values that decide how the plan sounds alone, for Python to compare and hash.
 py::tuple plan_recipe(const plan_handle& p)
 {
-    return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_db(p.sound));
+    return recipe(with_channels(p.on->value(), p.sound)) + py::make_tuple(level_db(p.sound));
 }
 
 // Makes a score. Each plan keeps its level; other options are common.
-py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& given)
+py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& keywords)
 {
     if (plans.empty())
         throw error(error_kind::bad_input, "plans", "there are none", "give at least one");
@@ -328,10 +328,10 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     std::vector<double> levels;
     for (const auto& [start_s, p, elsewhere, file] : plans) {
         check_same_array(*p, on.value());
-        sounds.push_back(settle_sound(*p, given, elsewhere, file));
+        sounds.push_back(find_sound(*p, keywords, elsewhere, file));
         levels.push_back(level_db(sounds.back()));
     }
-    const render_options common = settled(on.value(), joined(sounds));
+    const render_options common = with_channels(on.value(), joined(sounds));
     const auto made = [&] {
         const without_lock free;
         std::vector<placed_plan> all;
@@ -354,7 +354,7 @@ void check_signals()
         throw py::error_already_set();
 }
 
-// Makes the next frames of a score, block by block.
+// Maker of the next frames of a score, block by block.
 class block_renderer {
 public:
     block_renderer(const score& s, format_kind f) : renderer_(s, f), frame_(s.channels() * sample_bytes(f)) {}
@@ -437,7 +437,7 @@ void check_same_array(const plan_handle& p, const array& in_use)
     files::check_same_array("plan", p.on->value(), in_use);
 }
 
-session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w)
+session::piece place_stroke(const stroke& s, const layout& faces, const option_values& w)
 {
     if (s.fit && s.fit->group != 0)
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
@@ -453,7 +453,7 @@ void bind_plan(py::module_& m)
     bind_score(m);
     m.def("option_rows", &option_rows);
     m.def("burst_duration", [](const py::dict& options) {
-        wishes w;
+        option_values w;
         w.place = options::in_plan;
         take_options(w, options, 0);
         return burst_duration_s(w.plan);

@@ -116,19 +116,19 @@ public:
     player_handle(const array& a, session::settings s, bool keep, bool wants_log)
     {
         const session::environment e = read_environment(s, &a);
-        const render_options sound = session::settle_render(s, e);
+        const render_options sound = session::find_render(s, e);
         alsa_options device = session::device_options(s, s.stream, e, sound.channels, sound.rate);
         const auto events = events_;
         if (wants_log)
             device.log = [events](log_kind k, std::string_view text) {
                 events->put(log_line{k, std::string(text)});
             };
-        session::settle_server(device.pcm);
+        session::prepare_server(device.pcm);
         const bool waits_for_edges = !s.stream.no_gpio && e.config.sync && e.config.sync->in;
         // Before threads: it forks the holder of the amplifier's line.
         open_->lines = session::lent_lines(session::open_lines(s.stream, e, waits_for_edges));
         player_options o;
-        o.limits = session::settle_limits(s.stream, e);
+        o.limits = session::find_limits(s.stream, e);
         o.require_realtime = s.stream.require_realtime;
         o.keep_drive_time = keep;
         o.log = device.log;
@@ -386,14 +386,14 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
                   double timeout_s, std::optional<double> longest_s, double smooth_s,
                   std::optional<double> most, const setup* file)
 {
-    wishes w;
+    option_values w;
     w.place = options::live;
     w.plan = live_options{}.plan;
-    setup said = file != nullptr ? *file : setup();
-    std::erase_if(said.defaults, [](const written_value& d) { // the same as in the tool
+    setup array_setup = file != nullptr ? *file : setup();
+    std::erase_if(array_setup.defaults, [](const written_value& d) { // the same as in the tool
         return d.name == "algorithm" || d.name == "outside";
     });
-    take_options(w, options, on.value().tactors.size(), &said);
+    take_options(w, options, on.value().tactors.size(), &array_setup);
     const double intensity_max = most ? *most : w.intensity_max.value_or(1.0);
     const without_lock free;
     return {h, h->use([&](player& p) {

@@ -14,16 +14,16 @@ using codes = std::vector<std::string>;
 
 study::selection select_participants(const codes& only, const codes& without)
 {
-    study::selection who{only};
+    study::selection chosen{only};
     for (const std::string& code : without)
-        who.without.try_emplace(code);
-    return who;
+        chosen.without.try_emplace(code);
+    return chosen;
 }
 
-std::vector<study::trial_cells> read_trials(const std::string& folder, const study::selection& who)
+std::vector<study::trial_cells> read_trials(const std::string& folder, const study::selection& chosen)
 {
     const without_lock free;
-    return study::read_study(folder, who);
+    return study::read_study(folder, chosen);
 }
 
 py::list read_study(const std::string& folder, const codes& only, const codes& without)

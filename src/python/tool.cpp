@@ -23,7 +23,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
                  std::vector<algorithm_kind> algorithms, std::vector<phantom_kind> phantoms,
                  const setup* file)
 {
-    wishes w;
+    option_values w;
     w.place = options::in_compare;
     take_options(w, options, on->value().tactors.size(), file);
     if (w.gives("sl") && w.plan.scale.kind != scale_kind::sl)

@@ -20,8 +20,8 @@
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
+#include "options/resolve.hpp"
 #include "options/serve.hpp"
-#include "options/settle.hpp"
 #include "python/binding.hpp"
 
 template <class T>
@@ -135,7 +135,7 @@ inline void to_json(nlohmann::json& j, const trajectory& t)
     j["path"] = drawn.way;
     j["intensity"] = drawn.intensity;
     if (drawn.moves != nullptr) {
-        j["moves"] = drawn.moves->given();
+        j["moves"] = drawn.moves->definition();
         j["moving_s"] = drawn.moves->moving_s();
     }
 }

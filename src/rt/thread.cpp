@@ -30,7 +30,7 @@ namespace {
 struct launch {
     const thread_options& options;
     std::function<void()> body;
-    std::latch settled{1};
+    std::latch started{1};
     int fifo_error = -1;
 };
 
@@ -81,7 +81,7 @@ void* enter(void* argument) noexcept
         flush_denormals();
     }
     const std::function<void()> body = std::move(l.body);
-    l.settled.count_down(); // `l` is destroyed from here on
+    l.started.count_down(); // `l` is destroyed from here on
     body();
     return nullptr;
 }
@@ -118,7 +118,7 @@ thread::thread(const thread_options& o, std::function<void()> body)
         throw std::system_error(code, std::generic_category(), "thread " + o.name);
 
     joinable_ = true;
-    l.settled.wait();
+    l.started.wait();
     fifo_error_ = l.fifo_error;
 }
 

@@ -52,8 +52,8 @@ struct read_file {
 std::string read_name(const json& params)
 {
     constexpr std::size_t longest_name = 255;
-    const json* said = member(params, "name");
-    std::string name = said == nullptr ? "stroke" : text(*said, "name");
+    const json* name_text = member(params, "name");
+    std::string name = name_text == nullptr ? "stroke" : text(*name_text, "name");
     if (name.size() > longest_name)
         bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
     return name;
@@ -61,10 +61,10 @@ std::string read_name(const json& params)
 
 std::string content(const std::string& source, const json& v)
 {
-    const std::string& given = text(v, source);
+    const std::string& raw = text(v, source);
     if (source == "text")
-        return given;
-    std::optional<std::string> bytes = net::read_base64(given);
+        return raw;
+    std::optional<std::string> bytes = net::read_base64(raw);
     if (!bytes)
         bad_param(source, "it is not base64", "give four characters for three bytes, with = at the end");
     return *std::move(bytes);
@@ -80,14 +80,14 @@ bool is_plan(std::string_view bytes, const std::string& name)
 // Returns the method of a plan. A burst as long as its SOA counts as that of the timing law.
 stroke_choices read_method(const plan& p)
 {
-    stroke_choices said{.algorithm = detail::find_kind<algorithm_kind>(p.algorithm),
-                        .phantom = detail::find_kind<phantom_kind>(p.phantom)};
-    if (said.algorithm != algorithm_kind::park2016 || !p.soa_s || p.bursts.empty())
-        return said;
-    said.soa_s = p.soa_s;
+    stroke_choices method{.algorithm = detail::find_kind<algorithm_kind>(p.algorithm),
+                          .phantom = detail::find_kind<phantom_kind>(p.phantom)};
+    if (method.algorithm != algorithm_kind::park2016 || !p.soa_s || p.bursts.empty())
+        return method;
+    method.soa_s = p.soa_s;
     if (const double burst_s = p.bursts.front().duration_s; burst_s < *p.soa_s)
-        said.burst_s = burst_s;
-    return said;
+        method.burst_s = burst_s;
+    return method;
 }
 
 std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string& name)
@@ -162,13 +162,13 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
 net::reply_json keys_json(const stroke& k)
 {
     net::reply_json keys = net::reply_json::object();
-    const auto put = [&keys](const char* key, const auto& said) {
-        if (said)
-            keys[key] = *said;
+    const auto put = [&keys](const char* key, const auto& value) {
+        if (value)
+            keys[key] = *value;
     };
-    const auto put_kind = [&keys](const char* key, const auto& said) {
-        if (said)
-            keys[key] = to_string(*said);
+    const auto put_kind = [&keys](const char* key, const auto& value) {
+        if (value)
+            keys[key] = to_string(*value);
     };
     put_kind("algorithm", k.choices.algorithm);
     put_kind("phantom", k.choices.phantom);
@@ -216,13 +216,13 @@ std::string result_text(read_file f)
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
 }
 
-bool is_recording(const options::wishes& s)
+bool is_recording(const options::option_values& s)
 {
     return s.plan.wave.kind == waveform_kind::recording;
 }
 
 // Returns true for an option that put_options() writes. The texts of strokes must not name recordings.
-bool is_in_file(const option& o, const options::wishes& s)
+bool is_in_file(const option& o, const options::option_values& s)
 {
     constexpr std::uint64_t kept = options::in_stroke | options::live; // others are in the strokes' times
     const bool is_recorded = o.name == "waveform" || o.name.starts_with("texture");
@@ -230,7 +230,7 @@ bool is_in_file(const option& o, const options::wishes& s)
 }
 
 // Returns the options for a command: the strokes contain their times, and the array has a name.
-options::wishes for_command(options::wishes s, const service_options& o)
+options::option_values for_command(options::option_values s, const service_options& o)
 {
     constexpr unsigned usual_rate = 48000;
     const auto value_if = [](bool is_set, auto v) { return is_set ? std::optional(v) : std::nullopt; };
@@ -255,9 +255,9 @@ std::string value_text(const options::value& v)
 
 // Returns true for a value that the command must have. The level is always written, because a configuration
 // may set another one.
-bool is_needed(const option& o, const options::wishes& s, const options::value& v)
+bool is_needed(const option& o, const options::option_values& s, const options::value& v)
 {
-    static const options::wishes usual;
+    static const options::option_values usual;
     const bool is_off = std::holds_alternative<std::monostate>(v) || v == options::value(false);
     const bool is_used = o.used == nullptr || o.used(s);
     if (o.name == "level_dbfs")
@@ -268,13 +268,13 @@ bool is_needed(const option& o, const options::wishes& s, const options::value& 
 
 // Adds to a stroke the options that differ from the built-in ones or that a client set, if stroke files have
 // keys for them and the stroke does not set them itself.
-void put_options(stroke& k, const options::wishes& s)
+void put_options(stroke& k, const options::option_values& s)
 {
     const plan_options& p = s.plan;
     const plan_options usual;
-    const auto put = [&s](auto& own, std::string_view option, const auto& asked, const auto& built_in) {
-        if (!own && (s.gives(option) || asked != built_in))
-            own = asked;
+    const auto put = [&s](auto& own, std::string_view option, const auto& chosen, const auto& built_in) {
+        if (!own && (s.gives(option) || chosen != built_in))
+            own = chosen;
     };
     put(k.choices.algorithm, "algorithm", p.algorithm, usual.algorithm);
     put(k.choices.phantom, "phantom", p.phantom, usual.phantom);
@@ -290,7 +290,7 @@ void put_options(stroke& k, const options::wishes& s)
 
 // Returns " --array palm-3x3 --level-dbfs -15": the arguments with which a command of the tool does the same.
 // `file_says`: put_options() has written its part.
-std::string option_words(const options::wishes& w, options::place command, bool file_says)
+std::string option_words(const options::option_values& w, options::place command, bool file_says)
 {
     std::string words;
     for (const option& o : options::all()) {
@@ -347,10 +347,10 @@ const file_kind& find_kind(const json& params)
 
 std::string choose_name(const json& params, const std::vector<stroke>& strokes)
 {
-    const json* said = member(params, "name");
-    if (said == nullptr)
+    const json* name_text = member(params, "name");
+    if (name_text == nullptr)
         return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
-    std::string name = text(*said, "name");
+    std::string name = text(*name_text, "name");
     if (make_file_name(name) != name)
         bad_param("name", "it is not a file name", "use 1 to 100 letters, digits, blanks, - and _");
     return name;
@@ -358,7 +358,7 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
 
 // Gives strokes that count from a group a start in seconds. It depends on their plans, because a plan may
 // last longer than its path.
-void place_by_plans(const service_options& o, const layout& faces, const options::wishes& s,
+void place_by_plans(const service_options& o, const layout& faces, const options::option_values& s,
                     std::vector<stroke>& strokes, const go_on_check& go_on)
 {
     if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
@@ -391,7 +391,7 @@ std::string csv_text(const std::vector<stroke>& strokes)
 }
 
 std::string file_bytes(const service_options& o, const file_kind& kind, const planned& p,
-                       const options::wishes& s)
+                       const options::option_values& s)
 {
     if (kind.picture) {
         const std::string title = plot::name_scene(p.strokes, p.name + ".toml");
@@ -412,7 +412,7 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
 }
 
 std::string command_line(const service_options& o, const file_kind& kind, const std::string& name,
-                         const options::wishes& s)
+                         const options::option_values& s)
 {
     return fmt::format("tactor {} {}{} {} {}", kind.command,
                        quote_word(fmt::format("{}.{}", name, kind.reads)),
@@ -424,7 +424,7 @@ std::string command_line(const service_options& o, const file_kind& kind, const 
 // will read.
 std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
                        const std::string& source, const std::string& name, std::vector<stroke> strokes,
-                       const options::wishes& s, const go_on_check& go_on)
+                       const options::option_values& s, const go_on_check& go_on)
 {
     if (kind.extension == "csv")
         return csv_text(strokes);
@@ -460,7 +460,7 @@ std::string import_strokes(const planning& with, const layout& faces, const json
                                          : read_bytes(content(source, params[source]), name, intensity_max);
         if (fit)
             f.toml.clear();
-        f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
+        f.strokes = prepare_strokes(with, faces, std::move(f.strokes), with.owner, fit);
         return result_text(std::move(f));
     } catch (...) {
         throw fault_error(current_fault(source, name));
@@ -473,10 +473,10 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
-    const options::wishes s = settle_options(o.plans.owner, params);
+    const options::option_values s = resolve_options(o.plans.owner, params);
     try {
         std::vector<stroke> strokes =
-            settle_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
+            prepare_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
         if (kind.extension == "toml" || kind.extension == "csv") // these need no plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);

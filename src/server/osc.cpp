@@ -37,12 +37,12 @@ class value_list {
 public:
     explicit value_list(const osc_message& m) : all_(m.values) {}
 
-    bool left() const { return next_ != all_.size(); }
-    bool next_is_number() const { return left() && as_number(all_[next_]); }
+    bool has_more() const { return next_ != all_.size(); }
+    bool next_is_number() const { return has_more() && as_number(all_[next_]); }
     /// Returns true if the next value is 0 or false.
     bool released() const
     {
-        if (!left())
+        if (!has_more())
             return false;
         const auto* other = std::get_if<net::osc_other>(&all_[next_]);
         return as_number(all_[next_]) == 0.0 || (other != nullptr && other->tag == 'F');
@@ -76,7 +76,7 @@ public:
     void ignore_rest() { next_ = all_.size(); }
     void end() const
     {
-        if (left())
+        if (has_more())
             bad_param("values", fmt::format("there are {}, but only {} are allowed", all_.size(), next_));
     }
 
@@ -91,7 +91,7 @@ private:
     }
     const osc_value& take(const char* what, const char* kind)
     {
-        if (!left())
+        if (!has_more())
             bad_param(what, "it is missing", kind);
         return all_[next_++];
     }
@@ -123,7 +123,7 @@ void read_option(const std::string& word, json& into)
 json read_options(value_list& v)
 {
     json options = json::object();
-    while (v.left())
+    while (v.has_more())
         read_option(v.text("options"), options);
     return options;
 }
@@ -169,7 +169,7 @@ void read_to(value_list& v, osc_request& r)
     r.number = stroke_number(v);
     r.params["x_mm"] = v.number("x_mm");
     r.params["y_mm"] = v.number("y_mm", number_first); // a pad may send only its place
-    if (v.left())
+    if (v.has_more())
         r.params["intensity"] = v.number("intensity");
 }
 
@@ -192,7 +192,7 @@ void read_drive(value_list& v, osc_request& r)
 {
     r.params["tactor"] = v.number("tactor");
     r.params["intensity"] = v.number("intensity");
-    if (v.left())
+    if (v.has_more())
         r.params["duration_s"] = v.number("duration_s");
 }
 
@@ -201,7 +201,7 @@ void read_subscribe(value_list& v, osc_request& r)
     if (v.next_is_number())
         r.port = v.whole<std::uint16_t>("port", 1);
     json events = json::array();
-    while (v.left()) {
+    while (v.has_more()) {
         const std::string& name = v.text("events");
         if (name != "levels" && name != "stream")
             bad_param("events", fmt::format("\"{}\" is unknown", name),
@@ -234,9 +234,9 @@ constexpr std::int64_t clocks_differ_ns = 50'000;
 // Returns the option of a stroke that begins; the service checks its other values.
 double find_intensity_max(const net::json& params)
 {
-    const auto said = params.find("options");
-    const bool has_it = said != params.end() && said->contains("intensity_max");
-    const net::json& v = has_it ? (*said)["intensity_max"] : net::json();
+    const auto own_options = params.find("options");
+    const bool has_it = own_options != params.end() && own_options->contains("intensity_max");
+    const net::json& v = has_it ? (*own_options)["intensity_max"] : net::json();
     return v.is_number() ? v.get<double>() : 1.0;
 }
 
@@ -397,10 +397,10 @@ void osc_clients::move(osc_request r, const endpoint& from)
         bad_param("number", fmt::format("this sender has no stroke {}", r.number),
                   "use a number that play or begin had, from the same address and port");
     drawn& d = found->second;
-    if (const double asked = r.params.value("intensity", 0.0);
-        asked > d.intensity_max && !std::exchange(d.is_loud, true))
+    if (const double intensity = r.params.value("intensity", 0.0);
+        intensity > d.intensity_max && !std::exchange(d.is_loud, true))
         refuse(from, "/tactor/to",
-               fmt::format("stroke {}: {}", r.number, session::held_text(asked, d.intensity_max)));
+               fmt::format("stroke {}: {}", r.number, session::held_text(intensity, d.intensity_max)));
     if (d.held && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
     // Keeps only the last place before it begins.
@@ -505,7 +505,7 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
 void osc_clients::ask(sender& s, const osc_request& r)
 {
     const std::uint64_t id = ++s.last_id;
-    s.asked[id] = {r.method, r.number};
+    s.open_requests[id] = {r.method, r.number};
     service_.receive(
         s.client,
         net::json_line(
@@ -554,10 +554,10 @@ void osc_clients::deliver(const endpoint& to, const std::string& text)
 
 void osc_clients::deliver_answer(sender& s, const endpoint& to, const net::json& m)
 {
-    const auto node = s.asked.extract(m["id"].get<std::uint64_t>());
+    const auto node = s.open_requests.extract(m["id"].get<std::uint64_t>());
     if (node.empty())
         return;
-    const asked_for& a = node.mapped();
+    const open_request& a = node.mapped();
     const bool draws = a.method == "play" || a.method == "begin" || a.method == "drive";
     if (m.contains("error")) {
         const auto& why = m["error"]["message"].get_ref<const std::string&>();

@@ -85,7 +85,7 @@ private:
     using held_messages = std::multimap<std::int64_t, held>; ///< by due time
 
     /// A request to the service that has not been answered yet.
-    struct asked_for {
+    struct open_request {
         std::string method;
         std::int32_t number = 0;
     };
@@ -102,17 +102,17 @@ private:
     struct sender {
         client_number client = 0;
         std::uint64_t last_id = 0;
-        std::map<std::uint64_t, asked_for> asked = {};
+        std::map<std::uint64_t, open_request> open_requests = {};
         std::map<std::int32_t, drawn> drawn_as = {};
         std::map<std::uint32_t, std::int32_t> numbers =
-            {}; ///< of current strokes: the sender's by the service's
+            {}; ///< current strokes: the sender's by the service's
         std::size_t held = 0;
         std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
         std::uint16_t port = 0;                                   ///< destination of the subscription
 
         bool idle() const
         {
-            return asked.empty() && drawn_as.empty() && numbers.empty() && held == 0 && !unsubscribes;
+            return open_requests.empty() && drawn_as.empty() && numbers.empty() && held == 0 && !unsubscribes;
         }
     };
 

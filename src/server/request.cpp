@@ -18,7 +18,7 @@
 #include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "rt/clock.hpp"
 #include "server/faults.hpp"
 #include "server/view.hpp"
@@ -85,7 +85,7 @@ reply_json value_json(const option& o, const options::value& v)
         v);
 }
 
-reply_json row_json(const option& o, const options::wishes& owner)
+reply_json row_json(const option& o, const options::option_values& owner)
 {
     constexpr std::array kinds{"number", "whole", "choice", "flag", "text"};
     const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
@@ -205,11 +205,11 @@ double park_bursts(const stroke& k, const plan_options& o)
 }
 
 // Returns the highest level of any tactor.
-double highest_level(const planning& with, const options::wishes& s, double carrier_hz)
+double highest_level(const planning& with, const options::option_values& s, double carrier_hz)
 {
     if (!s.render.sl_db)
         return s.render.level_dbfs;
-    double level = -1e9; // where none was measured, which is refused elsewhere
+    double level = -1e9; // without a measured threshold, which is refused elsewhere
     for (const tactor_spec& t : with.tactors.tactors)
         level = std::max(level, threshold_at(t, carrier_hz).value_or(-1e9) + *s.render.sl_db);
     return level;
@@ -248,32 +248,32 @@ double find_excess_db(const planning& with, planned& p)
 
 } // namespace
 
-options::wishes with_options(options::wishes w, const json& given, options_for which)
+options::option_values with_options(options::option_values w, const json& chosen, options_for which)
 {
-    if (!given.is_object())
+    if (!chosen.is_object())
         bad_param("options", "they are not an object", R"(such as {"algorithm":"continuous"})");
     // A client's options start from the owner's values.
-    w.given.reset();
+    w.by_user.reset();
     w.in_file.clear();
     w.place = options::by_client;
-    for (const auto& [name, value] : given.items()) {
+    for (const auto& [name, value] : chosen.items()) {
         const option& o = known_option(name, which);
         const options::value v = options::read_value(o, plain_value(value));
         refuse_file(o, v);
         options::give(w, o, v);
     }
-    options::settle(w);
+    options::resolve(w);
     return w;
 }
 
-options::wishes settle_options(options::wishes owner, const json& params)
+options::option_values resolve_options(options::option_values owner, const json& params)
 {
     const bool predicts = read_view(params).kind == view_kind::percept;
     if (!predicts)
         owner.observer = observer_kind::centroid; // this observer uses no option
-    if (const json* given = member(params, "observer")) {
+    if (const json* chosen = member(params, "observer")) {
         const option& o = *options::find("observer");
-        const std::string name = text(*given, "observer");
+        const std::string name = text(*chosen, "observer");
         const std::vector<std::string_view> known = o.choices();
         if (!predicts)
             bad_param("observer", "only the view percept uses it", R"(add "view":"percept")");
@@ -281,8 +281,8 @@ options::wishes settle_options(options::wishes owner, const json& params)
             bad_param("observer", fmt::format("\"{}\" is unknown", name), detail::choice_hint(name, known));
         o.to.set(owner, name);
     }
-    const json* given = member(params, "options");
-    return given == nullptr ? owner : with_options(std::move(owner), *given, options_for::planned);
+    const json* chosen = member(params, "options");
+    return chosen == nullptr ? owner : with_options(std::move(owner), *chosen, options_for::planned);
 }
 
 start_time read_start(const net::json* start, std::int64_t now_ns)
@@ -314,7 +314,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
     return {.at_ns = at};
 }
 
-reply_json option_rows(const options::wishes& owner)
+reply_json option_rows(const options::option_values& owner)
 {
     reply_json rows = reply_json::array();
     for (const option& o : options::all())
@@ -329,15 +329,15 @@ void pack_points(json& params)
         params["points"] = json::binary(json::to_msgpack(params["points"]));
 }
 
-std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
+std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::option_values& s)
 {
     if (source == "points")
         return read_points(v, s.intensity_max.value_or(1.0));
     return session::read_strokes(source, text(v, source), source, s);
 }
 
-std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
-                                   options::wishes s, bool fit)
+std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                    options::option_values s, bool fit)
 {
     if (strokes.size() > with.max_strokes)
         too_many_strokes(strokes.size(), with.max_strokes);
@@ -356,7 +356,7 @@ const char* find_source(const json& params)
     return found;
 }
 
-void check_level(const planning& with, const options::wishes& s, double intensity, double carrier_hz,
+void check_level(const planning& with, const options::option_values& s, double intensity, double carrier_hz,
                  const std::string& source)
 {
     if (intensity <= 0.0)
@@ -409,7 +409,7 @@ score planned::make_score(const array& a, std::size_t i) const
     return made.take();
 }
 
-void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::option_values& s,
                   const std::string& source, const go_on_check& go_on, bool picture)
 {
     double bursts = 0.0;
@@ -442,8 +442,8 @@ void add_weakening(reply_json& to, const weakening& w)
         to["meets"] = {{"tactor", w.tactor}, {"at_s", w.at_s}, {"strokes", w.plans}};
 }
 
-planned make_planned(const planning& with, const layout& faces, const json& params, const options::wishes& s,
-                     const go_on_check& go_on)
+planned make_planned(const planning& with, const layout& faces, const json& params,
+                     const options::option_values& s, const go_on_check& go_on)
 {
     const std::string source = find_source(params);
     try {
@@ -451,7 +451,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
-        p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
+        p.strokes = prepare_strokes(with, faces, std::move(p.strokes), s, false);
         plan_strokes(with, faces, p, s, source, go_on, read_view(params).kind != view_kind::full);
         return p;
     } catch (...) {

@@ -34,15 +34,15 @@ enum class options_for { planned, live };
 
 /// Returns the owner's options, overridden by those of a client.
 /// \throws fault_error, or error with the option as its field.
-options::wishes with_options(options::wishes w, const net::json& given, options_for which);
+options::option_values with_options(options::option_values w, const net::json& chosen, options_for which);
 
 /// Returns the answer to the method `options`: a row for each option that a client may set, with the owner's
 /// value.
-net::reply_json option_rows(const options::wishes& owner);
+net::reply_json option_rows(const options::option_values& owner);
 
 /// Returns the owner's options, overridden by the request's `options` and `observer`.
 /// \throws as with_options().
-options::wishes settle_options(options::wishes owner, const net::json& params);
+options::option_values resolve_options(options::option_values owner, const net::json& params);
 
 /// Start of a stroke: now, at a time, or armed until `fire`.
 struct start_time {
@@ -57,7 +57,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns);
 /// Settings that all plans share.
 struct planning {
     array tactors;
-    options::wishes owner; ///< owner's options, with the stream's rate and channels
+    options::option_values owner; ///< owner's options, with the stream's rate and channels
     double max_level_dbfs = -12.0;
     double max_stroke_s = 600.0; ///< longest stroke, and longest total of the strokes of one request
     std::size_t max_strokes = 64;
@@ -86,13 +86,14 @@ void pack_points(net::json& params);
 
 /// Reads the strokes of a parameter.
 /// \throws error, fault_error.
-std::vector<stroke> read_strokes(const std::string& source, const net::json& v, const options::wishes& s);
+std::vector<stroke> read_strokes(const std::string& source, const net::json& v,
+                                 const options::option_values& s);
 
 /// Places the strokes on the array, each with its pace: fits those that request it, and with `fit` all of
 /// them together.
 /// \throws fault_error if there are too many or if they last too long; error.
-std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
-                                   options::wishes s, bool fit);
+std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                    options::option_values s, bool fit);
 
 /// Returns the parameter that contains strokes: "stroke", "path", "points", "toml", "csv" or "svg".
 /// \throws fault_error for none or several.
@@ -108,16 +109,16 @@ using go_on_check = std::function<void()>;
 /// Plans p.strokes into p.plans and p.moved. `source`: parameter that contained them. With `picture` a level
 /// that is too high is not a fault: p.over_db has the excess.
 /// \throws fault_error for a level above the owner's; error.
-void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::option_values& s,
                   const std::string& source, const go_on_check& go_on, bool picture = false);
 
 /// Adds to an answer how much weaker than requested strokes are, and where they meet.
 void add_weakening(net::reply_json& to, const weakening& w);
 
-/// Reads and plans strokes. `s`: result of settle_options() for these parameters.
+/// Reads and plans strokes. `s`: result of resolve_options() for these parameters.
 /// \throws fault_error, and exceptions of `go_on`.
 planned make_planned(
-    const planning& with, const layout& faces, const net::json& params, const options::wishes& s,
+    const planning& with, const layout& faces, const net::json& params, const options::option_values& s,
     const go_on_check& go_on = [] {});
 
 /// Returns a plan that drives a single tactor for a time.
@@ -127,7 +128,7 @@ planned make_drive(const planning& with, const net::json& params);
 /// Checks the level at an intensity and a carrier.
 /// \throws fault_error if it is above the owner's. The fault is about the level, or about `source` if only
 ///         its intensity is too high.
-void check_level(const planning& with, const options::wishes& s, double intensity, double carrier_hz,
+void check_level(const planning& with, const options::option_values& s, double intensity, double carrier_hz,
                  const std::string& source);
 
 } // namespace tactor::server

@@ -52,9 +52,9 @@ net::rpc_fault no_hello()
 void service::pending::give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes)
 {
     place& p = places[at];
-    if (p.given)
+    if (p.filled)
         return;
-    p.given = true;
+    p.filled = true;
     p.reply = std::move(reply);
     numbers.insert(numbers.end(), strokes.begin(), strokes.end());
     if (--open != 0)
@@ -239,10 +239,10 @@ void service::receive_large(client_number number, std::string text, std::functio
     planners_.add({.client = number,
                    .work = [l, parse] { l->message = within_memory(parse); },
                    .done =
-                       [this, number, l, done = std::move(done), asked = mark(*c)] {
+                       [this, number, l, done = std::move(done), since = mark(*c)] {
                            if (client* then = find(number))
                                --then->unanswered;
-                           const bool go_on = receive(number, l->message, l->bytes, asked);
+                           const bool go_on = receive(number, l->message, l->bytes, since);
                            planners_.aside([l] {}); // the job frees it
                            give_memory_back_when_quiet();
                            done(go_on);
@@ -265,7 +265,7 @@ void service::give_memory_back_when_quiet()
     });
 }
 
-bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& asked)
+bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since)
 {
     client* c = find(number);
     if (c == nullptr || !admitted(*c, m))
@@ -288,7 +288,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
             return false;
         // A stop within the message comes before the requests that follow it.
         const answer to{
-            all, i, {asked.stops + stops_ - stops, asked.cancels, asked.own + *c->cancels - cancels}};
+            all, i, {since.stops + stops_ - stops, since.cancels, since.own + *c->cancels - cancels}};
         if (auto* r = std::get_if<net::rpc_request>(&m.parts[i]); r == nullptr)
             to.fault(std::get<net::rpc_refusal>(m.parts[i]).why);
         else

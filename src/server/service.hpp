@@ -43,16 +43,16 @@ inline constexpr std::size_t enough_waiting = 64U << 10;
 
 /// Rate limit: the number of actions that are allowed at once. It is full again after a second.
 struct allowance {
-    double left = std::numeric_limits<double>::infinity();
+    double remaining = std::numeric_limits<double>::infinity();
     std::int64_t at_ns = 0;
 
     /// Takes `n` of at most `per_s`. Returns false if fewer are left.
     bool take(double n, double per_s, std::int64_t now_ns) noexcept
     {
-        left = std::min(per_s, left + seconds(now_ns - std::exchange(at_ns, now_ns)) * per_s);
-        if (left < n)
+        remaining = std::min(per_s, remaining + seconds(now_ns - std::exchange(at_ns, now_ns)) * per_s);
+        if (remaining < n)
             return false;
-        left -= n;
+        remaining -= n;
         return true;
     }
 };
@@ -173,15 +173,15 @@ private:
         std::vector<stroke_id> open = {}; ///< its submissions that have not ended, the newest last
         std::string state = "waiting";    ///< "armed", "started"
         std::optional<live_stroke> live = {};
-        double intensity_max = 1.0;                     ///< value of its points' intensity that means 1
-        double level_db = 0.0;                          ///< level, as set by its client ...
-        double gain_db = 0.0;                           ///< ... and as it was played
-        std::optional<point> touched = {};              ///< its last point
-        std::optional<std::int64_t> touch_told_ns = {}; ///< time at which others last got a point
-        bool released = false;                          ///< its number was sent to the client
-        const char* ended_by = nullptr;                 ///< reason, once it is cancelled or stopped
+        double intensity_max = 1.0;                ///< value of its points' intensity that means 1
+        double level_db = 0.0;                     ///< level, as set by its client ...
+        double gain_db = 0.0;                      ///< ... and as it was played
+        std::optional<point> touched = {};         ///< its last point
+        std::optional<std::int64_t> shown_ns = {}; ///< time at which others last got a point
+        bool released = false;                     ///< its number was sent to the client
+        const char* ended_by = nullptr;            ///< reason, once it is cancelled or stopped
         std::vector<reply_json> held = {};
-        std::optional<std::int64_t> asked_ns = {};
+        std::optional<std::int64_t> requested_ns = {};
         std::optional<std::int64_t> started_ns = {};
         /// Other strokes of an armed file, and their starts, s after this one.
         std::vector<std::pair<std::uint32_t, double>> followers = {};
@@ -191,7 +191,7 @@ private:
         bool next_waits = false;                  ///< the newest submission is a round that has not begun
         std::uint64_t frames = 0;                 ///< frames of the submissions that have ended
         std::string name = {};                    ///< name for the log, as the next two
-        double asked_db = 0.0;                    ///< requested level ...
+        double requested_db = 0.0;                ///< requested level ...
         bool is_sl = false;                       ///< ... in dB SL, not dBFS
         std::optional<stroke_report> broken = {}; ///< report of the first submission that did not finish
     };
@@ -201,7 +201,7 @@ private:
         struct place {
             net::json id = nullptr;
             bool wanted = false;
-            bool given = false;
+            bool filled = false;
             bool file = false; ///< the reply may be longer than the limit of waiting bytes
             std::string reply = {};
         };
@@ -227,7 +227,7 @@ private:
     struct answer {
         std::shared_ptr<pending> all;
         std::size_t at = 0;
-        stop_mark asked = {};
+        stop_mark since = {};
 
         /// Sends the result. `strokes`: new ones, whose notifications are sent from now on.
         void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
@@ -242,8 +242,9 @@ private:
         answer to;
         std::string method; ///< "play", "plan", "import" or "export"
         std::size_t bytes = 0;
-        net::json params = {};        ///< freed after planning
-        options::wishes settled = {}; ///< options of play and plan: the owner's, overridden by the request's
+        net::json params = {}; ///< freed after planning
+        options::option_values values =
+            {}; ///< options of play and plan: the owner's, overridden by the request's
         net::json start = "now";
         double gain_db = 0.0;     ///< gain of all its strokes
         std::uint64_t rounds = 1; ///< number of rounds; 0: until they are cancelled
@@ -263,7 +264,7 @@ private:
     };
 
     // service.cpp
-    bool receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& asked);
+    bool receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since);
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);

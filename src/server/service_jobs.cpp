@@ -80,7 +80,7 @@ void service::read_job(plan_job& j) const
     else
         return;
     static_cast<void>(find_source(params));
-    j.settled = settle_options(options_.plans.owner, params);
+    j.values = resolve_options(options_.plans.owner, params);
     if (const json* start = member(params, "start")) {
         static_cast<void>(read_start(start, options_.now_ns()));
         j.start = *start;
@@ -123,7 +123,7 @@ void service::work_on(plan_job& j)
 
 void service::make_scores(plan_job& j, const go_on_check& go_on)
 {
-    j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, j.settled, go_on));
+    j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, j.values, go_on));
     j.made->least_round_s = j.round_s;
     j.made->pause_s = j.pause_s;
     j.made->rounds = count_rounds(j, *j.made);
@@ -140,7 +140,7 @@ std::string service::make_text(const plan_job& j, const go_on_check& go_on)
     if (j.method == "export")
         return export_strokes(options_, faces_, j.params, go_on);
     const std::size_t most = options_.limits.max_unread_bytes / 2;
-    const planned p = make_planned(options_.plans, faces_, j.params, j.settled, go_on);
+    const planned p = make_planned(options_.plans, faces_, j.params, j.values, go_on);
     return j.view.kind == view_kind::full ? on_one_line(options_.plan_text(p, most))
                                           : view_text(p, options_.plans.tactors, j.view, most);
 }

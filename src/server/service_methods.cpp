@@ -130,7 +130,7 @@ void service::refuse_token(client& c, const answer& to, bool is_missing)
             return;
         guest->refusals_waiting -= is_missing ? 0 : 1;
         if (last)
-            guest->link->turn_out("three wrong tokens");
+            guest->link->dismiss("three wrong tokens");
     };
     if (is_missing)
         return refuse();
@@ -170,9 +170,9 @@ bool service::admits(std::string_view token) const
 reply_json service::status_now()
 {
     const player_stats s = stream_.stats();
-    reply_json who = reply_json::array();
+    reply_json clients = reply_json::array();
     for (const auto& [number, c] : clients_)
-        who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
+        clients.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
     reply_json strokes = reply_json::array();
     for (const auto& [number, r] : strokes_)
         strokes.push_back({{"stroke", number}, {"state", r.state}, {"client", r.owner}});
@@ -186,7 +186,7 @@ reply_json service::status_now()
               {"realtime", s.realtime}}},
             {"amplifier", to_string(stream_.amplifier())},
             {"clients", clients_.size()},
-            {"who", who},
+            {"who", clients},
             {"strokes", strokes},
             {"max_level_dbfs", options_.plans.max_level_dbfs},
             {"limits", limits_json()}};
@@ -203,8 +203,8 @@ void service::make_qr(client& /*c*/, const json& params, const answer& to)
 {
     allow_only(params, {"text"});
     constexpr std::size_t most_bytes = 400;
-    const json* given = member(params, "text");
-    const std::string of = given == nullptr ? std::string() : text(*given, "text");
+    const json* qr_text = member(params, "text");
+    const std::string of = qr_text == nullptr ? std::string() : text(*qr_text, "text");
     if (of.empty() || of.size() > most_bytes)
         bad_param("text", of.empty() ? "it is missing" : fmt::format("it has {} bytes", of.size()),
                   fmt::format("give 1 to {} bytes", most_bytes));
@@ -340,12 +340,12 @@ void service::tell_subscribers(const std::string& event, const reply_json& param
 void service::touch(stroke_record& r)
 {
     const std::int64_t now = options_.now_ns();
-    const bool is_early = r.touch_told_ns && now - *r.touch_told_ns < touch_step.count();
+    const bool is_early = r.shown_ns && now - *r.shown_ns < touch_step.count();
     const auto listeners = std::count_if(clients_.begin(), clients_.end(),
                                          [](const auto& c) { return c.second->events.contains("touches"); });
     if (!is_early && touches_.take(static_cast<double>(listeners), most_touches_per_s, now)) {
         touches_due_.erase(r.number);
-        r.touch_told_ns = now;
+        r.shown_ns = now;
         return tell_touch(r, true);
     }
     if (!touches_due_.insert(r.number).second || touches_due_.size() > 1)

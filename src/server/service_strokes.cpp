@@ -52,15 +52,15 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     if (out == nullptr || out->ended())
         no_stream(stream_.reason());
     const std::int64_t now = options_.now_ns();
-    const start_time asked = read_start(&start, now);
+    const start_time wanted = read_start(&start, now);
     const std::vector<double> starts = p.starts_s();
     const stream_setup& s = out->setup();
     // Keeps the distances of several strokes: they count from a time that the first stroke can reach for
     // certain.
     const auto lead_ns = std::int64_t{1'000'000'000} * (s.buffer_frames + 3 * s.period_frames) / s.rate;
-    const std::int64_t base_ns = asked.at_ns.value_or(now + lead_ns);
-    const bool joins = !asked.after.empty();
-    const std::uint64_t base_frame = joins ? end_requests(owner, asked.after) : 0;
+    const std::int64_t base_ns = wanted.at_ns.value_or(now + lead_ns);
+    const bool joins = !wanted.after.empty();
+    const std::uint64_t base_frame = joins ? end_requests(owner, wanted.after) : 0;
     const auto first =
         static_cast<std::size_t>(std::min_element(starts.begin(), starts.end()) - starts.begin());
     const auto rounds_frames =
@@ -78,23 +78,23 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         r.rounds.frames = rounds_frames;
         if (const client* c = find(owner); again && c != nullptr && !c->input_over)
             r.rounds.again = scores[i];
-        if (asked.armed)
+        if (wanted.armed)
             r.state = "armed";
-        const bool keeps_distance = joins || asked.at_ns || scores.size() > 1;
-        if (const double from_s = asked.armed ? starts[first] : 0.0; keeps_distance)
+        const bool keeps_distance = joins || wanted.at_ns || scores.size() > 1;
+        if (const double from_s = wanted.armed ? starts[first] : 0.0; keeps_distance)
             r.rounds.offset = static_cast<std::uint64_t>(std::llround((starts[i] - from_s) * s.rate));
-        if (asked.armed && i != first) {
+        if (wanted.armed && i != first) {
             r.submits_later = scores[i];
             continue;
         }
-        start_at when = asked.armed ? start_at::trigger() : start_at::now();
+        start_at when = wanted.armed ? start_at::trigger() : start_at::now();
         if (joins) {
             when = start_at::frame(base_frame + r.rounds.offset);
-        } else if (!asked.armed && keeps_distance) {
+        } else if (!wanted.armed && keeps_distance) {
             const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
             when = start_at::time(rt::to_time(at));
-            if (asked.at_ns)
-                r.asked_ns = at;
+            if (wanted.at_ns)
+                r.requested_ns = at;
         }
         try {
             add_submission(r, out->submit(scores[i], when, level_db(r)));
@@ -203,7 +203,7 @@ service::stop_mark service::mark(const client& c) const
 // may begin.
 const char* service::stop_reason_since(const answer& to) const
 {
-    const stop_mark& m = to.asked;
+    const stop_mark& m = to.since;
     const client_number owner = to.all->to;
     if (*m.cancels != m.own)
         return cancelled_by_client;
@@ -311,7 +311,7 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
         if (r.submits_later)
             ++n; // counts a stroke that follows another one of its file
         else
-            r.asked_ns = now;
+            r.requested_ns = now;
     }
     to.result({{"count", n}});
 }
@@ -358,8 +358,8 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     const std::int64_t now = options_.now_ns();
     r.started_ns = at_ns.value_or(now);
     stroke_report how;
-    if (r.asked_ns)
-        how.late_s = std::max(0.0, seconds(*r.started_ns - *r.asked_ns));
+    if (r.requested_ns)
+        how.late_s = std::max(0.0, seconds(*r.started_ns - *r.requested_ns));
     tell_stroke(r, "started", how);
     start_followers(r, *r.started_ns);
     submit_next(r);
@@ -555,7 +555,7 @@ void service::note_sound(stroke_record& r, std::string_view name, const render_o
 {
     r.name = name;
     r.is_sl = o.sl_db.has_value();
-    r.asked_db = o.sl_db.value_or(o.level_dbfs);
+    r.requested_db = o.sl_db.value_or(o.level_dbfs);
 }
 
 // Returns the name of a stroke in the log: 7 "park2016-1" at -12 dBFS of client 3 "pad" (192.168.1.7).
@@ -564,7 +564,7 @@ std::string service::log_name(const stroke_record& r)
     std::string text = fmt::format("{}", r.number);
     if (!r.name.empty())
         text += fmt::format(" \"{}\" at {} {}", net::cut_echo(r.name),
-                            plain_number(r.asked_db + level_db(r), 4), r.is_sl ? "dB SL" : "dBFS");
+                            plain_number(r.requested_db + level_db(r), 4), r.is_sl ? "dB SL" : "dBFS");
     text += fmt::format(" of client {}", r.owner);
     const client* const c = find(r.owner);
     if (c != nullptr && !c->name.empty())
@@ -603,11 +603,11 @@ void service::begin(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"options", "timeout_s", "smooth_s"});
     live_options o;
-    options::wishes s = options_.plans.owner;
+    options::option_values s = options_.plans.owner;
     s.plan.algorithm = o.plan.algorithm;
     s.plan.outside = o.plan.outside;
-    if (const json* given = member(params, "options"))
-        s = with_options(s, *given, options_for::live);
+    if (const json* chosen = member(params, "options"))
+        s = with_options(s, *chosen, options_for::live);
     check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
     o.plan = s.plan;
     o.render = s.render;

@@ -279,14 +279,14 @@ view_choice read_view(const json& params)
     constexpr double most_bins = 4000.0;
     view_choice v;
     if (const json* name = member(params, "view")) {
-        const std::string said = text(*name, "view");
+        const std::string named = text(*name, "view");
         const auto* found = std::find_if(std::begin(views), std::end(views),
-                                         [&](const auto& one) { return one.first == said; });
+                                         [&](const auto& one) { return one.first == named; });
         if (found == std::end(views)) {
             std::vector<std::string_view> known;
             for (const auto& one : views)
                 known.push_back(one.first);
-            bad_param("view", fmt::format("\"{}\" is unknown", said), detail::choice_hint(said, known));
+            bad_param("view", fmt::format("\"{}\" is unknown", named), detail::choice_hint(named, known));
         }
         v.kind = found->second;
     }

@@ -157,7 +157,7 @@ void tell_of_no_device(const settings& s, const environment& e)
                     "hardware)\n");
 }
 
-alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
+alsa_options device_options(const settings& s, const stream_options& chosen, const environment& e,
                             unsigned channels, unsigned rate)
 {
     alsa_options o;
@@ -167,27 +167,27 @@ alsa_options device_options(const settings& s, const stream_options& asked, cons
     o.wider = !s.channels && !out.channels;
     o.rate = rate;
     o.format = s.format;
-    o.periods = asked.periods.value_or(out.periods.value_or(o.periods));
-    o.period_frames = asked.period_frames.value_or(out.period_frames.value_or(o.period_frames));
-    if (asked.latency_ms) {
-        const double frames = *asked.latency_ms * 1e-3 * o.rate / o.periods;
+    o.periods = chosen.periods.value_or(out.periods.value_or(o.periods));
+    o.period_frames = chosen.period_frames.value_or(out.period_frames.value_or(o.period_frames));
+    if (chosen.latency_ms) {
+        const double frames = *chosen.latency_ms * 1e-3 * o.rate / o.periods;
         o.period_frames = std::max(1U, static_cast<unsigned>(std::lround(frames)));
     }
     return o;
 }
 
-drive_limits limits_over(const stream_options& asked, drive_limits l)
+drive_limits limits_over(const stream_options& chosen, drive_limits l)
 {
-    l.power_dbfs = asked.power_dbfs.value_or(l.power_dbfs);
-    l.max_drive_s = asked.max_drive_s.value_or(l.max_drive_s);
-    l.window_s = asked.drive_window_s.value_or(l.window_s);
+    l.power_dbfs = chosen.power_dbfs.value_or(l.power_dbfs);
+    l.max_drive_s = chosen.max_drive_s.value_or(l.max_drive_s);
+    l.window_s = chosen.drive_window_s.value_or(l.window_s);
     return l;
 }
 
 static_assert(drive_limits{}.max_drive_s == detail::usual_drive_s &&
               drive_limits{}.window_s == detail::usual_window_s);
 
-drive_limits settle_limits(const stream_options& o, const environment& e)
+drive_limits find_limits(const stream_options& o, const environment& e)
 {
     const limit_settings written = e.config.limits.value_or(limit_settings{});
     return limits_over(o, limits_over({.power_dbfs = written.power_dbfs,
@@ -201,13 +201,13 @@ double latency_ms(const stream_setup& s)
     return 1e3 * s.buffer_frames / s.rate;
 }
 
-std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made)
+std::string latency_warning(std::optional<double> limit_ms, const stream_setup& made)
 {
     // Relative difference that rounding to whole frames may make.
     constexpr double tolerance = 1.05;
-    if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
+    if (!limit_ms || latency_ms(made) <= *limit_ms * tolerance + 1e3 / made.rate)
         return {};
-    return fmt::format("you requested a latency of {} ms, but the device makes it {:.1f} ms", *asked_ms,
+    return fmt::format("you requested a latency of {} ms, but the device makes it {:.1f} ms", *limit_ms,
                        latency_ms(made));
 }
 
@@ -249,7 +249,7 @@ std::unique_ptr<sink> open_device(const alsa_options& o, const array& a)
     }
 }
 
-std::string settle_server(const std::string& pcm)
+std::string prepare_server(const std::string& pcm)
 {
     std::string server = read_route(pcm).server;
     // PipeWire's ALSA plugin gives places only to the channels of loudspeakers. It would mix nine channels
@@ -296,7 +296,7 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
 
 device_list look_for_devices(const settings& s, const environment& e)
 {
-    const render_options render = settle_render(s, e);
+    const render_options render = find_render(s, e);
     device_list d;
     d.array_name = e.tactors.name;
     d.pcm_is_configured = names_device(s, e);

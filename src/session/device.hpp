@@ -28,17 +28,17 @@ void tell_of_no_device(const settings& s, const environment& e);
 
 /// Returns the options to open the PCM with these channels at that rate, Hz; "null" if nothing names a PCM.
 /// \throws error (bad_input) if an array file has more than the name of a device.
-alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
+alsa_options device_options(const settings& s, const stream_options& chosen, const environment& e,
                             unsigned channels, unsigned rate);
 
 /// Returns `l` with its values replaced by those of the options.
-drive_limits limits_over(const stream_options& asked, drive_limits l);
+drive_limits limits_over(const stream_options& chosen, drive_limits l);
 
 /// Returns the limits: the options, else [limits], else the defaults.
-drive_limits settle_limits(const stream_options& o, const environment& e);
+drive_limits find_limits(const stream_options& o, const environment& e);
 
 /// Returns a sentence if the device makes more latency than the option allows; else nothing.
-std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made);
+std::string latency_warning(std::optional<double> limit_ms, const stream_setup& made);
 
 /// Returns the time that the buffer holds, ms.
 double latency_ms(const stream_setup& s);
@@ -53,7 +53,7 @@ std::unique_ptr<sink> open_device(const alsa_options& o, const array& a);
 /// Returns the sound server between this process and a PCM; empty: none. Sets an unset variable of PipeWire
 /// in this process, so that each channel goes to the output with its number without mixing. Call it before
 /// there are threads and before the PCM is opened.
-std::string settle_server(const std::string& pcm);
+std::string prepare_server(const std::string& pcm);
 
 /// Hint for a sound server in the way.
 inline constexpr const char* server_cure =

@@ -285,7 +285,7 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
     p.open = [device, tactors = e.tactors] { return open_device(device, tactors); };
     p.lines = lent_lines(open_lines(o, e, arm));
     p.tactors = e.tactors;
-    p.player.limits = settle_limits(o, e);
+    p.player.limits = find_limits(o, e);
     p.player.require_realtime = o.require_realtime;
     p.player.log = device.log;
     p.wished.name = device.pcm;
@@ -342,7 +342,7 @@ void device_stream::cancel_all()
 std::optional<device_stream::time> device_stream::step(time now)
 {
     if (outcome_ != nullptr && outcome_->done)
-        settle();
+        finish_work();
     if (player_ != nullptr && !drive_time_doubted_)
         if (const std::string doubt = player_->drive_time_doubt(); !doubt.empty()) {
             drive_time_doubted_ = true;
@@ -417,7 +417,7 @@ void device_stream::close()
     outcome_->player.reset(); // sends the last reports; the player holds the device and borrows the lines
 }
 
-void device_stream::settle()
+void device_stream::finish_work()
 {
     const auto o = std::exchange(outcome_, nullptr);
     if (o->closes) {

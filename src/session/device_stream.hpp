@@ -216,7 +216,7 @@ private:
 
     void open();
     void close();
-    void settle();
+    void finish_work();
 
     rt::event_fd news_;
     stream_parts parts_;

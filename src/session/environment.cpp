@@ -15,7 +15,7 @@
 #include "core/words.hpp"
 #include "files/setup_layers.hpp"
 #include "files/text_file.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "rt/system_files.hpp"
 #include "session/process.hpp"
 #include "session/say.hpp"
@@ -121,7 +121,7 @@ const files::plan_file* read_plans(const settings& s, environment& e)
 // Renders a plan as it was first rendered, unless an option differs. [defaults] do not count.
 void use_plan_sound(const files::plan_file& f, settings& s)
 {
-    options::wishes kept;
+    options::option_values kept;
     kept.render = f.render;
     kept.rate = f.render.rate;
     for (const options::option& o : options::all())
@@ -255,7 +255,7 @@ environment read_environment(settings& s)
     e.tactors = find_array(s, e, planned);
     if (planned != nullptr)
         use_plan_sound(*planned, s);
-    options::settle(s);
+    options::resolve(s);
     check_sync_channel(e);
     if (!e.array_doubt.empty())
         say(stderr, "tactor: warning: {}\n", e.array_doubt);
@@ -264,8 +264,8 @@ environment read_environment(settings& s)
 
 ceiling find_ceiling(const environment& e)
 {
-    if (const auto& said = e.serve.max_level_dbfs)
-        return {*said, fmt::format("max_level_dbfs, {}", e.serve.max_level_at.text())};
+    if (const auto& ceiling = e.serve.max_level_dbfs)
+        return {*ceiling, fmt::format("max_level_dbfs, {}", e.serve.max_level_at.text())};
     settings usual;
     usual.place = options::on_play;
     options::apply_defaults(usual, e.config);
@@ -280,7 +280,7 @@ std::string ceiling_text(const ceiling& c)
     return fmt::format("{} dBFS ({})", plain_number(c.dbfs, 4), c.from);
 }
 
-render_options settle_render(const settings& s, const environment& e)
+render_options find_render(const settings& s, const environment& e)
 {
     render_options r = s.render;
     r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));

@@ -23,7 +23,7 @@ using options::stream_options;
 
 /// Strokes, and options of strokes, plans, sound and the device, as the user wrote them, before any file is
 /// read.
-struct settings : options::wishes {
+struct settings : options::option_values {
     std::vector<std::string> strokes = {}; ///< STROKE arguments
 };
 
@@ -67,7 +67,7 @@ std::string ceiling_text(const ceiling& c);
 bool is_preset(const std::vector<std::string>& presets, const std::string& name);
 
 /// Determines rate and channel count: the options, else the configuration, else the defaults.
-render_options settle_render(const settings& s, const environment& e);
+render_options find_render(const settings& s, const environment& e);
 
 /// Returns a sentence if a plan's carrier differs from that of [calibration], at which the array's single
 /// thresholds were measured; else nothing.

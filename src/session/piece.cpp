@@ -12,7 +12,7 @@
 namespace tactor::session {
 namespace {
 
-stroke stroke_of_path(const std::string& data, const options::wishes& o)
+stroke stroke_of_path(const std::string& data, const options::option_values& o)
 {
     const path p = path::from_svg(data);
     const double speed = o.speed_mm_s.value_or(o.usual_speed_mm_s.value_or(default_speed_mm_s));
@@ -29,7 +29,7 @@ stroke named_stroke(const std::string& name)
 }
 
 // Sets the duration of a stroke: the option comes first, then the stroke's own pace, then the default.
-void set_pace(stroke& s, const options::wishes& o)
+void set_pace(stroke& s, const options::option_values& o)
 {
     const std::optional<double> speed = o.speed_mm_s || !s.usual_pace ? o.speed_mm_s : o.usual_speed_mm_s;
     if (o.duration_s)
@@ -43,7 +43,7 @@ void set_pace(stroke& s, const options::wishes& o)
 } // namespace
 
 std::vector<stroke> read_strokes(std::string_view kind, const std::string& text, const std::string& named,
-                                 const options::wishes& o)
+                                 const options::option_values& o)
 {
     const double intensity_max = o.intensity_max.value_or(1.0);
     if (kind == "stroke")
@@ -57,7 +57,7 @@ std::vector<stroke> read_strokes(std::string_view kind, const std::string& text,
     return parse_strokes_svg(text, named);
 }
 
-void place_strokes(piece& p, const layout& faces, const options::wishes& o)
+void place_strokes(piece& p, const layout& faces, const options::option_values& o)
 {
     p.strokes = apply_fits(std::move(p.strokes), faces);
     if (o.fit) {
@@ -70,7 +70,8 @@ void place_strokes(piece& p, const layout& faces, const options::wishes& o)
         set_pace(k, o);
 }
 
-void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, const options::wishes& o)
+void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces,
+                 const options::option_values& o)
 {
     const stroke& k = p.strokes[i];
     if (!o.compensate) {
@@ -85,17 +86,17 @@ std::string weakening_text(const weakening& w, std::size_t strokes)
 {
     if (!(w.weakened_db < 0.0))
         return "";
-    std::string who = "it exceeds the level";
+    std::string subject = "it exceeds the level";
     if (w.plans.size() == 1 && strokes > 1)
-        who = fmt::format("stroke {} exceeds the level", w.plans.front() + 1);
+        subject = fmt::format("stroke {} exceeds the level", w.plans.front() + 1);
     if (w.plans.size() > 1) {
-        who = fmt::format("strokes {}", w.plans.front() + 1);
+        subject = fmt::format("strokes {}", w.plans.front() + 1);
         for (std::size_t i = 1; i < w.plans.size(); ++i)
-            who += fmt::format("{}{}", i + 1 < w.plans.size() ? ", " : " and ", w.plans[i] + 1);
-        who += " meet";
+            subject += fmt::format("{}{}", i + 1 < w.plans.size() ? ", " : " and ", w.plans[i] + 1);
+        subject += " meet";
     }
     return fmt::format("weakened by {:.2f} dB: {} on tactor {} at {} ({{together=sum}} lets them add up)",
-                       -w.weakened_db, who, w.tactor, seconds_text(w.at_s));
+                       -w.weakened_db, subject, w.tactor, seconds_text(w.at_s));
 }
 
 } // namespace tactor::session

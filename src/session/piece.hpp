@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// From a source and options to strokes, plans and a score, for the tool, the service and the Python package.
+/// Conversion of sources and options to strokes, plans and a score, for the tool, the service and Python.
 #pragma once
 
 #include <cstddef>
@@ -21,15 +21,16 @@ using files::piece;
 /// path data), "toml", "csv" or "svg". `named` stands for the text in errors.
 /// \throws error (bad_input).
 std::vector<stroke> read_strokes(std::string_view kind, const std::string& text, const std::string& named,
-                                 const options::wishes& o);
+                                 const options::option_values& o);
 
 /// Fits the strokes that request it, and all together if the options do; then sets their paces.
 /// \throws error (bad_input).
-void place_strokes(piece& p, const layout& faces, const options::wishes& o);
+void place_strokes(piece& p, const layout& faces, const options::option_values& o);
 
 /// Plans stroke i of a piece, which has the plans of earlier strokes.
 /// \throws error (bad_input).
-void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, const options::wishes& o);
+void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces,
+                 const options::option_values& o);
 
 /// Returns a text, with marks, on how much weaker than requested a score of these strokes is and where they
 /// meet; empty if it is as strong as requested.

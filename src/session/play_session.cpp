@@ -19,15 +19,15 @@
 namespace tactor::session {
 namespace {
 
-constexpr int settled_ms = 10; // longer than one turn of the audio thread
+constexpr int turn_ms = 10; // longer than one turn of the audio thread
 constexpr int longest_ms = 60'000;
 
 int milliseconds_until(std::optional<device_stream::time> t, int most_ms)
 {
     using std::chrono::milliseconds;
-    const auto left = std::chrono::ceil<milliseconds>(t.value_or(device_stream::time::max()) -
-                                                      device_stream::time::clock::now());
-    return static_cast<int>(std::clamp(left, milliseconds(0), milliseconds(most_ms)).count());
+    const auto remaining = std::chrono::ceil<milliseconds>(t.value_or(device_stream::time::max()) -
+                                                           device_stream::time::clock::now());
+    return static_cast<int>(std::clamp(remaining, milliseconds(0), milliseconds(most_ms)).count());
 }
 
 } // namespace
@@ -69,7 +69,7 @@ stream_parts play_session::make_parts(alsa_options device, const stream_source& 
     p.open = [this, open = std::move(p.open), log = device.log, first = true]() mutable {
         std::unique_ptr<sink> s = open();
         if (std::exchange(first, false))
-            locked_ = settle_realtime(options_.require_realtime);
+            locked_ = prepare_realtime(options_.require_realtime);
         else
             detail::log(log, log_kind::info, "PCM \"{}\" is back", pcm_);
         return s;
@@ -160,7 +160,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
         if (const auto report = p.wait(playing_, std::chrono::seconds(0))) {
             // The report of a lost device comes after those of the strokes that it interrupted.
             if (report->state == state_kind::interrupted)
-                wait_for(-1, settled_ms);
+                wait_for(-1, turn_ms);
             return *report;
         }
         submit_follower();
@@ -218,7 +218,7 @@ run_facts play_session::finish()
 {
     stream_.finish();
     run_facts r{setup(), stats(), reopened_, locked_};
-    const drive_limits l = settle_limits(options_, environment_);
+    const drive_limits l = find_limits(options_, environment_);
     if (r.stats.drives_cut != 0)
         say(stderr,
             "tactor: warning: wait {:.4g} s before the next stroke: {} cut short or silent, because a tactor "

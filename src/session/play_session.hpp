@@ -21,7 +21,7 @@ namespace tactor::session {
 /// Facts of a run for the report at its end, without its strokes.
 struct run_facts {
     stream_setup device = {};
-    player_stats stats = {}; ///< of all players of the run together
+    player_stats stats = {}; ///< counters of all players of the run together
     unsigned reopened = 0;
     bool locked_memory = false;
 
@@ -52,7 +52,7 @@ public:
 
     const stream_setup& setup() const noexcept { return stream_.setup(); }
     /// Returns the options of the constructor.
-    const stream_options& asked() const noexcept { return options_; }
+    const stream_options& run_options() const noexcept { return options_; }
 
     /// Hands a score to the stream. With stream_options::arm it waits for the trigger instead of `start`.
     /// Returns a report if the stream has ended, else nothing. \throws error.

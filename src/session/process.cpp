@@ -181,7 +181,7 @@ std::uint64_t memory_to_lock()
     return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + reserve_bytes;
 }
 
-bool settle_realtime(bool required)
+bool prepare_realtime(bool required)
 {
     limit_runaway_threads();
     const std::string refused = lock_own_memory();

@@ -42,13 +42,13 @@ private:
 /// thread runs for 0.2 s without a pause. Such a thread would block a computer with one core for ever. Call
 /// it before threads are made and after the last fork. Returns true if memory is locked.
 /// \throws error (not_available) if it is not, and `required`.
-bool settle_realtime(bool required);
+bool prepare_realtime(bool required);
 
-/// Returns the number of bytes that settle_realtime() would lock now, including those for threads.
+/// Returns the number of bytes that prepare_realtime() would lock now, including those for threads.
 std::uint64_t memory_to_lock();
 
 /// Lets the heap return freed memory, for a long-lived process whose clients come and go: large blocks are
-/// mapped one by one. Call it after settle_realtime(), which keeps all memory.
+/// mapped one by one. Call it after prepare_realtime(), which keeps all memory.
 void give_memory_back();
 
 /// Warns on standard error if the audio thread has no real-time priority or its memory is not locked.

@@ -48,9 +48,9 @@ std::vector<placed_plan> walk_plans(const array& a, double carrier_hz)
     return all;
 }
 
-walk_verdict judge(const array& a, const walk_answers& felt)
+walk_map map_channels(const array& a, const walk_answers& felt)
 {
-    walk_verdict v;
+    walk_map v;
     std::vector<std::vector<std::size_t>> driven(
         a.tactors.size()); // tactors that were driven when this one was felt
     for (std::size_t i = 0; i < felt.size(); ++i)

@@ -22,14 +22,14 @@ std::vector<placed_plan> walk_plans(const array& a, double carrier_hz);
 /// Answers by driven tactor: the number of the tactor that was felt, or nothing.
 using walk_answers = std::vector<std::optional<unsigned>>;
 
-struct walk_verdict {
+struct walk_map {
     std::vector<std::string> problems; ///< reasons why there is no map; empty: there is one
     std::vector<unsigned> channels;    ///< right channel of each tactor
     bool changed = false;              ///< the map differs from the array's
 };
 
 /// Makes a map if the answers name each tactor once; else lists the problems.
-walk_verdict judge(const array& a, const walk_answers& felt);
+walk_map map_channels(const array& a, const walk_answers& felt);
 
 /// Returns the smallest rectangle with all tactors.
 detail::box find_bounds(const array& a);

@@ -77,8 +77,8 @@ std::uint64_t virtual_queue::available(std::int64_t now) noexcept
 
 std::int64_t virtual_queue::time_of_room(std::uint64_t frames) const noexcept
 {
-    const std::uint64_t must_have_left = written_ + frames > buffer_ ? written_ + frames - buffer_ : 0;
-    return origin_ + duration(must_have_left);
+    const std::uint64_t least_played = written_ + frames > buffer_ ? written_ + frames - buffer_ : 0;
+    return origin_ + duration(least_played);
 }
 
 } // namespace tactor::detail

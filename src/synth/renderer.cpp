@@ -75,7 +75,7 @@ bool power_acts(const score& s)
     constexpr std::uint64_t most_frames = 4096;
     const score::impl& own = detail::access::of(s);
     const double reached =
-        std::inner_product(own.asked.begin(), own.asked.end(), own.asked.begin(), own.marker ? 1.0 : 0.0);
+        std::inner_product(own.peaks.begin(), own.peaks.end(), own.peaks.begin(), own.marker ? 1.0 : 0.0);
     if (!own.boosted && reached * most_power < own.guards.power)
         return false;
     score_mixer m(s, format_kind::float32);

@@ -45,7 +45,7 @@ std::string walked()
 {
     const array pair = make_grid("pair", 1, 2, 20.0, 20.0);
     const session::walk_answers felt{1U, std::nullopt};
-    const session::walk_verdict verdict = session::judge(pair, felt);
+    const session::walk_map verdict = session::map_channels(pair, felt);
     return check_json({warning("real time", "no priority", "join a group")},
                       walk_outcome{pair, felt, verdict});
 }

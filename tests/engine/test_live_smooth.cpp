@@ -177,12 +177,12 @@ TEST_CASE("an excess at a refused point does not fail the next one")
 {
     live_options o = smoothed();
     const auto model = std::make_shared<odd_model>();
-    model->asked = 100;
+    model->peaks = 100;
     o.plan.custom_phantom = model;
     live_rig r(o);
     REQUIRE(r.live->to({10.0, 0.0}, 0.5));
     r.play(960);
-    model->asked = 0;
+    model->peaks = 0;
     CHECK_THROWS_AS(r.live->to({20.0, 0.0}, 0.5), error);
     CHECK(r.live->to({20.0, 0.0}, 0.5));
 }
@@ -211,7 +211,7 @@ TEST_CASE("the smoothed place is the mean over the window, however the points ca
             REQUIRE(p.intensity == doctest::Approx(p.at.x_mm));
         }
         s.to(2000, {{5.0, 0.0}, 1.0});
-        CHECK(s.settles_in() == w);
+        CHECK(s.frames_to_target() == w);
         CHECK(s.at(2000 + w).at.x_mm == 5.0);
     }
 }

@@ -6,7 +6,7 @@
 
 #include "files/setup_text.hpp"
 #include "holds.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 
 using namespace tactor;
 

@@ -16,7 +16,7 @@
 #include "core/marks.hpp"
 #include "files/text_file.hpp"
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 
 namespace options_test {
 
@@ -30,9 +30,9 @@ bool is_number(const option& o)
     return o.what == kind::number || o.what == kind::whole;
 }
 
-wishes with(std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given)
+option_values with(std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given)
 {
-    wishes w;
+    option_values w;
     w.place = place;
     for (const auto& [name, v] : given)
         give(w, *find(name), v);
@@ -59,12 +59,12 @@ std::string complaint(const std::string& line)
     return caught_message([&] { static_cast<void>(read_defaults(read("[defaults]\n" + line + "\n"))); });
 }
 
-wishes settled(std::uint64_t place, const std::string& lines)
+option_values settled(std::uint64_t place, const std::string& lines)
 {
-    wishes w;
+    option_values w;
     w.place = place;
     apply_defaults(w, read("[defaults]\n" + lines));
-    settle(w);
+    resolve(w);
     return w;
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("each number ends at its bounds, typed and as a value, and comes back"
             continue;
         CAPTURE(o.name);
         for (const double v : {o.allowed.low, o.allowed.high}) {
-            wishes w;
+            option_values w;
             put(w, o, read_value(o, v));
             CHECK(std::get<double>(o.to.get(w)) == v);
             CHECK(std::get<double>(read_text(o, fmt::format("{}", v))) == v);
@@ -129,12 +129,12 @@ TEST_CASE("each choice and flag comes back, and no other word is accepted")
         CAPTURE(o.name);
         if (o.what == kind::choice)
             for (const std::string_view name : o.choices()) {
-                wishes w;
+                option_values w;
                 put(w, o, read_text(o, std::string(name)));
                 CHECK(std::get<std::string>(o.to.get(w)) == name);
             }
         if (o.what == kind::flag) {
-            wishes w;
+            option_values w;
             put(w, o, read_text(o, "true"));
             CHECK(std::get<bool>(o.to.get(w)));
         }
@@ -151,7 +151,7 @@ TEST_CASE("two exclusive options are refused in any order")
         if (o.rival.empty())
             continue;
         CAPTURE(o.name);
-        wishes w;
+        option_values w;
         give(w, *find(o.rival), find(o.rival)->allowed.low);
         CHECK(caught_message([&] { give(w, o, o.allowed.low); }) ==
               fmt::format("{}: it cannot be combined with {{{}}} (give one of them)", o.name, o.rival));
@@ -161,8 +161,8 @@ TEST_CASE("two exclusive options are refused in any order")
 TEST_CASE("an unused option is refused with a hint for its place")
 {
     const auto said = [](std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given) {
-        wishes w = with(place, given);
-        return caught_message([&] { settle(w); });
+        option_values w = with(place, given);
+        return caught_message([&] { resolve(w); });
     };
     CHECK(said(on_plan, {{"sigma_mm", 3.0}}) ==
           "sigma_mm: nothing here uses it (add compensate = low-speed)");
@@ -180,13 +180,13 @@ TEST_CASE("an unused option is refused with a hint for its place")
 
 TEST_CASE("a user's timing law has its own longest SOA")
 {
-    wishes w = with(on_plan, {{"slope", 0.3}, {"intercept", 0.04}});
-    settle(w);
+    option_values w = with(on_plan, {{"slope", 0.3}, {"intercept", 0.04}});
+    resolve(w);
     CHECK(w.plan.profile.max_soa_s == doctest::Approx(0.04 / 0.7));
     for (const auto& said :
          {std::pair("soa", 0.06), std::pair("slope", 0.32), std::pair("intercept", 0.0473)}) {
-        wishes usual = with(on_plan, {said});
-        settle(usual);
+        option_values usual = with(on_plan, {said});
+        resolve(usual);
         CHECK(usual.plan.profile.max_soa_s == 0.07);
     }
 }
@@ -234,8 +234,8 @@ TEST_CASE("an error about a field names the option, unless it is about a key of 
 TEST_CASE("options of planning are refused beside a plan")
 {
     for (const option& o : all()) {
-        wishes w;
-        w.given.set(index(o));
+        option_values w;
+        w.by_user.set(index(o));
         CAPTURE(o.name);
         const bool refused = !caught_message([&] { refuse_planning(w, "p.json"); }).empty();
         CHECK(refused == ((o.where & planning) != 0));
@@ -297,11 +297,11 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
         REQUIRE(said.size() == 1);
         CHECK(said.front().row == &o);
         // It lands where the row says, and changes what is built in.
-        wishes w;
+        option_values w;
         w.place = o.where;
         apply_defaults(w, read(fmt::format("[defaults]\n{} = \"{}\"\n", name, all.at(name))));
         if (name != "speed") // it is only the usual one
-            CHECK(o.to.get(w) != o.to.get(wishes()));
+            CHECK(o.to.get(w) != o.to.get(option_values()));
         CHECK(w.in_file.contains(index(o)));
     }
     CHECK(known == all.size());
@@ -338,7 +338,7 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
 TEST_CASE("what the user gives wins over [defaults], whatever comes first")
 {
     for (const bool first : {true, false}) {
-        wishes w;
+        option_values w;
         w.place = on_play;
         const setup says = read("[defaults]\nsl = 7\nspeed = 20\nlatency-ms = 40\nsoa = 0.06\n");
         if (!first)
@@ -348,7 +348,7 @@ TEST_CASE("what the user gives wins over [defaults], whatever comes first")
         give(w, *find("period_frames"), 48.0);
         if (first)
             apply_defaults(w, says);
-        settle(w);
+        resolve(w);
         CHECK_FALSE(w.render.sl_db);
         CHECK(w.render.level_dbfs == -20.0);
         CHECK_FALSE(w.speed_mm_s);
@@ -360,7 +360,7 @@ TEST_CASE("what the user gives wins over [defaults], whatever comes first")
 
 TEST_CASE("a speed of [defaults] is one of strokes that say none")
 {
-    const wishes w = settled(on_play, "speed = 20\n");
+    const option_values w = settled(on_play, "speed = 20\n");
     CHECK(w.usual_speed_mm_s == 20.0);
     CHECK_FALSE(w.speed_mm_s);
 }
@@ -375,16 +375,16 @@ TEST_CASE("a place takes only the options that it has")
 TEST_CASE("values of [defaults] that nothing uses may stand there for other strokes")
 {
     CHECK(settled(on_plan, "noise-seed = 3\nsigma-mm = 4\n").plan.wave.seed == 3);
-    wishes w;
+    option_values w;
     w.place = on_plan;
     give(w, *find("noise_seed"), 3.0);
-    CHECK(caught_message([&] { settle(w); }) ==
+    CHECK(caught_message([&] { resolve(w); }) ==
           "noise_seed: nothing here uses it (add waveform = noise:LO-HI)");
 }
 
 TEST_CASE("an error about a value of [defaults] has its place in the file")
 {
-    const wishes w = settled(on_plan, "soa = 0.5\n");
+    const option_values w = settled(on_plan, "soa = 0.5\n");
     const error e = error(error_kind::bad_input, "soa_s", "it is too long", "use 0.07").with_field("soa_s");
     CHECK(std::string(at_default(w, e).what()) == "t.toml:2:7: soa: it is too long (use 0.07)");
     const error other = error(error_kind::bad_input, "burst_s", "no", "").with_field("burst_s");

@@ -47,7 +47,7 @@ planning palm()
 planned make_planned(
     const planning& with, const layout& faces, const json& params, const go_on_check& go_on = [] {})
 {
-    return server::make_planned(with, faces, params, settle_options(with.owner, params), go_on);
+    return server::make_planned(with, faces, params, resolve_options(with.owner, params), go_on);
 }
 
 net::rpc_fault plan_fault(const json& params)
@@ -65,7 +65,7 @@ std::string fault_what(const json& params)
 
 TEST_CASE("the options that a client may give are listed with bounds, choices and the owner's values")
 {
-    options::wishes owner;
+    options::option_values owner;
     owner.render.level_dbfs = -20.0;
     owner.plan.timing = timing_kind::fit;
     std::map<std::string, json> rows;
@@ -112,20 +112,20 @@ TEST_CASE("the options that a client may give are listed with bounds, choices an
 
 TEST_CASE("options are put over the owner's; tests/options has each of them")
 {
-    options::wishes owner;
+    options::option_values owner;
     owner.speed_mm_s = 80.0;
     owner.render.sl_db = 7.0;
-    const options::wishes s = with_options(owner,
-                                           {{"phantom", "log"},
-                                            {"duration", 2},
-                                            {"slope", 0.3},
-                                            {"intercept", 0.04},
-                                            {"snap", true},
-                                            {"waveform", "noise:50-300"},
-                                            {"noise_seed", 5},
-                                            {"am", "20:0.5"},
-                                            {"level_dbfs", -20}},
-                                           options_for::planned);
+    const options::option_values s = with_options(owner,
+                                                  {{"phantom", "log"},
+                                                   {"duration", 2},
+                                                   {"slope", 0.3},
+                                                   {"intercept", 0.04},
+                                                   {"snap", true},
+                                                   {"waveform", "noise:50-300"},
+                                                   {"noise_seed", 5},
+                                                   {"am", "20:0.5"},
+                                                   {"level_dbfs", -20}},
+                                                  options_for::planned);
     CHECK(s.plan.phantom == from_string<phantom_kind>("log"));
     CHECK(s.duration_s == 2.0);
     CHECK_FALSE(s.speed_mm_s);
@@ -204,7 +204,7 @@ TEST_CASE("what is refused names its parameter")
 
 TEST_CASE("parameters of a view that are refused name themselves")
 {
-    const auto fault = [](const json& params) { return fault_from([&] { settle_options({}, params); }); };
+    const auto fault = [](const json& params) { return fault_from([&] { resolve_options({}, params); }); };
     CHECK(fault({{"view", "all"}}).what == "view");
     CHECK(fault({{"view", 1}}).what == "view");
     for (const json& bins : {json(0), json(4001), json(1.5), json("9"), json(nullptr)})
@@ -421,7 +421,7 @@ TEST_CASE("strokes that meet are weakened, not refused, where only their meeting
             toml += fmt::format("[[stroke]]\npath = '{}'\nduration_s = 1.4\nstart_s = 0.0\nintensity = {}\n",
                                 path, intensity);
         const json params{{"toml", toml}, {"options", {{"level_dbfs", level_dbfs}, {"together", together}}}};
-        return make_planned(with, faces, params, settle_options(with.owner, params));
+        return make_planned(with, faces, params, resolve_options(with.owner, params));
     };
     for (const double level : {-40.0, -12.0}) {
         const planned p = make(level, 1.0, "weaken");

@@ -25,7 +25,7 @@ array three()
 TEST_CASE("a channel belongs to the place where it was felt")
 {
     // Channel 5 was felt at 1, 6 at 2, 7 at 0.
-    const walk_verdict v = judge(three(), {1, 2, 0});
+    const walk_map v = map_channels(three(), {1, 2, 0});
     CHECK(v.problems.empty());
     CHECK(v.changed);
     CHECK(v.channels == std::vector{7U, 5U, 6U});
@@ -33,20 +33,20 @@ TEST_CASE("a channel belongs to the place where it was felt")
 
 TEST_CASE("answers that are all right change nothing")
 {
-    const walk_verdict v = judge(three(), {0, 1, 2});
+    const walk_map v = map_channels(three(), {0, 1, 2});
     CHECK_FALSE(v.changed);
     CHECK(v.channels == std::vector{5U, 6U, 7U});
 }
 
 TEST_CASE("two felt at one place, and one felt nowhere, make no map")
 {
-    const walk_verdict v = judge(three(), {2, std::nullopt, 2});
+    const walk_map v = map_channels(three(), {2, std::nullopt, 2});
     CHECK(v.channels.empty());
     CHECK(v.problems == std::vector<std::string>{
                             "tactor 1 (channel 6) was not felt",
                             "tactor 0 (channel 5) and tactor 2 (channel 7) were felt at one place, 2"});
     // The remaining place is a guess, not a finding.
-    CHECK(judge(three(), {0, 1, std::nullopt}).channels.empty());
+    CHECK(map_channels(three(), {0, 1, std::nullopt}).channels.empty());
 }
 
 TEST_CASE("each tactor alone is driven, three times, at full intensity")

@@ -9,7 +9,7 @@
 #include "caught.hpp"
 #include "files/json/json_value.hpp"
 #include "has.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "study/report/report.hpp"
 
 namespace tactor::study::test_report {
@@ -63,8 +63,8 @@ TEST_CASE("a wrong value is reported with its place")
 {
     const ordered j = {{"array", {{"tactors", {{{"x_mm", "left"}}}}}}, {"n", nullptr}, {"date", 7}};
     const json_value f(j, file, "it was changed");
-    CHECK_FALSE(f["n"].there());
-    CHECK_FALSE(f["none"]["deeper"]["still"].there());
+    CHECK_FALSE(f["n"].exists());
+    CHECK_FALSE(f["none"]["deeper"]["still"].exists());
     CHECK(f["none"].list().empty());
     const json_value first = f["array"]["tactors"].list().at(0);
     CHECK(has(caught_message([&] { static_cast<void>(first["x_mm"].number()); }),
@@ -89,7 +89,7 @@ TEST_CASE("any value has words")
 
 TEST_CASE("options of a method are reported by their names, where they are used")
 {
-    options::wishes o;
+    options::option_values o;
     CHECK(method_options(o) ==
           "outside error, algorithm park2016, phantom inverse-distance, faces delaunay, soa 0.07, "
           "slope 0.32, intercept 0.0473, timing fixed, overlap energy, carrier 250");

@@ -300,13 +300,13 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     check_calibrate_options(o, s);
     study::calibration_settings c = o.settings;
     const array& a = e.tactors;
-    const drive_limits limits = session::settle_limits({}, e);
+    const drive_limits limits = session::find_limits({}, e);
     if (!o.masker.empty() && !o.simulate) {
         c.masker = fmt::format("{} noise, {} dBFS", to_string(o.masking.color), o.masking.level_dbfs);
         c.masker_pcm = o.masker;
     }
     c.carrier_hz = s.plan.carrier_hz;
-    const unsigned rate = session::settle_render(s, e).rate;
+    const unsigned rate = session::find_render(s, e).rate;
     if (c.carrier_hz >= 0.5 * rate)
         refuse_option("--carrier",
                       fmt::format("{} Hz cannot be played at a rate of {} Hz", c.carrier_hz, rate),
@@ -416,10 +416,10 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
 {
     if (!asked.page.shown() && asked.keypads.empty())
         session::check_standard_input();
-    const render_options render = session::settle_render(s, e);
+    const render_options render = session::find_render(s, e);
     const session::stream_options& o = s.stream;
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
-    const std::string server = session::settle_server(device.pcm);
+    const std::string server = session::prepare_server(device.pcm);
     net::owned_fd listening = open_page(asked.page);
     study::stage stage(device, o, e);
     const study::page_words words = asked.words.value_or(study::page_words());

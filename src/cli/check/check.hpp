@@ -60,7 +60,7 @@ int worst_status(const std::vector<finding>& all);
 struct walk_outcome {
     const array& tactors;
     const session::walk_answers& felt;
-    const session::walk_verdict& verdict;
+    const session::walk_map& verdict;
 };
 
 /// Returns the findings for people. `brief`: leaves out the good ones, because a walk follows.

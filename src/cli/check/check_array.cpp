@@ -209,7 +209,7 @@ std::vector<std::size_t> select_kind(const array& a, actuator_kind kind)
     return tactors_where(a, [kind](const tactor_spec& t) { return t.actuator == kind; });
 }
 
-std::string who(const array& a, const std::vector<std::size_t>& some)
+std::string tactor_numbers(const array& a, const std::vector<std::size_t>& some)
 {
     if (some.size() == a.tactors.size())
         return "all tactors";
@@ -237,7 +237,7 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
         if (const auto some = select_kind(a, k.kind); !some.empty())
             into.push_back(warning("actuators",
                                    fmt::format("{}: {}; it plays {}, and the carrier is {:.4g} Hz",
-                                               who(a, some), k.why, burst, carrier_hz),
+                                               tactor_numbers(a, some), k.why, burst, carrier_hz),
                                    k.cure));
     double slowest_s = 0.0;
     const auto slow = tactors_where(a, [&](const tactor_spec& t) {
@@ -246,7 +246,7 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     });
     if (has_bursts && !slow.empty())
         into.push_back(warning("actuators",
-                               fmt::format("{}: rise_ms is up to {:.3g}, a large part of {}", who(a, slow),
+                               fmt::format("{}: rise_ms is up to {:.3g}, a large part of {}", tactor_numbers(a, slow),
                                            slowest_s * 1e3, burst),
                                "make bursts longer with --burst, or use faster actuators"));
     if (into.size() != before)
@@ -284,12 +284,12 @@ finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsign
 
 std::vector<finding> check_array(const settings& s, const environment& e)
 {
-    const render_options r = session::settle_render(s, e);
+    const render_options r = session::find_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
                              check_levels(r, e.tactors, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
-    all.push_back(check_limits(session::settle_limits(s.stream, e), e.tactors.tactors.size()));
+    all.push_back(check_limits(session::find_limits(s.stream, e), e.tactors.tactors.size()));
     all.push_back(fine("service", "clients of tactor serve get at most " +
                                       session::ceiling_text(session::find_ceiling(e))));
     return all;

@@ -44,7 +44,7 @@ std::string summary(const std::vector<finding>& all)
 template <class Io>
 void walk_members(Io& io, const walk_outcome& w)
 {
-    const session::walk_verdict& v = w.verdict;
+    const session::walk_map& v = w.verdict;
     io.list("answers", w.felt, {"for each tactor, in order"},
             [&w](auto& inner, const std::optional<unsigned>& felt, std::size_t number) {
                 constexpr about driven{"its number, and the channel that played"};
@@ -108,7 +108,7 @@ std::string note_text(const std::vector<session::device_note>& notes)
 finding check_open(const alsa_options& device, const session::stream_options& o, const environment& e,
                    bool named, std::string& kept_as)
 {
-    const std::string server = session::settle_server(device.pcm);
+    const std::string server = session::prepare_server(device.pcm);
     const stream_setup made = session::open_device(device, e.tactors)->setup();
     kept_as = made.device;
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
@@ -191,7 +191,7 @@ void check_machine(const setup& config, const alsa_options& device, const sessio
 
 alsa_options device_for(const settings& s, const environment& e)
 {
-    const render_options r = session::settle_render(s, e);
+    const render_options r = session::find_render(s, e);
     return session::device_options(s, s.stream, e, r.channels, r.rate);
 }
 
@@ -246,7 +246,7 @@ void write_channels(const std::string& name, const settings& s, const environmen
     study::write_new_output(name, text);
 }
 
-void conclude(const settings& s, const check_options& o, const environment& e, const session::walk_verdict& v)
+void conclude(const settings& s, const check_options& o, const environment& e, const session::walk_map& v)
 {
     if (!v.problems.empty())
         throw error(error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
@@ -267,7 +267,7 @@ void conclude(const settings& s, const check_options& o, const environment& e, c
 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
 {
-    const walk_result w = walk(device_for(s, e), s, e, session::settle_render(s, e), o);
+    const walk_result w = walk(device_for(s, e), s, e, session::find_render(s, e), o);
     if (w.signal != 0)
         return session::interrupt::status(w.signal);
     if (o.no_questions) {
@@ -275,7 +275,7 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
             fmt::print("{}", check_json(all, {}));
         return status_ok;
     }
-    const session::walk_verdict v = session::judge(e.tactors, w.felt);
+    const session::walk_map v = session::map_channels(e.tactors, w.felt);
     if (o.json())
         fmt::print("{}", check_json(all, walk_outcome{e.tactors, w.felt, v}));
     conclude(s, o, e, v);
@@ -360,7 +360,7 @@ nlohmann::ordered_json check_schema()
 {
     const array none;
     const session::walk_answers felt;
-    const session::walk_verdict verdict;
+    const session::walk_map verdict;
     return files::json_schema::describe_object([&](auto& io) {
         check_members(io, {}, walk_outcome{none, felt, verdict});
     });

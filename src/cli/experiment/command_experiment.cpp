@@ -60,7 +60,7 @@ constexpr const char* masker_cure =
 // The server between the program and a card, where it may be there.
 std::string check_server(const std::string& pcm, const char* cure, const experiment_options& o)
 {
-    std::string server = session::settle_server(pcm);
+    std::string server = session::prepare_server(pcm);
     if (!server.empty() && !o.allow_sound_server)
         throw error(error_kind::bad_input, pcm, session::server_note(server),
                     fmt::format("{}; --allow-sound-server allows and records it", cure));

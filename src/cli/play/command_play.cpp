@@ -91,13 +91,13 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
         if (session.lost() && !session.reopen())
             return false;
         out.report = session.submit(s);
-        if (!out.report && session.asked().arm && !as_json) {
+        if (!out.report && session.run_options().arm && !as_json) {
             say(stdout, "{}: armed\n", shown_name(p.name));
             flush_output();
         }
         // No picture with --verbose: it would overwrite log lines.
         if (!out.report)
-            out.report = follow_drawn(session, a, p, s, !as_json && !session.asked().verbose);
+            out.report = follow_drawn(session, a, p, s, !as_json && !session.run_options().verbose);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())
@@ -113,7 +113,7 @@ std::optional<error> judge(const session::play_session& session, const stroke_ou
     const auto broken = [&](const char* hint) {
         return error(error_kind::runtime, shown_name(out.name), fate(out, session.setup().rate), hint);
     };
-    if (session.asked().void_on_xrun)
+    if (session.run_options().void_on_xrun)
         return broken("the run is void: --void-on-xrun");
     if (last)
         return {};
@@ -191,7 +191,7 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
 {
     session::tell_of_no_device(s, e);
     const alsa_options device = session::device_options(s, s.stream, e, channels, rate);
-    const std::string server = session::settle_server(device.pcm);
+    const std::string server = session::prepare_server(device.pcm);
     session::play_session session(device, s.stream, e);
     if (!o.json())
         say(stdout, "{}\n", describe(session.setup()));
@@ -256,7 +256,7 @@ int play_live(settings& s, const play_options& o)
         l.plan.algorithm = usual.plan.algorithm;
     if (!s.gives("outside"))
         l.plan.outside = usual.plan.outside;
-    l.render = session::settle_render(s, e);
+    l.render = session::find_render(s, e);
     l.timeout_s = live_timeout_s;
     l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
     return hold_run(
@@ -289,7 +289,7 @@ int play(settings& s, const play_options& o)
     std::vector<piece> pieces;
     for (const std::string& argument : stroke_arguments(s))
         pieces.push_back(open_piece(s, e, faces, argument));
-    const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
+    const auto scores = make_scores(pieces, s, e, faces, session::find_render(s, e));
     return hold_run(s, e, scores.front().channels(), scores.front().rate(), o,
                     [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
                         return play_all(session, o, e.tactors, pieces, scores, outcomes);

@@ -179,9 +179,9 @@ server::planning make_planning(const settings& s, const environment& e, double c
                                const server::service_limits& limits)
 {
     server::planning p;
-    p.owner = static_cast<const options::wishes&>(s);
+    p.owner = static_cast<const options::option_values&>(s);
     p.owner.intensity_max.reset(); // each client says how its own numbers count
-    p.owner.render = session::settle_render(s, e);
+    p.owner.render = session::find_render(s, e);
     p.max_level_dbfs = ceiling_dbfs;
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
     p.tactors = limit_levels(e.tactors, p.max_level_dbfs);
@@ -310,10 +310,10 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     device.log = log.function();
     service.log = device.log;
     session::tell_of_no_device(s, e);
-    session::warn_of_server(session::settle_server(device.pcm));
+    session::warn_of_server(session::prepare_server(device.pcm));
     const bool armed = !play.no_gpio && e.config.sync && e.config.sync->in;
     server::stream_options stream{session::open_parts(device, play, e, armed)};
-    const bool locked = session::settle_realtime(play.require_realtime);
+    const bool locked = session::prepare_realtime(play.require_realtime);
     session::give_memory_back();
     session::warn_of_rights(probe_realtime_rights().priority != 0, locked);
     stream.tactors = service.plans.tactors;

@@ -306,14 +306,14 @@ path make_path(outline o, std::string_view what)
 path with_places(const path& p, double step_mm)
 {
     std::shared_ptr<path::impl> out;
-    std::size_t left = most_pieces;
+    std::size_t remaining = most_pieces;
     const std::vector<path::impl::measured_curve>& curves = access::of(p).curves;
-    for (std::size_t i = 0; i < curves.size() && left >= most_pieces_of_curve; ++i) {
+    for (std::size_t i = 0; i < curves.size() && remaining >= most_pieces_of_curve; ++i) {
         const arc_length& measure = curves[i].measure;
         if (measure.total() < least_steps * step_mm)
             continue;
         auto places = std::make_shared<const curve_places>(curves[i].form, measure, most_pieces_of_curve);
-        left -= std::min(left, places->pieces());
+        remaining -= std::min(remaining, places->pieces());
         if (places->pieces() > most_pieces_of_curve)
             continue;
         if (out == nullptr)

@@ -320,7 +320,7 @@ std::optional<double> newton(const shape& c, const bracket& b)
     const double to = b.to;
     constexpr int most_steps = 5;
     // Halley's method is cubic: the next step would be below the last digit.
-    constexpr double settled = 1e-6;
+    constexpr double converged = 1e-6;
     double t = guess(b);
     for (int i = 0; i < most_steps; ++i) {
         const double off = b.below + length_between(c, from, t);
@@ -330,7 +330,7 @@ std::optional<double> newton(const shape& c, const bracket& b)
         t -= step;
         if (!(t >= from && t <= to && std::abs(step) <= to - from))
             return {};
-        if (std::abs(step) <= settled * (to - from) && std::abs(straight * v.rate) <= 1e-3 * v.speed)
+        if (std::abs(step) <= converged * (to - from) && std::abs(straight * v.rate) <= 1e-3 * v.speed)
             return t;
     }
     return {};

@@ -232,7 +232,7 @@ std::vector<double> find_smooth_times(const trajectory::impl& i, const drawn_pat
     if (law.moves) {
         for (const double t : law.moves->bends())
             times.push_back(i.from_own(t, law.moves->total_s()));
-        for (const profile_point& p : law.moves->given().intensity)
+        for (const profile_point& p : law.moves->definition().intensity)
             times.push_back(i.from_own(law.moves->arrival_s(p.part), law.moves->total_s()));
     }
     std::sort(times.begin(), times.end());

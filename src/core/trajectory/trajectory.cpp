@@ -94,9 +94,9 @@ trajectory moved(const trajectory& t, point from, const affine& m, std::optional
         outline o = mapped(make_outline(access::of(c->way)), to_origin);
         if (line)
             o = with_straight_pieces(o, *line);
-        drawn_path there{make_path(mapped(std::move(o), m), what), c->intensity, c->moves};
+        drawn_path mapped_path{make_path(mapped(std::move(o), m), what), c->intensity, c->moves};
         return access::make<trajectory>(std::make_shared<const trajectory::impl>(
-            trajectory::impl{std::move(there), d.duration_s, d.gain}));
+            trajectory::impl{std::move(mapped_path), d.duration_s, d.gain}));
     }
     std::vector<timed_point> points = *std::get<timed_points>(d.law).points;
     for (timed_point& p : points)
@@ -363,9 +363,9 @@ trajectory trajectory::with_speed(double speed_mm_s) const
         return *this;
     const double moving = length / speed_mm_s;
     const auto* c = std::get_if<drawn_path>(&impl_->law);
-    if (c == nullptr || !c->moves || c->moves->given().rests.empty())
+    if (c == nullptr || !c->moves || c->moves->definition().rests.empty())
         return with_duration(moving);
-    movement m = c->moves->given();
+    movement m = c->moves->definition();
     const double stretched = impl_->duration_s / c->moves->total_s();
     for (rest& r : m.rests)
         r.time_s *= stretched;
@@ -381,7 +381,7 @@ trajectory trajectory::reversed() const
     if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
         drawn_path l{detail::make_path(backwards(detail::access::of(c->way)), "stroke"), c->intensity, {}};
         if (c->moves)
-            l.moves = std::make_shared<const pace>(backwards(c->moves->given()), c->moves->moving_s());
+            l.moves = std::make_shared<const pace>(backwards(c->moves->definition()), c->moves->moving_s());
         return trajectory(std::make_shared<impl>(impl{std::move(l), impl_->duration_s, impl_->gain}));
     }
     const auto& l = std::get<timed_points>(impl_->law);

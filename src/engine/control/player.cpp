@@ -187,11 +187,11 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
             fmt::format("it drives tactor {} on channel {}, but the player's array has no tactor there", i,
                         channel),
             replan);
-    if (s.asked[i] > limit * rounding)
+    if (s.peaks[i] > limit * rounding)
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("it drives tactor {} at up to {:.4g} dBFS, but the player's array allows "
                                 "{:.4g} dBFS on channel {}",
-                                i, synth::in_db(s.asked[i]), synth::in_db(limit), channel),
+                                i, synth::in_db(s.peaks[i]), synth::in_db(limit), channel),
                     replan);
 }
 
@@ -228,8 +228,8 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
                         : s.rate() == stream.rate       ? "channels"
                                                         : "");
     const score::impl& made = detail::access::of(s);
-    for (std::size_t i = 0; i < made.asked.size(); ++i)
-        if (made.asked[i] > 0.0)
+    for (std::size_t i = 0; i < made.peaks.size(); ++i)
+        if (made.peaks[i] > 0.0)
             check_tactor(made, i, limits);
     if (made.marker && limits[*made.marker] > 0.0)
         throw error(error_kind::bad_input, "stroke",
@@ -362,13 +362,13 @@ wait_result player::wait(stroke_id id, std::optional<std::chrono::duration<doubl
 {
     impl& p = *impl_;
     std::unique_lock lock(p.mutex);
-    const auto settled = [&] { return p.find_report(id) != p.ended.end() || !p.feed.knows(id); };
+    const auto is_over = [&] { return p.find_report(id) != p.ended.end() || !p.feed.knows(id); };
     // In the control thread it would wait for itself.
     if (!p.control->is_current()) {
         if (timeout)
-            p.news.wait_until(lock, deadline(*timeout), settled);
+            p.news.wait_until(lock, deadline(*timeout), is_over);
         else
-            p.news.wait(lock, settled);
+            p.news.wait(lock, is_over);
     }
     const auto found = p.find_report(id);
     if (found != p.ended.end()) {

@@ -414,12 +414,12 @@ std::string lost_tactor(const array& a, const stream_wiring& w)
         const std::vector<unsigned>& mine = reached(w, a.tactors[i]);
         if (std::any_of(mine.begin(), mine.end(), [&](unsigned output) { return users[output] == 1; }))
             continue;
-        const std::string who = place(a, i);
+        const std::string tactor_text = place(a, i);
         if (mine.empty())
-            return who + ", which reaches no channel of the device";
+            return tactor_text + ", which reaches no channel of the device";
         const std::size_t other = partner(a, w, i, mine.front());
-        return fmt::format("{}, which reaches the device only together with channel {} of tactor {}", who,
-                           a.tactors[other].channel, other);
+        return fmt::format("{}, which reaches the device only together with channel {} of tactor {}",
+                           tactor_text, a.tactors[other].channel, other);
     }
     return {};
 }

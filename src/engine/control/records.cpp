@@ -362,16 +362,17 @@ std::vector<double> drive_share::enter(drive_levels& l, std::span<const double> 
     l.add(drive_s, now_ns, law);
     std::vector<double> theirs = l.levels_s;
     for (std::size_t i = 0; i < theirs.size(); ++i) {
-        const double left = i < left_s.size() ? left_s[i] - law.leak * seconds(now_ns - left_ns) : 0.0;
-        if (without_this.levels_s[i] <= std::max(left, 0.0) + noticed_s)
+        const double remaining =
+            i < last_levels_s.size() ? last_levels_s[i] - law.leak * seconds(now_ns - entered_ns) : 0.0;
+        if (without_this.levels_s[i] <= std::max(remaining, 0.0) + noticed_s)
             theirs[i] = 0.0;
     }
     while (l.runs.empty() && l.levels_s.size() > drive_s.size() && l.levels_s.back() == 0.0)
-        l.levels_s.pop_back(); // of unknown channels
+        l.levels_s.pop_back(); // drops levels of unknown channels
     if (goes_on)
         l.runs.push_back({name, now_ns + std::llround(ahead_s * 1e9)});
-    left_s = l.levels_s;
-    left_ns = now_ns;
+    last_levels_s = l.levels_s;
+    entered_ns = now_ns;
     sounds = goes_on;
     return theirs;
 }
@@ -388,7 +389,7 @@ drive_book::drive_book(const stream_setup& s, const synth::guard_settings& g,
     if (!has_device())
         return;
     for (const std::vector<unsigned>& reached : outputs_)
-        if (!reached.empty() && reached.back() >= detail::max_channels) { // of several devices
+        if (!reached.empty() && reached.back() >= detail::max_channels) { // the stream has several devices
             outputs_.clear();
             break;
         }
@@ -399,8 +400,8 @@ drive_book::drive_book(const stream_setup& s, const synth::guard_settings& g,
     const auto begin = [this](drive_levels& l, std::int64_t now_ns) {
         l.pass(now_ns, law_);
         l.add({}, now_ns, law_);
-        share_.left_s = l.levels_s;
-        share_.left_ns = now_ns;
+        share_.last_levels_s = l.levels_s;
+        share_.entered_ns = now_ns;
     };
     fault f = look_up({device_, path_, boot_, law_.limit_s}, clock_, patient_tries, begin);
     if (f.what == fault_kind::busy) {
@@ -462,7 +463,7 @@ std::vector<double> drive_book::drive_at_device(std::span<const std::uint64_t> n
 bool drive_book::enter(std::span<const std::atomic<std::uint64_t>> driven, bool sounds,
                        level_requests& raised) noexcept
 {
-    if (!has_device() || (sounds && share_.sounds && clock_() - share_.left_ns < renewed_ns))
+    if (!has_device() || (sounds && share_.sounds && clock_() - share_.entered_ns < renewed_ns))
         return false;
     try {
         std::vector<std::uint64_t> now(driven.size());

@@ -65,8 +65,8 @@ struct drive_levels {
 struct drive_share {
     std::int64_t name = 0;                  ///< differs from the names of all other runs
     std::vector<std::uint64_t> driven = {}; ///< frames that were entered, by channel
-    std::vector<double> left_s = {};        ///< levels by channel of the device after the last entry, ...
-    std::int64_t left_ns = 0;               ///< ... and when that was, CLOCK_BOOTTIME
+    std::vector<double> last_levels_s = {}; ///< levels by channel of the device after the last entry, ...
+    std::int64_t entered_ns = 0;            ///< ... and when that was, CLOCK_BOOTTIME
     bool sounds = false;                    ///< channels may be driven since then
 
     /// Adds the drive since the last call to `l`, s, by channel of the device. `goes_on`: channels may be
@@ -90,7 +90,7 @@ public:
 
     bool has_device() const noexcept { return !device_.empty(); }
     /// Returns the levels of drive time when the book was opened, s, by channel.
-    std::vector<double> levels() const { return levels_at_channels(share_.left_s); }
+    std::vector<double> levels() const { return levels_at_channels(share_.last_levels_s); }
     /// Returns the reason why drive time does not continue, or counts as used up; empty: it continues. Any
     /// thread.
     std::string doubt() const;

@@ -63,7 +63,7 @@ void json_value::refuse(std::string_view why, std::string_view hint) const
 json_value json_value::operator[](const std::string& key) const
 {
     std::string place = place_.empty() ? key : place_ + "." + key;
-    if (!there())
+    if (!exists())
         return {nullptr, *file_, hint_, std::move(place)};
     if (!value_->is_object())
         refuse("is not an object");
@@ -81,7 +81,7 @@ const json_value& json_value::need_member() const
 std::vector<json_value> json_value::list() const
 {
     std::vector<json_value> all;
-    if (!there())
+    if (!exists())
         return all;
     if (!value_->is_array())
         refuse("is not a list");
@@ -93,7 +93,7 @@ std::vector<json_value> json_value::list() const
 template <class T>
 std::optional<T> json_value::get(bool (ordered_json::*is_one)() const noexcept, std::string_view why) const
 {
-    if (!there())
+    if (!exists())
         return {};
     if (!(value_->*is_one)())
         refuse(why);
@@ -117,7 +117,7 @@ std::optional<bool> json_value::truth() const
 
 std::vector<json_value> json_value::need_list() const
 {
-    if (!need_member().there())
+    if (!need_member().exists())
         refuse("is null");
     return list();
 }
@@ -125,7 +125,7 @@ std::vector<json_value> json_value::need_list() const
 std::vector<std::string> json_value::keys() const
 {
     std::vector<std::string> all;
-    if (there() && value_->is_object())
+    if (exists() && value_->is_object())
         for (const auto& [key, value] : value_->items())
             all.push_back(key);
     return all;
@@ -133,7 +133,7 @@ std::vector<std::string> json_value::keys() const
 
 void json_value::need_members() const
 {
-    if (!need_member().there())
+    if (!need_member().exists())
         refuse("is null");
     if (!value_->is_object())
         refuse("is not an object");
@@ -149,7 +149,7 @@ std::vector<double> json_value::need_numbers() const
 
 std::string json_value::words() const
 {
-    if (!there())
+    if (!exists())
         return {};
     if (value_->is_string())
         return value_->get<std::string>();

@@ -27,7 +27,7 @@ namespace tactor::files {
 nlohmann::ordered_json read_object(const std::string& text, const std::string& file);
 
 /// A value that may be missing; null counts as missing. It refers to the document and to the file's name,
-/// which must outlive it. All members but there() and is_list() throw error (bad_input) for a value of
+/// which must outlive it. All members but exists() and is_list() throw error (bad_input) for a value of
 /// another type, and the members need_... also for a missing value.
 class json_value {
 public:
@@ -39,10 +39,10 @@ public:
     }
     json_value(const nlohmann::ordered_json&, std::string&&, const char*, std::string = {}) = delete;
 
-    bool there() const noexcept { return value_ != nullptr && !value_->is_null(); }
+    bool exists() const noexcept { return value_ != nullptr && !value_->is_null(); }
     /// Returns the name of the file.
     const std::string& file() const noexcept { return *file_; }
-    bool is_list() const noexcept { return there() && value_->is_array(); }
+    bool is_list() const noexcept { return exists() && value_->is_array(); }
     /// Returns the names of an object's members.
     std::vector<std::string> keys() const;
 
@@ -151,10 +151,10 @@ public:
         read(member(name), body);
     }
     template <class Body>
-    void part(const char* name, bool& there, const detail::about& what, const Body& body)
+    void part(const char* name, bool& exists, const detail::about& what, const Body& body)
     {
-        there = member(name).there();
-        if (there)
+        exists = member(name).exists();
+        if (exists)
             object(name, what, body);
     }
     template <class T, class Each>
@@ -171,7 +171,7 @@ public:
     }
     void exactly_one(const char* a, const char* b) const
     {
-        if (object_[a].there() == object_[b].there())
+        if (object_[a].exists() == object_[b].exists())
             object_.refuse(std::string("must have exactly one of ") + a + " and " + b);
     }
     void new_line() const noexcept {}
@@ -213,7 +213,7 @@ private:
     template <class T>
     static void take(const json_value& from, std::optional<T>& v, const detail::about& what)
     {
-        if (from.there())
+        if (from.exists())
             take(from, v.emplace(), what);
     }
     template <class T>
@@ -238,11 +238,11 @@ private:
     template <class T, std::size_t Size>
     static void take(const json_value& from, std::array<T, Size>& all, const detail::about& what)
     {
-        const std::vector<json_value> given = from.need_list();
-        if (given.size() != Size)
+        const std::vector<json_value> items = from.need_list();
+        if (items.size() != Size)
             from.refuse("is not a list of " + std::to_string(Size) + " numbers");
         for (std::size_t i = 0; i < Size; ++i)
-            take(given[i], all[i], what);
+            take(items[i], all[i], what);
     }
     static double number(const json_value& from, const detail::bounds& range);
     static double whole(const json_value& from, const detail::bounds& range, bool is_unsigned, bool is_long);

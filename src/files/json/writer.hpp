@@ -99,9 +99,9 @@ public:
             out_ += "null";
     }
     template <class Body>
-    void part(const char* name, const bool& there, const detail::about& what, const Body& body)
+    void part(const char* name, const bool& exists, const detail::about& what, const Body& body)
     {
-        if (there)
+        if (exists)
             object(name, what, body);
     }
     /// Writes a list of objects, which each(io, value, index) describes.

@@ -49,9 +49,9 @@ struct written_plan {
 };
 
 template <class T>
-nullable<T> where(bool there, const T& v)
+nullable<T> where(bool exists, const T& v)
 {
-    return there ? nullable<T>{v} : nullable<T>{};
+    return exists ? nullable<T>{v} : nullable<T>{};
 }
 
 // People who were drawn, for an observer.
@@ -117,10 +117,10 @@ std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f)
     return matrix(f->scale * x * x, f->scale * x * y, f->scale * y * y);
 }
 
-fitting make_fitting(const fit_matrix& given)
+fitting make_fitting(const fit_matrix& content)
 {
-    const auto& m = given.matrix;
-    fitting f{.to = {m[4], m[5]}, .scale = m[0], .margin_mm = given.margin_mm};
+    const auto& m = content.matrix;
+    fitting f{.to = {m[4], m[5]}, .scale = m[0], .margin_mm = content.margin_mm};
     if (m[0] != m[3] || m[1] != 0.0) {
         f.scale = m[0] + m[3];
         f.line = {std::sqrt(m[0] / f.scale), std::copysign(std::sqrt(m[3] / f.scale), m[1])};

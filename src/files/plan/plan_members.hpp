@@ -101,7 +101,7 @@ struct fit_matrix {
 };
 
 std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f);
-fitting make_fitting(const fit_matrix& given);
+fitting make_fitting(const fit_matrix& content);
 
 /// The mark of each stroke's beginning.
 struct marker {
@@ -331,14 +331,14 @@ void stroke_members(Io& io, Parts& r)
        {"frequency of the vibration; if it changes, at the start", detail::above_0});
     members(io, r.sound);
     io.with("note", detail::omit_empty(note_text(r.note)),
-            [&r](const auto& given) {
-                r.note = given == note_text(note_kind::reconstructed) ? note_kind::reconstructed : r.note;
+            [&r](const auto& content) {
+                r.note = content == note_text(note_kind::reconstructed) ? note_kind::reconstructed : r.note;
             },
             {"only for park2016-1 to -4: a note that they are reconstructed"});
     io.with("fit", make_matrix(r.fit),
-            [&r](const auto& given) {
-                if (given)
-                    r.fit = make_fitting(*given);
+            [&r](const auto& content) {
+                if (content)
+                    r.fit = make_fitting(*content);
             },
             {"only with {fit}: how the places were fitted"});
 }
@@ -354,9 +354,9 @@ void render_members(Io& io, Parts& r)
     io.or_null("ramp_s", o.ramp_s, {"value of {ramp}; null: the default for each burst", detail::from_0});
     io("sl_db", o.sl_db, {"value of {sl}, in dB above each tactor's threshold; only without level_dbfs"});
     io.with("level_dbfs", o.sl_db ? std::optional<double>() : std::optional(o.level_dbfs),
-            [&o](const auto& given) {
-                if (given)
-                    o.level_dbfs = *given;
+            [&o](const auto& content) {
+                if (content)
+                    o.level_dbfs = *content;
             },
             {"value of {level_dbfs}; only without sl_db", detail::up_to_0});
     io.exactly_one("level_dbfs", "sl_db");
@@ -374,11 +374,11 @@ void render_members(Io& io, Parts& r)
     io.with("marker",
             detail::nullable<marker>{o.marker_channel ? std::optional(marker{*o.marker_channel, o.marker_s})
                                                       : std::nullopt},
-            [&o](const auto& given) {
-                if (!given.value)
+            [&o](const auto& content) {
+                if (!content.value)
                     return;
-                o.marker_channel = given.value->channel;
-                o.marker_s = given.value->duration_s;
+                o.marker_channel = content.value->channel;
+                o.marker_s = content.value->duration_s;
             },
             {"null, or the marker at each stroke's start"});
 }

@@ -225,8 +225,8 @@ void place_stroke(const toml_table& t, stroke& s)
     m.e = from.x_mm + by.x_mm;
     m.f = from.y_mm + by.y_mm;
     s.motion = t.at_key(*first, [&] {
-        const trajectory there = moved(s.motion, from, m, {}, *first);
-        return s.speed_mm_s && there.length_mm() > 0.0 ? there.with_speed(*s.speed_mm_s) : there;
+        const trajectory placed = moved(s.motion, from, m, {}, *first);
+        return s.speed_mm_s && placed.length_mm() > 0.0 ? placed.with_speed(*s.speed_mm_s) : placed;
     });
 }
 

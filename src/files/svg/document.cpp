@@ -357,7 +357,7 @@ std::string svg_document::called(pugi::xml_node n)
                        id.empty() ? std::string() : fmt::format(" {}", detail::quoted(id)));
 }
 
-error svg_document::to_error(const left_out& f) const
+error svg_document::to_error(const omission& f) const
 {
     return {error_kind::bad_input, place(f.offset), f.why, f.hint};
 }
@@ -369,10 +369,10 @@ void svg_document::fail(pugi::xml_node n, std::string_view why, std::string_view
 
 void svg_document::leave_out(pugi::xml_node n, std::string why, std::string hint) const
 {
-    throw left_out{offset(n), std::move(why), std::move(hint)};
+    throw omission{offset(n), std::move(why), std::move(hint)};
 }
 
-left_out svg_document::fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const
+omission svg_document::fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const
 {
     // Values are decoded in place, so their begin is where it was in the text. (Text in other encodings than
     // UTF-8 is converted elsewhere.)

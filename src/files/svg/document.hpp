@@ -45,7 +45,7 @@ svg_view_box parse_svg_view_box(std::string_view text);
 affine parse_svg_transform(std::string_view text);
 
 /// A fault because of which an element is left out. The other elements play.
-struct left_out {
+struct omission {
     std::optional<std::size_t> offset; ///< in the document
     std::string why;
     std::string hint; ///< the same for each fault of a kind
@@ -101,7 +101,7 @@ public:
     static std::string called(pugi::xml_node n);
 
     [[noreturn]] void fail(pugi::xml_node n, std::string_view why, std::string_view hint) const;
-    error to_error(const left_out& f) const;
+    error to_error(const omission& f) const;
     [[noreturn]] void leave_out(pugi::xml_node n, std::string why, std::string hint) const;
 
     /// Returns `parse` of an attribute's text; nothing if it is missing.
@@ -157,7 +157,7 @@ private:
     };
 
     source_place place(std::optional<std::size_t> offset) const;
-    left_out fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
+    omission fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
     void note_rules(pugi::xml_node style);
     void note_other_file(pugi::xml_node n, std::string_view what) const;
     /// Keeps the classes of ".st0, .st1" as hidden. Returns false for selectors that are not only classes.

@@ -25,7 +25,7 @@ inline namespace v0 {
 namespace {
 
 using detail::affine;
-using detail::left_out;
+using detail::omission;
 using detail::outline;
 using detail::svg_length;
 using detail::svg_properties;
@@ -115,8 +115,8 @@ public:
             strokes_.front().warnings = doc_.warnings();
             return std::move(strokes_);
         }
-        if (left_out_)
-            throw doc_.to_error(*left_out_);
+        if (omission_)
+            throw doc_.to_error(*omission_);
         if (hidden_)
             doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
                       "remove display, visibility and styles such as &st0;");
@@ -220,10 +220,10 @@ private:
     {
         try {
             draw(n, s);
-        } catch (const left_out& f) {
-            note_left_out(f);
-            if (!left_out_)
-                left_out_ = f;
+        } catch (const omission& f) {
+            note_omission(f);
+            if (!omission_)
+                omission_ = f;
         }
     }
 
@@ -264,7 +264,7 @@ private:
         }
     }
 
-    void note_left_out(const left_out& f) const
+    void note_omission(const omission& f) const
     {
         doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), ", and", "");
     }
@@ -423,7 +423,7 @@ private:
             doc_.leave_out(n, fmt::format("{}: has no length", doc_.called(n)),
                            "data-duration-s makes it a tap");
         if (!all && std::erase_if(paths, is_point) != 0)
-            note_left_out({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
+            note_omission({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
                            "it draws a point"});
     }
 
@@ -461,7 +461,7 @@ private:
 
     detail::svg_document doc_;
     std::vector<stroke> strokes_;
-    std::optional<left_out> left_out_; ///< the first
+    std::optional<omission> omission_; ///< the first
     std::unordered_set<std::size_t> looks_;
     xml_node hidden_;
     double per_mm_ = 1.0; ///< user units

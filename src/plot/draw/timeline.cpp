@@ -21,7 +21,7 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_instants = 24; // of `continuous`, shown as positions
+constexpr std::size_t most_instants = 24; // most instants of `continuous` that are shown as positions
 constexpr std::size_t looked_at = 4000;   // instants of `continuous` that are searched for playing tactors
 
 // Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for other strokes.
@@ -125,7 +125,7 @@ private:
 };
 
 constexpr double lowest_level = 2.2;
-constexpr double most_height = 460.0; // of rows that all get a label, pt
+constexpr double most_height = 460.0; // greatest height of rows that all get a label, pt
 constexpr double most_unlabelled = 260.0;
 constexpr double label_pitch = 5.6; // least distance of labels, pt
 constexpr double least_space = 60.0;
@@ -297,7 +297,7 @@ std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, dou
         numbers[std::round(x(t.starts_s[i]) * 10.0) / 10.0].push_back(i + 1);
     std::string word = "stroke "; // only in front of the first number
     double free = 0.0;
-    std::size_t left_out = 0;
+    std::size_t omitted = 0;
     for (auto i = numbers.begin(); i != numbers.end(); ++i) {
         const auto& [at, strokes] = *i;
         const double next = std::next(i) == numbers.end() ? x.page_to : std::next(i)->first;
@@ -308,13 +308,13 @@ std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, dou
             label = word + label;
         word.clear();
         if (at < free || at + aside + text_width(label, small_text) > x.page_to) {
-            left_out += strokes.size();
+            omitted += strokes.size();
             continue;
         }
         free = at + aside + text_width(label, small_text);
         c.text({at + aside, top - 3.0}, label, {.size = small_text, .ink = dark_grey, .halo = true});
     }
-    return left_out == 0 ? "" : "no space for the start's number of " + counted(left_out, "stroke");
+    return omitted == 0 ? "" : "no space for the start's number of " + counted(omitted, "stroke");
 }
 
 double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours)

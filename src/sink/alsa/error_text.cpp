@@ -62,7 +62,7 @@ std::string library_messages::first() const
 
 namespace {
 
-constexpr std::size_t most_names = 12; // of PCMs in one message
+constexpr std::size_t most_names = 12; // most names of PCMs in one message
 constexpr const char* no_card_hint = "load the card's driver or overlay, or plug it in; {command:devices} "
                                      "lists all devices; the PCM null needs no card";
 
@@ -231,14 +231,14 @@ error busy(const std::string& name, const surroundings& s)
         return unavailable(name, "it is busy: another program plays on it",
                            "stop that program; sudo fuser -v /dev/snd/* names it");
     constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
-    std::string who;
+    std::string names;
     bool server = false;
     for (const process_info& h : holders) {
-        who += fmt::format("{}{} (process {})", who.empty() ? "" : ", ",
-                           h.program.empty() ? "a program" : h.program, h.pid);
+        names += fmt::format("{}{} (process {})", names.empty() ? "" : ", ",
+                             h.program.empty() ? "a program" : h.program, h.pid);
         server = server || contains(servers, h.program);
     }
-    return unavailable(name, fmt::format("it is busy: {} plays on it", who),
+    return unavailable(name, fmt::format("it is busy: {} plays on it", names),
                        server
                            ? "a sound server uses it: the udev rules keep sound servers off the card Tactor"
                            : fmt::format("stop it, e.g. kill {}", holders.front().pid));

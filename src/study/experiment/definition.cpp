@@ -20,7 +20,7 @@
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "study/experiment/variation.hpp"
 
 namespace tactor::study {
@@ -101,7 +101,7 @@ std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::pa
 }
 
 // Finds the option of a method that a key stands for, with its unit or without.
-const options::option& find_method_option(const toml_table::said_key& k)
+const options::option& find_method_option(const toml_table::key_value& k)
 {
     const options::option* o = options::find(k.key);
     if (o != nullptr && (o->where & options::in_method) != 0)
@@ -115,7 +115,7 @@ const options::option& find_method_option(const toml_table::said_key& k)
 
 // Sets an option of a method. Names of files are relative to the folder; without one a file may be gone, and
 // its name is enough.
-void give_option(options::wishes& w, const options::option& o, options::value v,
+void give_option(options::option_values& w, const options::option& o, options::value v,
                  const std::filesystem::path* folder)
 {
     auto* text = std::get_if<std::string>(&v);
@@ -123,7 +123,7 @@ void give_option(options::wishes& w, const options::option& o, options::value v,
         if (folder == nullptr) {
             w.plan.wave.kind = waveform_kind::recording;
             w.plan.wave.recorded = std::make_shared<const recording>(recording{.file = *text});
-            w.given.set(options::index(o));
+            w.by_user.set(options::index(o));
             return;
         }
         *text = (*folder / *text).string();
@@ -331,12 +331,12 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
 // Reads a method of an experiment whose level is known. `folder`: of its files; null: leaves them out.
 method_definition read_method(const toml_table& t, const experiment_definition& d, const fs::path* folder)
 {
-    options::wishes w;
+    options::option_values w;
     w.place = options::in_method;
     if (!d.level_dbfs)
         w.render.sl_db = d.sl_db; // until the method gives its own
     std::map<std::size_t, written_key> keys;
-    for (const toml_table::said_key& k : t.entries()) {
+    for (const toml_table::key_value& k : t.entries()) {
         if (k.key == "name" || std::find(stroke_keys.begin(), stroke_keys.end(), k.key) != stroke_keys.end())
             continue;
         const options::option& o = find_method_option(k);
@@ -346,7 +346,7 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
                [&] { give_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder); });
     }
     try {
-        options::settle(w);
+        options::resolve(w);
     } catch (const error& e) {
         at_key(t, keys.at(options::index(*options::find(e.field()))).key, [&e] { throw error(e); });
     }
@@ -599,7 +599,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
 
 } // namespace
 
-std::string in_definition_words(std::string_view hint, bool own_level)
+std::string spell_for_definition(std::string_view hint, bool own_level)
 {
     const std::span<const options::own_word> own(own_words);
     return options::spell(hint, {write_choice, options::in_method, own_level ? own.first(1) : own});

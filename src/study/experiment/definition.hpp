@@ -45,7 +45,7 @@ struct written_key {
 /// [[method]]: how a motion is planned, and how it sounds.
 struct method_definition {
     std::string name;
-    options::wishes options = {};                 ///< options that it gives, and defaults
+    options::option_values options = {};          ///< options that it gives, and defaults
     std::optional<stroke> drawn = {};             ///< stroke in place of the motion's
     source_place where = {};                      ///< of a variant with a value: that of the run's values
     std::map<std::size_t, written_key> keys = {}; ///< options that its table gives, by row
@@ -156,6 +156,6 @@ experiment_definition load_definition(const std::string& name_or_file);
 
 /// Returns a hint of the library with a definition's keys in place of fields, without options that a
 /// definition cannot set. `own_level`: the level is the method's.
-std::string in_definition_words(std::string_view hint, bool own_level = false);
+std::string spell_for_definition(std::string_view hint, bool own_level = false);
 
 } // namespace tactor::study

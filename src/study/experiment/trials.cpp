@@ -17,7 +17,7 @@
 #include "core/sha256.hpp"
 #include "files/plan/plan_json.hpp"
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "session/piece.hpp"
 #include "study/experiment/trial_order.hpp"
 #include "study/experiment/variation.hpp"
@@ -282,9 +282,9 @@ stroke choose_stroke(const motion_definition& motion, const method_definition& m
 }
 
 // Returns the options of a session's scores, replaced by those that a method gives.
-render_options choose_render(const render_options& common, const options::wishes& method)
+render_options choose_render(const render_options& common, const options::option_values& method)
 {
-    options::wishes all;
+    options::option_values all;
     all.render = common;
     for (const options::option& o : options::all())
         if (o.is_sound() && method.gives(o))
@@ -627,7 +627,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         if (e.kind() != error_kind::bad_input)
             throw;
         const options::option* const option = options::find(e.field());
-        const std::string hint = in_definition_words(e.hint(), method.has_level());
+        const std::string hint = spell_for_definition(e.hint(), method.has_level());
         if (method.value) {
             if (option == nullptr || option != options::find(vary))
                 make(d, motion_at, *method.made_of, {}, faces); // throws what no value of the run mends

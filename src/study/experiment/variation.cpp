@@ -15,7 +15,7 @@
 #include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 
 namespace tactor::study {
 namespace {
@@ -228,10 +228,10 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
         if (const options::option* option = find_number(o.vary)) {
             try {
                 options::give(m.options, *option, options::read_value(*option, value));
-                options::settle(m.options);
+                options::resolve(m.options);
             } catch (const error& e) {
                 t.fail(key, fmt::format("{} = {} of method \"{}\": {}", o.vary, value, base.name, e.why()),
-                       in_definition_words(e.hint()));
+                       spell_for_definition(e.hint()));
             }
         } else {
             m.vary = o.vary;

@@ -74,8 +74,9 @@ std::string counts_text(const study_facts& f, std::optional<std::string> partici
 std::string describe_array(const session_facts& s)
 {
     const json_value a = s.facts()["array"];
-    return a.there() ? fmt::format("{}, {}", a["name"].words(), counted(a["tactors"].list().size(), "tactor"))
-                     : "";
+    return a.exists()
+               ? fmt::format("{}, {}", a["name"].words(), counted(a["tactors"].list().size(), "tactor"))
+               : "";
 }
 
 // Facts in the order in which they came, each with the sessions that have it.
@@ -134,17 +135,17 @@ std::string acceleration_text(const session_facts& s)
 std::string codes_text(const session_facts& s)
 {
     const json_value codes = s.facts()["codes"];
-    if (!codes.there())
+    if (!codes.exists())
         return "none";
     std::vector<std::string> places;
-    if (codes["channel"].there())
+    if (codes["channel"].exists())
         places.push_back(fmt::format("channel {} (bits of {} ms, exact to the sample)",
                                      codes["channel"].words(), codes["bit_ms"].words()));
-    if (codes["lines"].there())
+    if (codes["lines"].exists())
         places.push_back("GPIO lines " + codes["lines"].words());
     if (codes["serial"].there())
         places.push_back(fmt::format("a serial port ({} baud)", codes["serial"]["baud"].words()));
-    if (codes["lsl"].there())
+    if (codes["lsl"].exists())
         places.emplace_back("markers of LSL");
     return join(places);
 }
@@ -169,7 +170,7 @@ std::string describe_level(const session_facts& s)
 std::string assumed_text(const session_facts& s)
 {
     const auto assumed = s.facts()["thresholds_assumed"].truth();
-    const bool used = s.design ? uses_thresholds(*s.design) : !s.facts()["level"]["dbfs"].there();
+    const bool used = s.design ? uses_thresholds(*s.design) : !s.facts()["level"]["dbfs"].exists();
     return !assumed   ? ""
            : !used    ? "not used: the level is in dBFS"
            : *assumed ? "assumed, not measured, for tactors without one"
@@ -180,7 +181,7 @@ std::string assumed_text(const session_facts& s)
 std::string describe_threshold(const json_value& t)
 {
     if (!t.is_list())
-        return t.there() ? plain_number(t.need_number()) : "none";
+        return t.exists() ? plain_number(t.need_number()) : "none";
     std::vector<std::string> parts;
     for (const json_value& pair : t.list()) {
         const std::vector<double> hz_and_dbfs = pair.need_numbers();
@@ -200,11 +201,11 @@ json tabulate_thresholds(const study_facts& f)
     for (const session_facts& s : f.sessions) {
         json values = json::array();
         const std::vector<json_value> all = s.facts()["thresholds_dbfs"].list();
-        if (std::none_of(all.begin(), all.end(), [](const json_value& t) { return t.there(); }))
+        if (std::none_of(all.begin(), all.end(), [](const json_value& t) { return t.exists(); }))
             continue;
         columns.resize(std::max(columns.size(), all.size()));
         for (const json_value& t : all) {
-            if (t.there() && !t.is_list())
+            if (t.exists() && !t.is_list())
                 columns[values.size()].push_back(t.need_number());
             values.push_back(describe_threshold(t));
         }
@@ -228,7 +229,7 @@ json list_calibrations(const study_facts& f)
     json all = json::array();
     for (const session_facts& s : f.sessions) {
         const json_value c = s.facts()["calibration"];
-        if (!c.there())
+        if (!c.exists())
             continue;
         json row{{"code", s.code}};
         for (const char* key : {"participant", "method", "rule", "carrier_hz", "interval_s", "feedback",
@@ -364,7 +365,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
         all[key] = fact(key);
     all["arrays"] = list_arrays(f);
     const bool coded =
-        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.facts()["codes"].there(); });
+        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.facts()["codes"].exists(); });
     all["codes"] = coded ? json(join_texts(f, codes_text)) : json(false);
     const std::string acceleration = join_texts(f, acceleration_text);
     all["acceleration"] = acceleration == not_recorded ? json(false) : json(acceleration);
@@ -438,8 +439,8 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["held"] = !f.sessions.empty();
     all["versions"] = join_texts(f, [](const session_facts& s) {
         const json_value v = s.facts()["versions"];
-        return v["build"].there() ? fmt::format("{} ({})", v["tactor"].words(), v["build"].words())
-                                  : v["tactor"].words();
+        return v["build"].exists() ? fmt::format("{} ({})", v["tactor"].words(), v["build"].words())
+                                   : v["tactor"].words();
     });
     all["definitions"] = join_texts(f, [](const session_facts& s) { return s.definition_hash; });
     all["excluded"] = json::array();
@@ -486,7 +487,7 @@ std::string range_text(const std::vector<double>& values)
     return from == to ? from : fmt::format("{} to {}", from, to);
 }
 
-std::string method_options(const options::wishes& o)
+std::string method_options(const options::option_values& o)
 {
     std::vector<std::string> parts;
     for (const options::option& row : options::all()) {

@@ -27,7 +27,7 @@ std::string stream_text(const session_facts& s, const std::string& key)
 {
     std::set<std::string> seen;
     for (const json_value& one : s.facts()["streams"].list())
-        seen.insert(one[key].there() ? one[key].words() : "none");
+        seen.insert(one[key].exists() ? one[key].words() : "none");
     if (seen.empty())
         return is_simulated(s) ? "simulated" : not_recorded;
     return join(seen, "; ");
@@ -189,7 +189,7 @@ nlohmann::ordered_json describe_session(const session_facts& s)
         {"code", s.code}, {"days", days_text(s)}, {"mirrored", mirrored_text(s)}, {"walk", walk_text(s)}};
     for (const char* key : {"group", "order", "seed", "hand"})
         row[key] = fact_text(s, key);
-    if (const json_value at = s.facts()["order_row"]; at.there())
+    if (const json_value at = s.facts()["order_row"]; at.exists())
         row["order"] = fmt::format("{} (row {})", fact_text(s, "order"), at.words());
     for (const char* key : {"display", "masking", "masker"})
         row[key] = stream_text(s, key);

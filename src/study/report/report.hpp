@@ -111,6 +111,6 @@ std::string range_text(const std::vector<double>& values);
 
 /// Returns the options of a method by name, those with defaults of the plan too: "algorithm park2016, soa
 /// 0.07".
-std::string method_options(const options::wishes& o);
+std::string method_options(const options::option_values& o);
 
 } // namespace tactor::study

@@ -45,13 +45,13 @@ std::string describe_sound(const planned_stimulus& p)
     std::string text = stroke["waveform"].text().value_or("sine");
     for (const char* key :
          {"carrier_hz", "noise_seed", "am_hz", "am_depth", "texture", "texture_mm", "course"})
-        if (stroke[key].there())
+        if (stroke[key].exists())
             text += fmt::format(", {} {}", key, stroke[key].words());
     text += fmt::format(", phase {}", plan["render"]["phase"].words());
     const json_value envelope = plan["render"]["envelope"];
-    text += envelope.there() ? ", envelope " + envelope.words() : ", raised-cosine ramps";
+    text += envelope.exists() ? ", envelope " + envelope.words() : ", raised-cosine ramps";
     for (const json_value& t : plan["array"]["tactors"].list())
-        if (t["rise_s"].there())
+        if (t["rise_s"].exists())
             text += fmt::format(", tactor {} rises in {} s", t["tactor"].words(), t["rise_s"].words());
     return text;
 }

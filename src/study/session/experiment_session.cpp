@@ -267,7 +267,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     mirror_for_hand(d, e.tactors, r);
     const bool above_thresholds = uses_thresholds(d);
     const bool assumed = above_thresholds && assume_thresholds(e.tactors, r.who != audience::person);
-    render_options render = session::settle_render(s, e);
+    render_options render = session::find_render(s, e);
     if (d.level_dbfs)
         render.level_dbfs = *d.level_dbfs;
     else
@@ -284,7 +284,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     if (r.who != audience::observer)
         for (unsigned i = 0; i < e.tactors.tactors.size(); ++i)
             static_cast<void>(walk_score(d, e.tactors, render, i));
-    check_limits(d, runs, stimuli, session::settle_limits({}, e), render.rate);
+    check_limits(d, runs, stimuli, session::find_limits({}, e), render.rate);
     std::vector<std::string> doubts;
     if (above_thresholds)
         doubts = calibration_doubts(r.participant, e, stimuli);
@@ -328,7 +328,7 @@ score walk_score(const experiment_definition& d, const array& a, const render_op
         return score(a, session::walk_plan(a, tactor, carrier_hz), o);
     } catch (const error& e) {
         throw e.reworded(e.subject(), fmt::format("in the walk before the runs: {}", e.why()),
-                         in_definition_words(e.hint()));
+                         spell_for_definition(e.hint()));
     }
 }
 
@@ -342,7 +342,7 @@ std::vector<run_time> session_times(const prepared_experiment& p)
 {
     const double rate = p.render.rate;
     const auto frames = [&](double s) { return static_cast<std::uint64_t>(std::llround(s * rate)); };
-    synth::drive_room room(p.render.channels, session::settle_limits({}, p.where), p.render.rate);
+    synth::drive_room room(p.render.channels, session::find_limits({}, p.where), p.render.rate);
     std::uint64_t now = 0;
     std::vector<run_time> all;
     for (const run_sequence& s : p.runs) {

@@ -13,7 +13,7 @@ namespace tactor::study {
 
 stage::stage(const alsa_options& device, const session::stream_options& o, const session::environment& e,
              const session::stream_source& source)
-    : play_session(device, o, e, source), room_(setup().channels, session::settle_limits(o, e), setup().rate)
+    : play_session(device, o, e, source), room_(setup().channels, session::find_limits(o, e), setup().rate)
 {
     room_.resume(drive_levels_s());
 }

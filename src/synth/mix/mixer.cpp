@@ -75,9 +75,9 @@ struct alignas(64) aligned_block : block {};
 // A few frames of a channel on which carriers beat.
 struct crest {
     static constexpr std::size_t frames = 128;
-    alignas(64) std::array<double, frames> x{}; // of the current carrier; zero between two
+    alignas(64) std::array<double, frames> x{}; // sum for the current carrier; zero between two
     alignas(64) std::array<double, frames> y{};
-    alignas(64) std::array<double, frames> reach{}; // of the earlier carriers
+    alignas(64) std::array<double, frames> reach{}; // reach of the earlier carriers
     bool touched = false;
 };
 
@@ -337,7 +337,7 @@ void mixer::cut() noexcept
     impl_->fading.clear();
     impl_->leaving.clear();
     impl_->carrier.forget();
-    impl_->gains.settle();
+    impl_->gains.end_ramps();
 }
 
 void mixer::reset() noexcept

@@ -180,7 +180,7 @@ void score_gains::forget(std::uint32_t score) noexcept
         gains_[i] = gains_[--used_];
 }
 
-void score_gains::settle() noexcept
+void score_gains::end_ramps() noexcept
 {
     for (std::size_t i = 0; i < used_; ++i)
         gains_[i] = {.score = gains_[i].score, .from = gains_[i].to, .to = gains_[i].to};

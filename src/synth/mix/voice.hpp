@@ -217,7 +217,7 @@ public:
     bool set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept;
     void forget(std::uint32_t score) noexcept;
     /// Ends all ramps: each factor takes its final value.
-    void settle() noexcept;
+    void end_ramps() noexcept;
 
 private:
     /// Returns the place of a score's factor, or used_.

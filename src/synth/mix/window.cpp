@@ -80,12 +80,12 @@ double rising(std::int64_t k, std::uint32_t frames, envelope_kind shape) noexcep
     return 0.5 - 0.5 * sincos_turns(turns(k, frames)).cos;
 }
 
-/// Returns the window `left` frames before the end of a release. An exponential release falls fastest at its
-/// start.
-double falling(std::int64_t left, std::uint32_t frames, envelope_kind shape) noexcept
+/// Returns the window `remaining` frames before the end of a release. An exponential release falls fastest at
+/// its start.
+double falling(std::int64_t remaining, std::uint32_t frames, envelope_kind shape) noexcept
 {
-    return shape == envelope_kind::exponential ? 1.0 - rising(frames - left, frames, shape)
-                                               : rising(left, frames, shape);
+    return shape == envelope_kind::exponential ? 1.0 - rising(frames - remaining, frames, shape)
+                                               : rising(remaining, frames, shape);
 }
 
 void zero(part p, double* out) noexcept

@@ -21,7 +21,7 @@ std::shared_ptr<score::impl> begin_like(const score::impl& model)
     s->guards = model.guards;
     s->channels = model.channels;
     s->rate = model.rate;
-    s->asked.resize(model.asked.size());
+    s->peaks.resize(model.peaks.size());
     return s;
 }
 
@@ -39,8 +39,8 @@ score join_scores(const std::vector<placed_score>& parts)
             all->ends.push_back(p.start + one.ends[i]);
             all->plans.push_back({one.plans[i].plan, static_cast<double>(all->starts.back()) / one.rate});
         }
-        for (std::size_t i = 0; i < one.asked.size(); ++i)
-            all->asked[i] = std::max(all->asked[i], one.asked[i]);
+        for (std::size_t i = 0; i < one.peaks.size(); ++i)
+            all->peaks[i] = std::max(all->peaks[i], one.peaks[i]);
         all->boosted = all->boosted || one.boosted;
         all->frames = std::max(all->frames, p.start + one.frames);
         all->open_items = std::max(all->open_items, one.open_items);

@@ -32,7 +32,7 @@ using synth::item_kind;
 
 constexpr double latest_start_s = 1e6;
 
-unsigned settle_channels(const array& a, const render_options& o)
+unsigned count_channels(const array& a, const render_options& o)
 {
     const unsigned needed = a.channels();
     const unsigned channels = o.channels == 0 ? needed : o.channels;
@@ -214,7 +214,7 @@ struct score_builder::impl {
         s->rate = o.rate;
         s->phase = o.phase;
         s->envelope = o.envelope;
-        s->channels = settle_channels(a, o);
+        s->channels = count_channels(a, o);
         check_marker(a, o, s->channels);
         if (o.limits)
             s->guards = synth::make_guards(*o.limits, o.rate);
@@ -307,7 +307,7 @@ score score_builder::take()
         sort_by_start(s.list.items);
         measure(s);
     }
-    s.asked = std::move(peaks);
+    s.peaks = std::move(peaks);
     return detail::access::make<score>(std::shared_ptr<const score::impl>(std::move(done->s)));
 }
 

@@ -88,7 +88,7 @@ struct score::impl {
     std::vector<double> limits;               ///< by channel
     /// Greatest level of each tactor, linear; 0 if it is not driven. A continuous stroke counts for all
     /// tactors. The boost for a slow actuator's rise is not included.
-    std::vector<double> asked;
+    std::vector<double> peaks;
     weakening weakened;             ///< included in the gains of the tactors
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any

@@ -72,7 +72,7 @@ std::size_t points_for(std::size_t harmonics)
 /// would make it as loud as a real signal.
 constexpr double least_peak = 1e-5;
 
-void require_left(double peak, const recording& r)
+void require_signal(double peak, const recording& r)
 {
     if (!(peak >= least_peak)) {
         throw error(error_kind::bad_input, recording_name(r),
@@ -287,7 +287,7 @@ wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
     std::copy(c.begin() + 1, c.end(), x.begin() + 1);
     wave_samples cycle = make_cycle(std::move(x));
     const double peak = cycle_peak(cycle);
-    require_left(peak, r);
+    require_signal(peak, r);
     scale(cycle, peak);
     return cycle;
 }
@@ -326,7 +326,7 @@ wave_samples recorded_loop(const recording& r, unsigned rate)
     for (float& v : x)
         v = static_cast<float>(static_cast<double>(v) - mean);
     const double peak = find_peak(x);
-    require_left(peak, r);
+    require_signal(peak, r);
     scale(x, peak);
     return x;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 
 #include <string_view>
 #include <utility>
@@ -16,9 +16,9 @@ namespace tactor::options {
 namespace {
 
 // Clears an option. The level in dBFS keeps a value: a level in dB SL overrides it.
-void forget(wishes& w, const option& o)
+void forget(option_values& w, const option& o)
 {
-    w.given.reset(index(o));
+    w.by_user.reset(index(o));
     w.in_file.erase(index(o));
     o.to.set(w, {});
     if (o.name == "speed")
@@ -26,7 +26,7 @@ void forget(wishes& w, const option& o)
 }
 
 // Returns a hint with the alternatives that the front end has.
-std::string needed(const wishes& w, const option& o)
+std::string needed(const option_values& w, const option& o)
 {
     std::string all;
     for (const std::string_view one : detail::split(o.needs, '|'))
@@ -57,7 +57,7 @@ void refuse_both(const setup& says, const written_value& d, const option* rival)
 }
 
 // Returns true if the front end has the option, and the user set neither it nor its rival.
-bool takes_default(const wishes& w, const option& o)
+bool takes_default(const option_values& w, const option& o)
 {
     const option* rival = find(o.rival);
     return (o.where & w.place) != 0 && !w.gives(o) && (rival == nullptr || !w.gives(*rival));
@@ -73,7 +73,7 @@ error at_place(const source_place& at, const option& o, const error& e)
 
 } // namespace
 
-void give(wishes& w, const option& o, const value& v)
+void give(option_values& w, const option& o, const value& v)
 {
     if (const option* rival = find(o.rival)) {
         if (w.gives(*rival))
@@ -82,7 +82,7 @@ void give(wishes& w, const option& o, const value& v)
         forget(w, *rival);
     }
     put(w, o, v);
-    w.given.set(index(o));
+    w.by_user.set(index(o));
     w.in_file.erase(index(o));
 }
 
@@ -92,11 +92,11 @@ std::vector<default_value> read_defaults(const setup& says)
     for (const written_value& d : says.defaults) {
         const option& o = find_default(d);
         refuse_both(says, d, find(o.rival));
-        const auto* text = std::get_if<std::string>(&d.said);
+        const auto* text = std::get_if<std::string>(&d.value);
         try {
             // A value in quotes is taken as typed: "0.07" is 0.07.
-            all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.said), d.at});
-            wishes tried;
+            all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.value), d.at});
+            option_values tried;
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
                 o.to.set(tried, all.back().content); // a file is opened only where it is used
         } catch (const error& e) {
@@ -106,7 +106,7 @@ std::vector<default_value> read_defaults(const setup& says)
     return all;
 }
 
-void apply_defaults(wishes& w, const setup& says)
+void apply_defaults(option_values& w, const setup& says)
 {
     for (const default_value& d : read_defaults(says)) {
         const option& o = *d.row;
@@ -125,7 +125,7 @@ void apply_defaults(wishes& w, const setup& says)
     }
 }
 
-void settle(wishes& w)
+void resolve(option_values& w)
 {
     for (const option& o : all())
         if (w.gives(o) && o.used != nullptr && !o.used(w))
@@ -148,7 +148,7 @@ void settle(wishes& w)
     }
 }
 
-void refuse_planning(const wishes& w, const std::string& what)
+void refuse_planning(const option_values& w, const std::string& what)
 {
     for (const option& o : all())
         if ((o.where & planning) != 0 && w.gives(o))
@@ -156,7 +156,7 @@ void refuse_planning(const wishes& w, const std::string& what)
                           "plan the stroke again with it, or leave it out");
 }
 
-error at_default(const wishes& w, const error& e)
+error at_default(const option_values& w, const error& e)
 {
     const option* o = find(e.field());
     const auto found = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));

@@ -15,7 +15,7 @@ namespace tactor::options {
 
 /// Sets an option that the user wrote. Values of [defaults] for it and for its rival no longer count.
 /// \throws error (bad_input) if the user set its rival as well, and for a text that cannot be read.
-void give(wishes& w, const option& o, const value& v);
+void give(option_values& w, const option& o, const value& v);
 
 /// A value of [defaults], checked.
 struct default_value {
@@ -32,17 +32,17 @@ std::vector<default_value> read_defaults(const setup& says);
 /// earlier ones.
 /// \throws error (bad_input) with the place in the file.
 /// \throws error (bad_input) with the place in the file.
-void apply_defaults(wishes& w, const setup& says);
+void apply_defaults(option_values& w, const setup& says);
 
 /// Resolves options that depend on others, once all are set.
 /// \throws error (bad_input) for options that nothing uses.
-void settle(wishes& w);
+void resolve(option_values& w);
 
 /// Refuses options of planning for `what`, which is planned already.
 /// \throws error (bad_input).
-void refuse_planning(const wishes& w, const std::string& what);
+void refuse_planning(const option_values& w, const std::string& what);
 
 /// Adds the place in [defaults] to an error about a value from there. Returns other errors unchanged.
-error at_default(const wishes& w, const error& e);
+error at_default(const option_values& w, const error& e);
 
 } // namespace tactor::options
