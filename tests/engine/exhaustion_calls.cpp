@@ -73,7 +73,7 @@ call_table value_calls(const call_things& t)
     const auto wave = waveform{.kind = waveform_kind::recording, .recorded = some_recording()};
     const auto same_wave = waveform{.kind = waveform_kind::recording, .recorded = some_recording()};
     written_value said;
-    said.said = std::string("a text that is longer than a short one");
+    said.value = std::string("a text that is longer than a short one");
     const written_value same_said = said;
     const curve c(0.002, three_samples());
     const curve same_c(0.002, three_samples());

@@ -177,12 +177,12 @@ TEST_CASE("an excess at a refused point does not fail the next one")
 {
     live_options o = smoothed();
     const auto model = std::make_shared<odd_model>();
-    model->peaks = 100;
+    model->asked = 100;
     o.plan.custom_phantom = model;
     live_rig r(o);
     REQUIRE(r.live->to({10.0, 0.0}, 0.5));
     r.play(960);
-    model->peaks = 0;
+    model->asked = 0;
     CHECK_THROWS_AS(r.live->to({20.0, 0.0}, 0.5), error);
     CHECK(r.live->to({20.0, 0.0}, 0.5));
 }

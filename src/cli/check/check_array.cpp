@@ -246,8 +246,8 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     });
     if (has_bursts && !slow.empty())
         into.push_back(warning("actuators",
-                               fmt::format("{}: rise_ms is up to {:.3g}, a large part of {}", tactor_numbers(a, slow),
-                                           slowest_s * 1e3, burst),
+                               fmt::format("{}: rise_ms is up to {:.3g}, a large part of {}",
+                                           tactor_numbers(a, slow), slowest_s * 1e3, burst),
                                "make bursts longer with --burst, or use faster actuators"));
     if (into.size() != before)
         return;

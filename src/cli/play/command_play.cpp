@@ -133,7 +133,7 @@ std::optional<error> play_all(session::play_session& session, const play_options
     const std::uint64_t all = o.rounds == 0 ? ~std::uint64_t{0} : o.rounds * pieces.size();
     for (std::uint64_t k = 0; k < all; ++k) {
         const std::size_t i = k % pieces.size();
-        const bool followed = o.rounds != 1 && k + 1 < all && !session.asked().arm;
+        const bool followed = o.rounds != 1 && k + 1 < all && !session.run_options().arm;
         session.follow_with(followed ? &scores[(k + 1) % pieces.size()] : nullptr,
                             scores[i].frames() + pause);
         stroke_outcome round{pieces[i].name, scores[i].frames(), {}, scores[i].weakened(), 1};

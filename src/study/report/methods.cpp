@@ -143,7 +143,7 @@ std::string codes_text(const session_facts& s)
                                      codes["channel"].words(), codes["bit_ms"].words()));
     if (codes["lines"].exists())
         places.push_back("GPIO lines " + codes["lines"].words());
-    if (codes["serial"].there())
+    if (codes["serial"].exists())
         places.push_back(fmt::format("a serial port ({} baud)", codes["serial"]["baud"].words()));
     if (codes["lsl"].exists())
         places.emplace_back("markers of LSL");
