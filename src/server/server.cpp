@@ -266,7 +266,7 @@ private:
         if (!service_.has_place(kind)) {
             c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
             c->send(refusal("max_clients", no_place(kind), "try again later"));
-            service_.log_refusal(from, "a connection: all places are taken");
+            service_.log_refusal(from, "a connection without a free place");
             return c->finish();
         }
         const client_number n = service_.connect(c, kind, from);
@@ -306,7 +306,7 @@ private:
                            kept == 0 ? "" : fmt::format(", {} of them only for this machine's socket", kept));
     }
 
-    void log_full() { service_.log_refusal("somebody", "a connection: there is no descriptor"); }
+    void log_full() { service_.log_refusal("somebody", "a connection without a free descriptor"); }
 
     void finish(client_number n)
     {
@@ -319,7 +319,7 @@ private:
     {
         const std::string from = net::peer_address(s.native_handle());
         if (visitors_.size() >= limits_.max_clients + short_visits) {
-            service_.log_refusal(from, "a browser: all places are taken");
+            service_.log_refusal(from, "a browser without a free place");
             return net::turn_away(s.native_handle()); // the socket closes at the end of the scope
         }
         const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
@@ -339,7 +339,7 @@ private:
         h.refused = [this, from](const std::string& why) { service_.log_refusal(from, why); };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
             if (!service_.has_place(client_kind::web)) {
-                service_.log_refusal(from, "a browser: all places are taken");
+                service_.log_refusal(from, "a browser without a free place");
                 return false;
             }
             const auto link = weak.lock();

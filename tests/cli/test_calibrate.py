@@ -398,8 +398,8 @@ class Refused(CalibrateTest):
         self.bad(*same, says=["me.toml"])
         (self.dir / "me.toml").rmdir()
         # A session goes on only with its options.
-        for more, key in (("4 --array palm-2x4", "begun with tactors [0], and [4]"), ("1", "tactors [0], and [1]"),
-                          ("0 --carrier 100", "carrier_hz 250.0, and 100.0"), ("0 --seed 1", "seed"), ("0 --array palm-2x4", "array_sha256")):
+        for more, key in (("4 --array palm-2x4", "began with tactors [0], but now it is [4]"), ("1", "tactors [0], but now it is [1]"),
+                          ("0 --carrier 100", "carrier_hz 250.0, but now it is 100.0"), ("0 --seed 1", "seed"), ("0 --array palm-2x4", "array_sha256")):
             self.bad(*SHORT, "--resume", "--tactors", *more.split(), says=["me.json", key])
         self.bad("--tactors", 0, says=["me.tsv: it exists", "--resume"])
         self.write("me.toml", made)
@@ -407,7 +407,7 @@ class Refused(CalibrateTest):
         self.bad(*same, says=["me.json: it is missing"])
 
     def test_resuming_a_session_that_is_not_there_begins_none(self):
-        self.bad("--resume", says=("--resume: there is no log me.tsv", "leave --resume out: then a new session begins"))
+        self.bad("--resume", says=("--resume: there is no log me.tsv", "leave out --resume to begin a new session"))
         self.assertFalse((self.dir / "me.tsv").exists())
 
     def test_two_sessions_on_one_log_are_refused(self):

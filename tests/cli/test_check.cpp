@@ -115,7 +115,7 @@ TEST_CASE("for an array as large as a trunk check cites the knowledge about trun
 {
     const finding vest = array_finding(make_grid("vest", 4, 5, 50.0, 50.0), "array");
     CHECK(vest.how == level::ok);
-    CHECK(vest.cure.find("twice as well across as along") != std::string::npos);
+    CHECK(vest.cure.find("twice as well across the body as along") != std::string::npos);
     CHECK(vest.cure.find("--phantom linear") != std::string::npos);
     CHECK(array_finding(make_grid("sleeve", 2, 5, 50.0, 50.0), "array").cure.empty());
 }
@@ -465,7 +465,7 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
     CHECK_FALSE(f.keeps_outputs.empty());
     const finding x = judged(f, "GPIO release");
     CHECK(x.how == level::warning);
-    CHECK(has(x.found, "nothing switches the amplifier off when player and holder are killed together"));
+    CHECK(has(x.found, "if player and holder are both killed, the amplifier stays on"));
     CHECK(has(x.cure, "strict_gpiod"));
     CHECK(has(x.cure, "ExecStopPost=tactor off"));
     const auto without = check_system(f, {.pcm = "null"});

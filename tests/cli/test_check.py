@@ -259,7 +259,7 @@ class Walk(ToolTest):
     def test_r_repeats_b_goes_back_and_nonsense_is_asked_again(self):
         r = self.walk([" 0 ", "r", "9", "", "one", "1"], *self.recorder)
         self.assertEqual(r.stdout.count("tactor 1 (channel 1): which did you feel?"), 5)
-        self.assertIn('"9" is none of these', r.stdout)
+        self.assertIn('"9" is not one of these', r.stdout)
         self.assertEqual(self.sounded(), [0, 1])
         r = self.walk(["b", "0", "b", "1", "0"], "-o", "felt.toml")
         self.assertEqual(re.findall(r"tactor (\d) \(channel", r.stdout), ["0", "0", "1", "0", "1"])

@@ -110,7 +110,7 @@ class Table(CompareTest):
         asked = ("park2016-1", "--faces", "nearest", "--phantoms", "inverse-distance,log")
         told = self.compare(*asked)
         self.assertEqual((told["faces"], [r["refused"] is None for r in told["results"]]), ("nearest", [True, False] * 3))
-        self.assertIn("--faces: nearest goes with inverse-distance only", told["results"][1]["refused"])
+        self.assertIn("--faces: nearest works only with inverse-distance", told["results"][1]["refused"])
         self.assertIn("is not used", told["results"][2]["warnings"][0])
         self.assertNotIn("faces", self.compare("park2016-1"))
         self.assertIn(", faces nearest\n", self.ok("compare", *asked).stdout)

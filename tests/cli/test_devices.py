@@ -71,7 +71,7 @@ class Devices(DevicesTest):
         self.assertTrue("Not tried" in text and "mixed over_a_mixer" in text, text)
         for args in ((), ("-D", "hw:CARD=Nowhere"), ("-D", "kept"), ("-D", "raw:kept.raw"), ("-D", f"raw:{self.dir}/out.raw")):
             _, pcms = self.devices(*args)
-            for name, error in (("mixed", "dmix"), ("over_a_mixer", "dmix"), ("through_a_slave", "dmix"), ("round_and_round", "leads to itself")):
+            for name, error in (("mixed", "dmix"), ("over_a_mixer", "dmix"), ("through_a_slave", "dmix"), ("round_and_round", "refers to itself")):
                 self.assertEqual((pcms[name]["tried"], pcms[name]["opened"], pcms[name]["can"]), (False, False, None))
                 self.assertIn(error, pcms[name]["error"])
             for name in ("broken", *(n for n in args if n.startswith("hw:"))):
@@ -143,7 +143,7 @@ class Channels(DevicesTest):
         self.assertEqual([pcms[n]["fits"] for n in ("sixteen", "ten", "eight")], [True, True, False])
         self.assertIn(self.FITS, pcms["eight"]["misfit"])
         self.write("a.toml", 'array.preset = "palm-2x4"\nsync.channel = 12\n')
-        says = "the array palm-2x4 fits, but not channel 12, which a marker or a plan asks for"
+        says = "the array palm-2x4 fits, but not channel 12 of a marker or a plan"
         self.refused(3, "play", "--path", "M 0 0 L 60 0", "--array", "a.toml", "-D", "eight", says=[says])
         self.assertIn(says, self.devices("--array", "a.toml")[1]["eight"]["misfit"])
         self.assertIn(says, self.check_device("eight", "--array", "a.toml", status=3)["cure"])
@@ -191,7 +191,7 @@ pcm.kept { type route slave.pcm { type file slave.pcm "null" file "kept.raw" for
         self.write("alsa.conf", ALSA_CONFIG + 'pcm.half { type route slave { pcm "null" channels 9 } ttable { %s } }\n'
                    'pcm.twice { type route slave { pcm "half" channels 9 } ttable { %s } }\n' % tuple(tables)
                    + 'pcm.kept { type file slave.pcm "twice" file "kept.raw" format raw }\n')
-        says = "raises samples by up to 6.02 dB on the way to the device, and clips them there"
+        says = "amplifies samples by up to 6.02 dB on the way to the device, and clips them there"
         found = self.check_device("twice")
         self.assertEqual((found["level"], found["found"].count(says)), ("warning", 1))
         self.assertEqual(self.ok("play", *self.STROKE, "-D", "twice").stderr.count(says), 1)

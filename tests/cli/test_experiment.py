@@ -70,10 +70,10 @@ class Definition(ExperimentTest):
 
     def test_simulated_thresholds_are_reported(self):
         self.ok("calibrate", "--participant", "01", "-o", "felt.toml", "--simulate", "threshold=-45")
-        self.assertIn("thresholds were simulated",
+        self.assertIn("thresholds are simulated",
                       self.ok("experiment", "park2016", "--dry-run", "--array", "felt.toml").stderr)
         # The preset is the configuration's array, which has the same places.
-        self.assertIn("thresholds were simulated", self.ok("experiment", "park2016", "--dry-run", "--config", "felt.toml").stderr)
+        self.assertIn("thresholds are simulated", self.ok("experiment", "park2016", "--dry-run", "--config", "felt.toml").stderr)
 
 
 class DryRun(ExperimentTest):
@@ -338,7 +338,7 @@ class Simulated(ExperimentTest):
         self.assertAlmostEqual(sum(m["all"]["mean"] for m in run["chosen"].values()), 150)
         text = self.ok("report", "study").stdout
         self.assertIn("two stimuli of one motion, with two of brush, park, third,", text)
-        self.assertEqual(re.findall(r"Per cent of the trials with (\w+) in which it was chosen", text), ["brush", "park", "third"])
+        self.assertEqual(re.findall(r"Per cent of the trials with (\w+) in which people chose it", text), ["brush", "park", "third"])
         self.assertRegex(text, r"relative to brush, which has 0:\n\n\| method .*\n\| --- .*\n\| brush \| 0 \| 0 \|\n\| park \| \S+ \| \S+ \|\n")
         told = json.loads(self.ok("experiment", small, "--power", "3", "--studies", "4", "--simulate", "sigma=1", "--format", "json").stdout)
         self.assertEqual(told["runs"][0]["comparison"], "third chosen in its trials, t against 50 %")
@@ -425,7 +425,7 @@ class Folder(ExperimentTest):
     def test_a_session_resumes_only_with_its_options(self):
         self.simulate("01", "--seed", "3")
         for seed, spec, says in (("4", "seed=1,sigma=1", "seed 3"), ("3", "seed=9", "simulation")):
-            self.simulate("01", "--seed", seed, "--resume", spec=spec, status=2, says=(says, "as it was begun"))
+            self.simulate("01", "--seed", seed, "--resume", spec=spec, status=2, says=(says, "as it began"))
         self.small(SMALL + "# a word more\n")
         self.simulate("01", "--seed", "3", "--resume", definition="small.toml", status=2)
 
@@ -448,7 +448,7 @@ class Folder(ExperimentTest):
 
     def test_resuming_a_session_that_is_not_there_begins_none(self):
         for code in ("P1", "P2"):
-            self.simulate(code, "--resume", status=2, says=(f"--resume: there is no sub-{code} in study", "leave --resume out: then a new session begins"))
+            self.simulate(code, "--resume", status=2, says=(f"--resume: there is no sub-{code} in study", "leave out --resume to begin a new session"))
             self.assertEqual((self.dir / "study").exists(), code == "P2")
             if code == "P1":
                 self.simulate("P1")
@@ -458,7 +458,7 @@ class Folder(ExperimentTest):
     def test_a_warning_names_codes_that_look_alike(self):
         for code, others in (("01", []), ("C02", []), ("P01", ["01"]), ("1", ["01", "P01"]), ("11", []), ("P02", []), ("2", ["C02", "P02"]), ("Anna", [])):
             said = self.simulate(code).stderr
-            self.assertEqual(sorted(re.findall(rf"warning: study: sub-(\w+) and sub-{code}: these codes look alike: is it one person\?", said)), others)
+            self.assertEqual(sorted(re.findall(rf"warning: study: sub-(\w+) and sub-{code}: these codes look alike: check whether they are one person", said)), others)
         for command in ("analyze", "report"):
             said = self.ok(command, "study").stderr
             self.assertEqual(len(re.findall("look alike", said)), 5, said)
@@ -558,9 +558,9 @@ class Orders(ExperimentTest):
         order = self.session("02")["order"]
         self.assertEqual((self.session("05")["order"], self.session("05")["order_row"]), (order, 2))
         self.assertIn("finished", self.simulate("05", "--resume", "--order", "2").stdout)
-        self.simulate("05", "--resume", status=2, says=('begun with order ["how good"',))
+        self.simulate("05", "--resume", status=2, says=('began with order ["how good"',))
         self.simulate("05", "--resume", "--order", "3", status=2, says=("began with order_row 2, but now it is 3",))
-        self.simulate("02", "--resume", "--order", "3", status=2, says=("begun with order_row none",))
+        self.simulate("02", "--resume", "--order", "3", status=2, says=("began with order_row none",))
         report = self.ok("report", "study").stdout
         for text in (f"| {', '.join(order)} (row 2) |", f"| {', '.join(order)} |", "is a row of a Williams square (Williams 1949), chosen by"):
             self.assertIn(text, report)
@@ -582,7 +582,7 @@ class Orders(ExperimentTest):
         self.small(SMALL.replace("trials = 4\nscale", 'trials = 12\nblocks = "methods"\nscale'))
         self.simulate("02", definition="small.toml")
         self.assertEqual([r["method_1"] for r in self.rows("02", "howgood")], 6 * ["park"] + 6 * ["brush"])
-        self.simulate("02", "--resume", "--order", "8", definition="small.toml", status=2, says=("begun with order_row 2, and now it is 8",))
+        self.simulate("02", "--resume", "--order", "8", definition="small.toml", status=2, says=("began with order_row 2, but now it is 8",))
         self.assertIn("- Blocks: the methods, ordered like the runs", self.ok("report", "study").stdout)
 
 
@@ -606,7 +606,7 @@ class Groups(ExperimentTest):
         more = {"definition": "grouped.toml", "status": 2}
         self.simulate("02", **more, says=("--group", "one of palm, arm, few"))
         self.simulate("02", "--group", "leg", **more)
-        self.simulate("01", "--resume", "--group", "arm", **more, says=('begun with group "palm", and now it is "arm"',))
+        self.simulate("01", "--resume", "--group", "arm", **more, says=('began with group "palm", but now it is "arm"',))
         people = self.dir / "study/participants.tsv"
         people.write_text(people.read_text() + "sub-02\t30\tn/a\tn/a\tarm\n")  # a list made before
         self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is in group "arm", not "palm"',))

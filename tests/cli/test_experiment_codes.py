@@ -83,7 +83,7 @@ class Codes(PersonTest):
             n = f"sub-01/beh/sub-01_task-{name}_events.tsv"
             last = whole[n].splitlines()[-1] + b"\n" if name == "howgood" else b""
             self.assertEqual(resumed[n] + last, whole[n])
-        self.assertIn("other sessions sent codes, this one sends none", self.simulate("02").stderr)
+        self.assertIn("other sessions sent codes, this one does not", self.simulate("02").stderr)
         self.write("array.toml", ARRAY.replace("15", "14"))
         self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=["codes"])
         self.write("array.toml", '[array]\npreset = "palm-3x3"\n[output]\nchannels = 16\n')

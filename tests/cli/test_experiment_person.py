@@ -215,7 +215,7 @@ class ByLines(PersonTest):
 
     def test_a_session_and_its_files(self):
         result = self.ok(*self.args(), stdin=self.ANSWERS)
-        self.assertIn('warning: playing to "null", which nobody feels', result.stderr)
+        self.assertIn('warning: playing to "null", not to hardware', result.stderr)
         self.assertIn("warning: the target cannot be drawn", result.stderr)
         s = self.session("01")
         self.assertEqual((s["simulated"], s["device"], s["sound_server"], s["masker"], s["thresholds_assumed"]),
@@ -239,7 +239,7 @@ class ByLines(PersonTest):
         for said, warned in (("put your names here", True), ("A. Author", False)):
             self.write("short.toml", SHORT.replace("gap_s", f'authors = ["{said}"]\ngap_s', 1))
             told = self.refused(1, *self.args(), stdin="n\n").stderr
-            self.assertEqual('the data will say "put your names here"' in told, warned)
+            self.assertEqual('the data name "put your names here"' in told, warned)
         self.assertFalse((self.dir / "study").exists())
         (self.dir / "study").mkdir()
         self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n").stderr)
@@ -454,7 +454,7 @@ class Refused(PersonTest):
         self.assertFalse((self.dir / "study").exists())
         self.assertNotIn("tactor: warning: PipeWire", told.stderr)
         allowed = self.run_tool(*self.args("--allow-sound-server", device="shared"), stdin="n\n")
-        self.assertIn("tactor: warning: PipeWire is in between", allowed.stderr)
+        self.assertIn("tactor: warning: PipeWire is between player and device", allowed.stderr)
         self.refused(2, *self.args("--masker", "shared", definition=Masking.noisy(self)))
 
 

@@ -47,7 +47,7 @@ class Tables(ExperimentTest):
 
     def test_unreadable_tables_are_refused_before_the_session_and_left_alone(self):
         _, _, tables = self.broken_off()
-        for way, says in ((lambda t: t.replace(b"\t", b";"), ":1: semicolons are between the columns"),
+        for way, says in ((lambda t: t.replace(b"\t", b";"), ":1: semicolons separate the columns"),
                           (lambda t: t.decode().encode("utf-16-le"), ": is UTF-16"),
                           (lambda t: t.replace(b"\n", b"\nx\n", 1), ":2: it has 1 column, not ")):
             for path in tables:
@@ -139,7 +139,7 @@ class Tables(ExperimentTest):
             name.unlink()
         said = self.simulate("01", "--resume").stderr
         for name in (people, scans):
-            self.assertIn(f"tactor: warning: {name.relative_to(self.dir)}: it is missing: a new one is begun (put the old one back", said)
+            self.assertIn(f"tactor: warning: {name.relative_to(self.dir)}: it is missing: a new one begins (put the old one back", said)
         after = contents(self.dir / "study")
         self.assertEqual({n for n in whole if whole[n] != after.get(n)}, {"sub-01/sub-01_scans.tsv"})
         self.assertEqual([s["filename"] for s in read_table(scans)],

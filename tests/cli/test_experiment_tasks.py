@@ -326,11 +326,11 @@ class Tasks(ExperimentTest):
         adaptive = toml("run", "quest", task="adaptive", procedure="quest", range=[0.05, 0.13], standard=0.09, **soa)
         plain = toml("run", "which", task="rate", attribute="uniformity", trials=2)
         for text, line, says in (
-                (toml("method", "a") + adaptive, "range", 'soa_s = 0.072 of motion "across" with method "a": soa_s: 0.072 s is out of bounds'),
+                (toml("method", "a") + adaptive, "range", 'soa_s = 0.072 of motion "across" with method "a": soa_s: 0.072 s is out of range'),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.2], standard=0.07, **soa), "values", "soa_s = 0.2 of motion"),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.06], standard=0.2, **soa), "standard", "soa_s = 0.2 of motion"),
-                (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" with method "a": soa: 0.01 s is out of bounds'),
-                (toml("method", "a", soa_s=0.01) + plain, "soa_s", 'motion "across" with method "a": soa_s: 0.01 s is out of bounds')):
+                (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" with method "a": soa: 0.01 s is out of range'),
+                (toml("method", "a", soa_s=0.01) + plain, "soa_s", 'motion "across" with method "a": soa_s: 0.01 s is out of range')):
             self.write("tasks.toml", head + text)
             told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says]).stderr
             self.assertIn(f"tasks.toml:{1 + [x.split(' =')[0] for x in (head + text).splitlines()].index(line)}:", told)

@@ -119,7 +119,7 @@ class FullDisk(ExperimentTest):
             for pages in (0, 1):
                 disk.fill(pages)
                 said = self.redirected(*args)
-                self.assertRegex(said, rf"(standard output|/dev/stdout: cannot be written): {NO_SPACE} \({FREE_SOME}, .* is cut short\)")
+                self.assertRegex(said, rf"(standard output|/dev/stdout: cannot be written): {NO_SPACE} \({FREE_SOME}, .* is incomplete\)")
                 disk.make_room()
 
     def test_a_read_only_disk_is_an_error(self):

@@ -108,7 +108,7 @@ class Readers(Output):
             self.assertEqual((status, b"standard output" in said), (128 + signal.SIGPIPE, False), f"{args}: {said}")
         status, _, said = self.closed("render", "park2016-1", "-o", "/dev/fd/9", stdout=lambda _: subprocess.PIPE,
                                       preexec_fn=lambda theirs: lambda: os.dup2(theirs, 9), pass_fds=lambda _: [9])
-        self.assertEqual((status, b"ended before all was written" in said), (1, True), said)
+        self.assertEqual((status, b"ended too early" in said), (1, True), said)
 
     def test_full_and_closed_outputs_are_reported_and_a_lost_standard_error_changes_no_status(self):
         with open("/dev/full", "wb", buffering=0) as full:

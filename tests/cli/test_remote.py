@@ -88,7 +88,7 @@ class Remote(ServeTest):
         for command in (("stop",), ("status",), ("play", "park2016-1")):
             self.refused(3, *command, "--socket", "none.sock")
             for address in ("127.0.0.1:4919", "http://127.0.0.1:4003/"):
-                self.refused(3, *command, "--socket", address, says=["--socket takes the path that tactor serve prints"])
+                self.refused(3, *command, "--socket", address, says=["give --socket the path that tactor serve prints"])
 
     def test_a_server_s_refusal_names_options_and_lines(self):
         s = self.serve()

@@ -309,7 +309,7 @@ class Differences(ReportTest):
         made = (self.dir / "P1.toml").read_text()
         date = re.search(r'^date = "(.*)"$', made, re.M)[1]
         said = self.simulate("P1", "--array", "P1.toml", folder="own")
-        self.assertIn("the thresholds were simulated", said.stderr)
+        self.assertIn("the thresholds are simulated", said.stderr)
         told = self.session("P1", "own")["calibration"]
         self.assertEqual({k: told[k] for k in ("participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker",
                                                "date", "simulated")},
@@ -426,11 +426,11 @@ class Refusals(ReportTest):
         for change, why in (
                 (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
                 (lambda t: t["array"].update(tactors=7), "array.tactors: is not a list"),
-                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: is no frequency"),
+                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: is not a frequency"),
                 (lambda t: t.update(level=[7]), "level: is not an object"),
                 (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed: is neither true nor false"),
                 (lambda t: t["stimuli"][0].update(sha256="../../../passwd"), "passwd.json"),
-                (lambda t: t["stimuli"].pop(0), "plan_1 is no plan of its motion by its method")):
+                (lambda t: t["stimuli"].pop(0), "plan_1 is not a plan of its motion and method")):
             self.change("01", change)
             self.says(why)
             self.write("study/sourcedata/sub-01/session.json", good)
@@ -449,7 +449,7 @@ class Refusals(ReportTest):
         table = beh.read_text()
         other = next(r["plan_1"] for r in rows if r["plan_1"] != rows[0]["plan_1"])
         beh.write_text(table.replace(rows[0]["plan_1"], other, 1))
-        self.says("sub-01_task-howgood_beh.tsv:2: plan_1 is no plan of its motion")
+        self.says("sub-01_task-howgood_beh.tsv:2: plan_1 is not a plan of its motion")
         beh.write_text(table)
         self.ok("report", "study")
 

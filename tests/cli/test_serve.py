@@ -441,7 +441,7 @@ class Limits(ServeTest):
         with open("/dev/full", "w", encoding="ascii") as full:
             p = self.start_tool("serve", "-D", "null", "--socket", file, stdout=full, stderr=subprocess.PIPE, text=True)
         said = next(line for line in p.stderr if "standard output" in line)
-        self.assertIn("No space left on device: where it listens could not be said", said)
+        self.assertIn("No space left on device: the addresses could not be printed", said)
         c = Client(file)
         self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
         c.close()

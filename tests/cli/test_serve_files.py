@@ -52,7 +52,7 @@ class Import(ServeTest):
         self.assertEqual(r["points"], [[[0, 0, 0, 1], [0.5, 40, 0, 1]], [[0, 40, 0, 1], [0.25, 20, 20, 0.5], [1, 0, 40, 1]]])
         r = c.ok("import", name="a.csv", text=CSV)
         self.assertEqual(r["points"], [[[0, 0, 0, 1], [0.5, 20, 20, 0.5], [1, 40, 40, 1]]])
-        self.assertIn("a.csv:4: repeats the time", r["warnings"][0])
+        self.assertIn("a.csv:4: has the same time", r["warnings"][0])
         group = "[[stroke]]\nrepeat = 2\npause_s = 1\n" + SEVERAL.replace("[[stroke]]", "[[stroke.stroke]]")
         r = c.ok("import", text=group)
         self.assertEqual([s["start_s"] for s in r["strokes"]], [0, 0.75, 2.75, 3.5])

@@ -82,7 +82,7 @@ class ServeOsc(ServeTest):
             for s in (given, stream):
                 s.bind(("127.0.0.1", 0))
             stream.listen()
-            self.refuses_to_start(2, "--socket", "i.sock", inherits=[("osc", stream)], says="it is no UDP socket")
+            self.refuses_to_start(2, "--socket", "i.sock", inherits=[("osc", stream)], says="it is not a UDP socket")
             self.refuses_to_start(2, "--socket", "i.sock", inherits=[("osc", unbound)], says="it is not a UDP socket with a port")
             s = self.serve("--socket", "i.sock", inherits=[("osc", given)])
             self.assertEqual(s.where["osc"], f"127.0.0.1:{given.getsockname()[1]}")

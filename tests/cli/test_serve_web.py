@@ -174,8 +174,8 @@ class Web(ServeTest):
         self.assertEqual(s.terminate()[0], 0)
         lines = [line.partition(" warning ")[2] for line in log.read_text().splitlines() if "refused: " in line]
         self.assertEqual(lines, [f'refused: a browser\'s request for the host "{s.address}" by a page of "http://evil.example" from 127.0.0.1',
-                                 "refused: a browser: all places are taken from 127.0.0.1",
-                                 "refused: a connection: all places are taken from 127.0.0.1",
+                                 "refused: a browser without a free place from 127.0.0.1",
+                                 "refused: a connection without a free place from 127.0.0.1",
                                  "refused: a message that is too large from this computer"])
 
     def test_the_token_is_required(self):

@@ -515,11 +515,11 @@ TEST_CASE("a phantom model that moves its own stroke is refused and ends it; it 
         o.plan.custom_phantom = std::make_shared<meddling_model>([&does] { does(); });
         s.emplace(p.begin(o));
         const auto moved = [&s] { return s->to(10.0, 10.0); };
-        CHECK_THROWS_WITH_AS(moved(), doctest::Contains("its phantom model moves it"), error);
+        CHECK_THROWS_WITH_AS(moved(), doctest::Contains("its phantom model moves the stroke"), error);
         CHECK_FALSE(moved());
         const auto report = p.wait(s->id());
         CHECK(report->state == state_kind::interrupted);
-        CHECK(report->why.find("its phantom model moves it") != std::string::npos);
+        CHECK(report->why.find("its phantom model moves the stroke") != std::string::npos);
 
         does = [&s] {
             static_cast<void>(s->counts());

@@ -163,9 +163,9 @@ TEST_CASE("a file that was read is not replaced, under any name")
     fs::create_hard_link(dir / "drawing", dir / "hard");
     fs::create_symlink("drawing", dir / "soft");
     for (const char* name : {"drawing", "hard", "soft"})
-        CHECK(why_not(dir / name).find("read as input") != std::string::npos);
+        CHECK(why_not(dir / name).find("an input") != std::string::npos);
     const int fd = ::open((dir / "hard").c_str(), O_WRONLY | O_APPEND);
-    CHECK(why_not("/dev/fd/" + std::to_string(fd)).find("read as input") != std::string::npos);
+    CHECK(why_not("/dev/fd/" + std::to_string(fd)).find("an input") != std::string::npos);
     ::close(fd);
     CHECK(dir.bytes("drawing") == "mine");
     put(dir / "other", "new");

@@ -112,7 +112,7 @@ TEST_CASE("a WAV file's samples are read in every format, after any chunks")
     }
 }
 
-TEST_CASE("a file that is no WAV file of one channel is refused by name")
+TEST_CASE("a file that is not a WAV file of one channel is refused by name")
 {
     const folder dir;
     const std::string data = chunk("data", samples<std::int16_t>({1000, -1000}));
@@ -120,13 +120,13 @@ TEST_CASE("a file that is no WAV file of one channel is refused by name")
         const std::string said = caught_message([&] { return load_recording(dir.write("b.wav", text)); });
         return has(said, part) && has(said, "b.wav");
     };
-    CHECK(refused("", "no WAV file"));
+    CHECK(refused("", "not a WAV file"));
     CHECK(refused("RIFF\1\2\3\4WAVE", "no samples"));
     CHECK(refused(wav(data), "before their format"));
     CHECK(refused(wav(chunk("fmt ", "short") + data), "cut off"));
     CHECK(refused(wav(chunk("fmt ", format(1, 40)) + data), "format 1 with 40 bits"));
     CHECK(refused(wav(chunk("fmt ", format(3, 16)) + data), "format 3 with 16 bits"));
-    CHECK(refused("RIFF\1\2\3\4AVI LIST", "no WAV file"));
+    CHECK(refused("RIFF\1\2\3\4AVI LIST", "not a WAV file"));
     CHECK(refused(wav(chunk("fmt ", format(2, 16)) + data), "format 2"));
     CHECK(refused(wav(chunk("fmt ", format(1, 16, 2)) + data), "2 channels"));
     CHECK(refused(wav(head + chunk("data", "ab")), "1 sample"));

@@ -449,7 +449,7 @@ TEST_CASE("a chain of files has a limit")
           (f / "15.toml").string() +
               ":2:8: a chain of too many files (use at most 16, and no file that names itself)");
     CHECK(file_complaint(f / "85.toml").empty());
-    has(file_complaint(f.write("own.toml", "[array]\nfile = \"own.toml\"\n")), "none that names itself");
+    has(file_complaint(f.write("own.toml", "[array]\nfile = \"own.toml\"\n")), "no file that names itself");
 }
 
 } // namespace setup_array_test

@@ -135,7 +135,7 @@ TEST_CASE("faults of a CSV file are named by line and column")
         {"0,0,0\n1,1,1\n", "f.csv:1:1: no line names the columns (begin with: t_s,x_mm,y_mm)"},
         {"# finger\n0,0,0\n1,1,1\n", "f.csv:2:1: no line names the columns"},
         {"\n# t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n",
-         "f.csv:2:1: the line that names the columns is a comment (take its # away; numpy.savetxt()"},
+         "f.csv:2:1: the line that names the columns is a comment (remove its #; numpy.savetxt()"},
         {"t_s,x_mm,y_mm\r0,0,0\r1,1,1\r", "f.csv:1:14: its lines end in CR only (save it"},
         {"# a\rt_s,x_mm,y_mm\r0,0,0\r", "f.csv:1:4: its lines end in CR only"},
         {"t_s;x_mm;y_mm\n", "f.csv:1:1: semicolons separate its columns (separate them by commas"},

@@ -295,7 +295,7 @@ TEST_CASE("faults of easing, profiles and pauses have their place")
          {"easing = \"in-out\"", "pauses = [[0.5, 0.3]]", "intensity = [[0, 1]]", "speed_mm_s = [[0, 30]]"}) {
         const std::string why = complaint("timed = [[0, 0, 0], [1, 40, 0]]\n" + key);
         CHECK(why.find("w.toml:3:") == 0);
-        CHECK(why.find("timed points have times") != std::string::npos);
+        CHECK(why.find("timed points have their own times") != std::string::npos);
     }
 }
 

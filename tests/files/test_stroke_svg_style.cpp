@@ -315,7 +315,7 @@ TEST_CASE("faults of an SVG file are named by line and column")
         {"<svg width='0mm' viewBox='0 0 1 1'><line x2='1'/></svg>", "a.svg:1:2: <svg> has no size"},
         {"<svg><line x2='1' data-duration-s='0'/></svg>", "a.svg:1:36: data-duration-s of <line>: 0 ("},
         {"<svg><line x2='1' data-duration-s='1' data-speed-mm-s='1'/></svg>",
-         "a.svg:1:7: <line> has data-duration-s and"},
+         "a.svg:1:7: <line> has both data-duration-s and"},
         {"<svg><line x2='1' data-speed-mm-s='fast'/></svg>",
          "a.svg:1:36: data-speed-mm-s of <line>: 'fast' is not"},
         {"<svg><line x2='1000' data-speed-mm-s='0.001'/></svg>", "a.svg:1:7: <line> takes 1e+06 s"},

@@ -18,7 +18,7 @@ test("a fault names options as the page does, and no parameter of the protocol",
     [{message: "there is no connection to tactor", data: {}}, "There is no connection to tactor."], [new Error("it is a figure"), "It is a figure."]])
     assert.equal(fault_sentence(e), text);
   assert.equal(fault_text(fault("text", "unknown key 'x'", "one of ".padEnd(90, "x"), {line: 3})), "line 3: unknown key 'x'");
-  assert.equal(fault_text(fault("text", "'zero' is no number", "give a number", {line: 2})), "line 2: 'zero' is no number (give a number)");
+  assert.equal(fault_text(fault("text", "'zero' is not a number", "give a number", {line: 2})), "line 2: 'zero' is not a number (give a number)");
 });
 
 test("no module shows a fault in other words", () => {

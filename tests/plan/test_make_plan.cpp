@@ -383,7 +383,7 @@ TEST_CASE("a path that is short compared with the tactors' distance is warned of
 {
     const auto warned = [](std::string_view svg) {
         for (const std::string& w : make_plan(palm, along(svg, 1.0)).warnings)
-            if (w.find("may not be felt to move") != std::string::npos)
+            if (w.find("people may not feel it move") != std::string::npos)
                 return w;
         return std::string();
     };

@@ -248,7 +248,7 @@ TEST_CASE("only inverse-distance takes faces")
         void weights(point, double, std::vector<drive>& out) const override { out.clear(); }
     };
     plan_options o{.faces = faces_kind::nearest, .custom_phantom = std::make_shared<silent>()};
-    has(caught_message([&] { return make_plan(a, s, o); }), "not with a phantom model of your own");
+    has(caught_message([&] { return make_plan(a, s, o); }), "not with your own phantom model");
 
     // A stroke's own choice wins.
     stroke own = s;

@@ -86,7 +86,7 @@ TEST_CASE("a plan that leaves the timing law, or its fitted range, says so in fi
     REQUIRE(warnings.size() == 2);
     CHECK(warnings[0] == "1 of 1 burst lasts longer than 0.160 s (up to 0.161 s), beyond the range for which "
                          "the timing law was fitted");
-    CHECK(warnings[1].find("by which their SOA is 0.09882 s:") != std::string::npos);
+    CHECK(warnings[1].find("which gives them an SOA of 0.09882 s:") != std::string::npos);
     o.burst_s = 0.160;
     CHECK(make_plan(palm, across(1.0), o).warnings.size() == 1);
     // By the law 39.6875 ms: a duration is printed to the millisecond.

@@ -20,7 +20,7 @@ def test_they_have_families():
 
 def test_they_have_parts(palm, stroke):
     e = refused(lambda: tactor.plan(palm, stroke, soa=0.5), tactor.Error)
-    assert (e.what, e.hint) == ("soa", "use 0.07") and e.why.startswith("0.5 s is out of bounds")
+    assert (e.what, e.hint) == ("soa", "use 0.07") and e.why.startswith("0.5 s is out of range")
     assert str(e) == f"{e.what}: {e.why} ({e.hint})"
     assert (e.file, e.line, e.column) == (None, None, None)
     assert (e.field, e.errno) == ("soa", 0)
@@ -65,7 +65,7 @@ def test_they_are_pickled(kind):
 
 @pytest.mark.parametrize("call,hint", [
     (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1)), 'fit=True scales it to the array, outside="clamp" plays'),
-    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'Array.preset("palm-2x4") is the one it is drawn for, fit=True'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'Array.preset("palm-2x4") is its array, fit=True'),
     (lambda a, out: tactor.plan(a, tactor.Stroke.along(tactor.Path.svg("M 5 7 H 20"), duration=1), algorithm="tactile-brush"), "snap=True moves it there"),
     (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1), faces="nearest", phantom="log"), 'use faces="delaunay" or phantom="inverse-distance"'),
 ])

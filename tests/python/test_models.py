@@ -31,10 +31,10 @@ def test_a_model_that_moves_its_own_stroke_is_refused_and_ends_it(player, smooth
     model = Meddling(lambda stroke: stroke.to(20, 20))
     with player.live(phantom=model, timeout=LONG, smooth=smooth) as finger:
         model.stroke = finger
-        with pytest.raises(tactor.StreamError, match="its phantom model moves it"):
+        with pytest.raises(tactor.StreamError, match="its phantom model moves the stroke"):
             finger.to(10, 10)
         assert not finger.to(10, 10)
-    assert finger.report.state == "interrupted" and "its phantom model moves it" in finger.report.reason
+    assert finger.report.state == "interrupted" and "its phantom model moves the stroke" in finger.report.reason
 
 
 @pytest.mark.parametrize("does", [

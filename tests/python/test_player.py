@@ -151,7 +151,7 @@ def test_a_live_stroke_ends_with_its_block_or_its_producer(player):
     assert report.state == "interrupted" and report.reason
     long = player.live(timeout=LONG, longest=0.05)
     long.to(20, 20)
-    assert long.wait(LONG).state == "interrupted" and "as long as it may" in long.report.reason
+    assert long.wait(LONG).state == "interrupted" and "longest allowed duration" in long.report.reason
     with player.live(smooth=0.05) as even:
         even.to(10, 20)
         even.to(30, 20)

@@ -108,7 +108,7 @@ def test_figures_do_not_replace_inputs_nor_without_force_foreign_files(tmp_path,
     plan, compared = tactor.plan(palm, stroke), tactor.compare(palm, stroke)
     for draw in (lambda file, **more: tactor.plot(plan, file, **more), compared.plot):
         for force in (False, True):
-            with pytest.raises(tactor.InputError, match="read as input"):
+            with pytest.raises(tactor.InputError, match="an input"):
                 draw(drawing, force=force)
         with pytest.raises(tactor.InputError, match="force=True"):
             draw(tmp_path / "other.svg")

@@ -265,9 +265,8 @@ TEST_CASE("a hint names what a request can say")
           "give it as an array or a configuration of the server");
     const json outside{{"path", "M 0 0 L 400 0"}, {"options", {{"algorithm", "continuous"}}}};
     CHECK(plan_fault(outside).hint.find("options.outside") != std::string::npos);
-    CHECK(plan_fault({{"stroke", "wave-2x4"}}).hint ==
-          "palm-2x4 is the one it is drawn for, options.outside clamp plays "
-          "the nearest point of the array");
+    CHECK(plan_fault({{"stroke", "wave-2x4"}}).hint == "palm-2x4 is its array, options.outside clamp plays "
+                                                       "the nearest point of the array");
 }
 
 TEST_CASE("faces are those that are asked for, and go with inverse-distance alone")

@@ -230,7 +230,7 @@ class ThroughJack(ServerTest):
         recorder, ports = self.server.record(file)
         r = self.ok(*PLAY, "-D", "nine", **self.configured(ports))
         self.finish(recorder, file)
-        self.assertIn("JACK is in between", r.stderr)
+        self.assertIn("JACK is between player and device", r.stderr)
         return sound(file.read_bytes())
 
     def test_all_channels_arrive_to_the_bit(self):
@@ -239,7 +239,7 @@ class ThroughJack(ServerTest):
 
     def test_check_reports_it(self):
         out = self.ok("check", "-D", "nine", **self.configured([f"system:playback_{i + 1}" for i in range(CHANNELS)])).stdout
-        self.assertRegex(" ".join(out.split()), r"warning device nine: 9 channels.*JACK is in between")
+        self.assertRegex(" ".join(out.split()), r"warning device nine: 9 channels.*JACK is between player and device")
 
 
 if __name__ == "__main__":

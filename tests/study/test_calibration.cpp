@@ -242,10 +242,10 @@ TEST_CASE("a log of another session is refused with the line")
     f.write("a.tsv", whole.log + whole.log.substr(header.size()));
     has(refusal(f / "a.tsv", true), "the session ends before this line");
     f.write("a.tsv", "name\tvalue\n");
-    has(refusal(f / "a.tsv", true), "it is no log");
+    has(refusal(f / "a.tsv", true), "it is not the log");
     CHECK(f.bytes("a.tsv") == "name\tvalue\n");
     f.write("a.tsv", "no line");
-    has(refusal(f / "a.tsv", true), "spaces are between the columns");
+    has(refusal(f / "a.tsv", true), "spaces separate the columns");
     CHECK(f.bytes("a.tsv") == "no line");
     f.write("a.tsv", whole.log);
     calibration_settings other = settings();

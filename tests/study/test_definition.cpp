@@ -248,8 +248,8 @@ TEST_CASE("faults have their line")
     form_says(item + "\"choice\"\nchoices = [\"a\"]\n", 24, "a choice has 1 text");
     form_says(item + "\"text\"\nrange = [1, 2]\n", 24, "range does not apply to a text");
     form_says(item + "\"number\"\n", 20, "no range");
-    form_says(item + "\"number\"\nrange = [2, 1]\n", 24, "least and the greatest");
-    form_says(item + "\"number\"\nrange = [0, 10000]\n", 24, "least and the greatest");
+    form_says(item + "\"number\"\nrange = [2, 1]\n", 24, "smallest and the largest");
+    form_says(item + "\"number\"\nrange = [0, 10000]\n", 24, "smallest and the largest");
     form_says(item + "\"scale\"\n", 23, "a scale has 0 labels");
     form_says(item + "\"scale\"\nscale = \"vas\"\n", 23, "0 labels");
     form_says(item + "\"scale\"\nscale = 4\nlabels = [\"a\", \"b\", \"c\"]\n", 25, "3 labels");
@@ -286,8 +286,9 @@ TEST_CASE("faults have their line")
              bad_method{"mirror = true", "e.toml:8:", "unknown key 'mirror' in [[method]]"},
              bad_method{"carrier_hz = 0", "e.toml:8:", "carrier_hz: 0 is out of range"},
              bad_method{"sl_db = 200", "e.toml:8:", "sl_db: 200 is out of range"},
-             bad_method{"level_dbfs = -20\nsl_db = 7", "e.toml:9:", "sl_db: there is also level_dbfs"},
-             bad_method{"duration = 1\nspeed = 9", "e.toml:9:", "speed: there is also duration"},
+             bad_method{"level_dbfs = -20\nsl_db = 7",
+                        "e.toml:9:", "sl_db: it cannot be combined with level_dbfs"},
+             bad_method{"duration = 1\nspeed = 9", "e.toml:9:", "speed: it cannot be combined with duration"},
              bad_method{"carrier = 100\ncarrier_hz = 100", "e.toml:9:", "says carrier twice"},
              bad_method{"snap = true\nnoise_seed = 2",
                         "e.toml:9:", "nothing here uses it (add waveform = \"noise:LO-HI\")"},

@@ -454,7 +454,7 @@ TEST_CASE("an observer judges what simulate_as says, and refuses an attribute th
     };
     CHECK(answer(0) == answer(1));
     r.d.runs[0].simulate_as.clear();
-    has(caught_message([&] { answer(0); }), "how to judge \"pleasantness\" (simulate_as = ");
+    has(caught_message([&] { answer(0); }), "cannot judge \"pleasantness\" (add simulate_as = ");
 }
 
 TEST_CASE("without noise the better one is chosen, in either place")

@@ -170,8 +170,8 @@ TEST_CASE("unreadable tables of other programs are named")
 {
     CHECK(refusal("a,b\n1,2\n").find("t.tsv:1: commas separate the columns, not tabs (save it with tabs") ==
           0);
-    CHECK(refusal("\"a\";\"b\"\n1;2\n").find("t.tsv:1: semicolons are between the columns") == 0);
-    CHECK(refusal("\"a\" \"b\"\n1 2\n").find("t.tsv:1: spaces are between the columns") == 0);
+    CHECK(refusal("\"a\";\"b\"\n1;2\n").find("t.tsv:1: semicolons separate the columns") == 0);
+    CHECK(refusal("\"a\" \"b\"\n1 2\n").find("t.tsv:1: spaces separate the columns") == 0);
     CHECK(refusal(std::string("\xff\xfe"
                               "a\0\t\0b\0\n\0",
                               10))
@@ -180,7 +180,7 @@ TEST_CASE("unreadable tables of other programs are named")
     CHECK(refusal("PK\x03\x04...")
               .find("t.tsv: is a ZIP archive or office document, not text (save it as text with tabs") == 0);
     CHECK(refusal("\ta\n0\t5\n").find("t.tsv:1: a column has no name (leave out the numbers of rows") == 0);
-    CHECK(refusal("\"a\"\t\"b\"\n\"1\"\t2\t3\n").find("t.tsv:2: it begins with the row's number") == 0);
+    CHECK(refusal("\"a\"\t\"b\"\n\"1\"\t2\t3\n").find("t.tsv:2: it begins with a row number") == 0);
 }
 
 // Reads a table of the columns a and b, and returns its cells.

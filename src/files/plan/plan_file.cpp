@@ -151,7 +151,7 @@ void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> burst
     if (!parts.is_sampled)
         return;
     if (parts.step_s != continuous_step_s)
-        f["continuous"]["step_s"].refuse(fmt::format("use {} s", continuous_step_s));
+        f["continuous"]["step_s"].refuse(fmt::format("must be {} s", continuous_step_s));
     check_samples(f, parts.tactors, p, samples);
     try {
         p.curve = curve(p.stroke_duration_s, std::move(samples));
@@ -189,7 +189,7 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
     if (p.curve)
         p.curve->sample(p.curve->size() - 1, last);
     if (way.empty())
-        f["bursts"].refuse("it has none");
+        f["bursts"].refuse("there are none");
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
     stroke s{.name = parts.name};
     s.motion = trajectory::timed(std::move(way));

@@ -56,7 +56,7 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                p.hash == *t.cell(row, plan);
     };
     if (std::none_of(s.stimuli.begin(), s.stimuli.end(), same))
-        t.refuse(row, fmt::format("session.json lists no plan {} for its motion and method", plan),
+        t.refuse(row, fmt::format("{} is not a plan of its motion and method in session.json", plan),
                  changed_file);
 }
 

@@ -84,7 +84,7 @@ TEST_CASE("a missing sound server is named, with an alternative")
 {
     const fake_system s;
     const std::string none = s.says("default", -EHOSTDOWN);
-    has(none, "a sound server (PipeWire, PulseAudio), which is not there");
+    has(none, "a sound server (PipeWire, PulseAudio) that is not running");
     has(none, "systemctl --user start pipewire-pulse");
     has(none, "device = hw:CARD=NAME");
     CHECK(none.find("Host is down") == std::string::npos);
@@ -133,7 +133,7 @@ TEST_CASE("JACK without its server is named, whose plugin only says that there i
     has(text, "device = hw:CARD=NAME");
     CHECK(text.find("there is no sound card") == std::string::npos);
     for (const int code : {-ECONNREFUSED, -EHOSTDOWN})
-        has(s.leads({"pipewire"}, code), "a sound server (PipeWire, PulseAudio), which is not there");
+        has(s.leads({"pipewire"}, code), "a sound server (PipeWire, PulseAudio) that is not running");
 }
 
 TEST_CASE("a missing card is reported only for PCMs that lead to one")
@@ -142,7 +142,7 @@ TEST_CASE("a missing card is reported only for PCMs that lead to one")
     for (const std::vector<std::string>& route : {std::vector<std::string>{}, {"hw"}, {"plug", "dmix", "hw"}})
         has(s.leads(route, -ENOENT), "there is no sound card");
     const std::string text = s.leads({"plug"}, -ENOENT, "Unknown PCM palm");
-    has(text, "but not all that it refers to: Unknown PCM palm");
+    has(text, "but not everything that it refers to: Unknown PCM palm");
     CHECK(text.find("there is no sound card") == std::string::npos);
 }
 

@@ -356,7 +356,7 @@ TEST_CASE("a definition on which libasound would end the process is refused, wit
     for (const char* type : {"route", "plug"})
         says(fmt::format("pcm.t {{ type {} slave.pcm n ttable.65535.65535 1 }}", type),
              fmt::format("type {} has a channel beyond the largest possible, 1024", type));
-    says("pcm.t { type plug slave.pcm { type plug slave.pcm t } }", "its definition leads to itself");
+    says("pcm.t { type plug slave.pcm { type plug slave.pcm t } }", "its definition refers to itself");
     CHECK(refused("pcm.t { type multi " + four +
                   "bindings { 1 { slave a channel 0 } 0 { slave a channel 3 } } }") == "");
 }

@@ -120,4 +120,4 @@ class Keypad(RigTest):
         self.pad.device = mouse.device
         p = self.calibrate()
         self.assertEqual(p.wait(60), 2)
-        self.assertIn("no key that answers", p.stderr.read())
+        self.assertIn("no key for an answer", p.stderr.read())
