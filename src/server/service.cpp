@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <new>
+#include <set>
 #include <utility>
 
 #include <malloc.h>
@@ -333,9 +334,16 @@ bool service::input_ended(client_number number)
     if (c == nullptr)
         return true;
     c->input_over = true;
-    // Ends strokes that would not end by themselves.
-    for (const std::uint32_t n : c->strokes) {
-        stroke_record& r = strokes_.at(n);
+    // Ends strokes that would not end by themselves, and those that are held.
+    for (const std::uint32_t n : std::set(c->strokes)) {
+        const auto found = strokes_.find(n); // a held stroke may end others of its request
+        if (found == strokes_.end())
+            continue;
+        stroke_record& r = found->second;
+        if (r.ends_with_client) {
+            cancel(r, connection_ended);
+            continue;
+        }
         if (r.live)
             r.live->end();
         end_rounds(r);

@@ -112,12 +112,12 @@ public:
     /// Handles a large message, which another thread parses. Calls `done` with the result in this
     /// thread.
     void receive_large(client_number number, std::string text, std::function<void(bool)> done);
-    /// Ends the live strokes of a client that sends no more. Returns true if it has been sent all its
+    /// Ends the live and held strokes of a client that sends no more. Returns true if it has been sent all its
     /// messages.
     bool input_ended(client_number number);
     /// Sets the handler for the moment when such a client has been sent all its messages.
     void on_all_sent(std::function<void(client_number)> f) { all_sent_ = std::move(f); }
-    /// Removes a client: its live strokes end, its other strokes play on.
+    /// Removes a client: its live and held strokes end, its other strokes play on.
     void disconnect(client_number number);
     /// Sets the handler for a stop of everything.
     void on_stop(std::function<void()> f) { stopped_ = std::move(f); }
@@ -138,6 +138,9 @@ public:
 
 private:
     using reply_json = net::reply_json;
+
+    /// Reason of a held stroke's end.
+    static constexpr const char* connection_ended = "its client's connection has ended";
 
     struct client {
         client_number number;
@@ -187,6 +190,7 @@ private:
         std::vector<std::pair<std::uint32_t, double>> followers = {};
         std::optional<score> submits_later = {}; ///< score of a follower, until it is submitted
         submissions rounds = {};
+        bool ends_with_client = false;            ///< cancelled when its client's connection ends
         std::uint32_t request = 0;                ///< number of the first stroke of its request
         bool next_waits = false;                  ///< the newest submission is a round that has not begun
         std::uint64_t frames = 0;                 ///< frames of the submissions that have ended
@@ -250,6 +254,7 @@ private:
         std::uint64_t rounds = 1; ///< number of rounds; 0: until they are cancelled
         double round_s = 0.0;     ///< least length of a round
         double pause_s = 0.0;     ///< silence after it
+        bool held = false;        ///< cancelled when its client's connection ends
         view_choice view = {};
         std::optional<double> draft = {};
 

@@ -73,7 +73,7 @@ void service::read_job(plan_job& j) const
     const json& params = j.params;
     if (j.plays())
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
-                            "repeat", "round_s", "pause_s"});
+                            "repeat", "round_s", "pause_s", "held"});
     else if (!j.is_file())
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
                             "draft", "bins", "observer"});
@@ -94,6 +94,7 @@ void service::read_job(plan_job& j) const
             *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
     j.round_s = number_or(params, "round_s", {0.0, options_.plans.max_stroke_s}, 0.0);
     j.pause_s = number_or(params, "pause_s", {0.0, options_.plans.max_stroke_s}, 0.0);
+    j.held = flag(params, "held");
 }
 
 // Makes the result. Runs on a planner's thread.
@@ -222,8 +223,13 @@ void service::submit_all(const plan_job& job)
         c != nullptr && scores.size() > 1 &&
         c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
         too_many_strokes(scores.size(), options_.limits.max_strokes);
-    const auto numbers =
-        submit(number, job.start, p, scores, stop_reason_since(job.to), job.gain_db, job.rounds == 0);
+    const char* ended_by = stop_reason_since(job.to);
+    if (const client* c = find(number); job.held && (c == nullptr || c->input_over))
+        ended_by = connection_ended;
+    const auto numbers = submit(number, job.start, p, scores, ended_by, job.gain_db, job.rounds == 0);
+    for (const std::uint32_t n : numbers)
+        if (const auto found = strokes_.find(n); found != strokes_.end())
+            found->second.ends_with_client = job.held;
     auto warnings = p.warnings();
     for (std::string& w : warnings)
         w = net::cut_echo(w);

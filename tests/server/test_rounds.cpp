@@ -178,6 +178,38 @@ TEST_CASE("strokes of one file that repeat end with the same round")
     CHECK(other.last - one.last == other.first - one.first);
 }
 
+TEST_CASE("held strokes end with their client's connection, and others play on")
+{
+    running_rig rig;
+    const auto watcher = rig.client();
+    rig.ok(watcher, "subscribe", {{"events", {"strokes"}}});
+    const auto goes = rig.client();
+    constexpr double most_s = 600.0;
+    const auto rests = [](double seconds, const json& more) {
+        json params{{"points", {{0, 0, 0}, {seconds, 0, 0}}}, {"options", {{"algorithm", "continuous"}}}};
+        params.update(more);
+        return params;
+    };
+    const json held = rig.ok(goes, "play", rests(most_s, {{"held", true}}))["stroke"];
+    const json repeats = rig.ok(goes, "play", touch(0, 0, {{"held", true}, {"repeat", true}}))["stroke"];
+    const json plays_on = rig.ok(goes, "play", rests(1.0, {{"held", false}}))["stroke"];
+    rig.until([&] { return !watcher.box->stroke_messages(held).empty(); });
+    // Planned after the connection has ended: it must not begin.
+    rig.send(goes, service_rig::request(101, "play", touch(0, 0, {{"held", true}})));
+    rig.all->disconnect(goes.number);
+    for (const json& n : {held, repeats}) {
+        const json end = rig.find_end(watcher, n);
+        CHECK(end["state"] == "cancelled");
+        CHECK(end["reason"] == "its client's connection has ended");
+    }
+    CHECK(rig.find_end(watcher, plays_on)["state"] == "finished");
+    const json late = rig.find_end(watcher, plays_on.get<unsigned>() + 1);
+    CHECK(late["state"] == "cancelled");
+    CHECK(late["frames"] == 0);
+    CHECK(rig.code(watcher, "play", touch(0, 0, {{"held", 1}})) == -32602);
+    CHECK(rig.code(watcher, "plan", touch(0, 0, {{"held", true}})) == -32602);
+}
+
 TEST_CASE("a round lasts as long as its client says, or as its strokes")
 {
     running_rig rig;
