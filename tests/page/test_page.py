@@ -132,16 +132,16 @@ class Drawing(StudioTest):
         for row in take["strokes"][0]["timed"]:  # to its end, where the pen is lifted
             self.assertAlmostEqual(row[3], 0.25, places=2)
 
-    def test_a_tap_tries_a_tactor_and_a_long_one_shows_its_facts(self):
+    def test_a_tap_tries_a_tactor_and_the_device_shows_its_facts(self):
         p, watcher = self.ready(self.serve())
         place = self.at(p, [20, 20])[0]
         p.tap(*place)
         self.next_stroke(watcher, "started")
         self.toast(p, "Tactor 4")
-        p.mouse("mousePressed", *place)
-        p.until("document.querySelector('#p-tactor').matches(':popover-open')")
-        p.mouse("mouseReleased", *place)
-        self.assertIn("Channel", p.value("document.querySelector('#p-tactor').innerText"))
+        p.open_popover("#device", "#p-device")
+        p.click("#try button:nth-child(5)")
+        self.next_stroke(watcher, "started")
+        p.until("document.querySelector('#tactor-facts').innerText.includes('20, 20 mm')")
         self.assertEqual(p.value("tactor.state.takes.length"), 0)
 
     def test_the_field_does_not_move_under_a_finger(self):

@@ -5,7 +5,7 @@ import sys
 import unittest
 
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
-from studio import DARK, LIVE, MISSING, SIZES, TAKE, StudioTest  # noqa: E402
+from studio import ARRAY, DARK, LIVE, MISSING, SIZES, TAKE, StudioTest  # noqa: E402
 from browser import AXE  # noqa: E402
 from harness import ROOT, main  # noqa: E402
 
@@ -16,7 +16,7 @@ class Drawn(StudioTest):
         p, watcher = self.ready(s)
         self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]), *self.way([8, 30], [48, 36]))
         p.until("document.querySelector('#warnings').textContent.includes('outside')")
-        p.until("[...document.querySelectorAll('#pane .error')].every(e => e.textContent)")
+        self.planned(p)
         return p, watcher
 
 
@@ -58,7 +58,7 @@ class Looks(Drawn):
         self.look(p, "empty")
         p.click("#hint-example")
         p.until("tactor.state.takes.length && !tactor.state.playing")
-        p.until("[...document.querySelectorAll('#pane .error')].every(e => e.textContent)")
+        self.planned(p)
         self.look(p, "take")
 
     def test_a_take_with_a_warning_and_its_points(self):
@@ -175,8 +175,8 @@ class Shapes(Drawn):
     """In each shape of window the canvas keeps half of the height, and nothing lies on the transport."""
     SHAPES = ((1440, 900), (1366, 768), (1280, 600), (1100, 700), (1093, 614), (1024, 768), (960, 540), (899, 900), (820, 1180),
               (768, 1024), (600, 960), (600, 501), (390, 844), (844, 390), (360, 640))
-    # Buttons that lie on others, or are cut off, and those of the transport that something covers.
-    COVERED = """[...document.querySelectorAll(".transport button, #level input")].filter(b => b.checkVisibility() && !b.disabled).filter(b => {
+    # Buttons on which something lies, or that are cut off.
+    COVERED = """[...document.querySelectorAll(".transport button, #level input, .tools button, #locator, [role=group].zoom button")].filter(b => b.checkVisibility() && !b.disabled).filter(b => {
         const r = b.getBoundingClientRect();
         return [[0.5, 0.5], [0.05, 0.2], [0.95, 0.8]].some(([x, y]) => !b.contains(document.elementFromPoint(r.x + x * r.width, r.y + y * r.height)));
     }).map(b => b.id || b.type)"""
@@ -224,6 +224,30 @@ class Shapes(Drawn):
                         p.key("KeyT", "t")
                         p.until("!('timeOpen' in document.body.dataset)")
 
+    # Buttons and discs of tactors that the hint covers, and discs that are not on the stage.
+    UNDER_THE_HINT = """(hint => { const q = hint.getBoundingClientRect(), stage = document.querySelector("#stage").getBoundingClientRect();
+        const is_under = r => r.left < q.right && r.right > q.left && r.top < q.bottom && r.bottom > q.top;
+        const {tactors} = tactor.state.hello.array, r_mm = 0.215 * 20, discs = tactors.map(t => {
+            const [[left, top], [right, bottom]] = [-r_mm, r_mm].map(d => tactor.place_in_page([t.x_mm + d, t.y_mm + d]));
+            return {name: t.tactor, left, top, right, bottom}; });
+        return [...[...document.querySelectorAll("button, input")].filter(b => !hint.contains(b) && b.checkVisibility({visibilityProperty: true})
+            && is_under(b.getBoundingClientRect())).map(b => b.id || b.textContent), ...discs.filter(d => is_under(d) || d.left < stage.left
+            || d.right > stage.right || d.top < stage.top || d.bottom > stage.bottom).map(d => d.name)]; })(document.querySelector("#hint"))"""
+
+    def test_the_first_words_lie_on_no_tactor_and_no_button(self):
+        for device in (MISSING, ARRAY):
+            p = self.open(self.serve("--socket", self.dir / f"{device[1][:2]}.sock", device=device))
+            p.until("tactor.state.link === 'connected' && document.querySelector('#hint').checkVisibility()")
+            for touch in (False, True):
+                for size in ((1440, 900), (1024, 768), (960, 540), (844, 390), (390, 844)):
+                    self.resize(p, size, touch)
+                    with self.subTest(size=size, touch=touch, device=device[1]):
+                        if PICTURES:
+                            p.picture(PICTURES / f"hint-{size[0]}x{size[1]}{'-touch' if touch else ''}-{device[1][:2]}.png")
+                        self.assertTrue(p.value("document.querySelector('#hint').checkVisibility()"))
+                        self.assertEqual(p.value(self.UNDER_THE_HINT), [])
+                        self.assertLessEqual(p.value("document.querySelector('#hint').getBoundingClientRect().bottom - document.querySelector('#stage').getBoundingClientRect().bottom"), 0)
+
     def test_nothing_is_lost_in_forced_colours(self):
         p, _ = self.drawn(self.serve())
         p.call("Emulation.setEmulatedMedia", features=[{"name": "forced-colors", "value": "active"}])
@@ -232,8 +256,9 @@ class Shapes(Drawn):
         ground = p.value(style.format(".time", "", "backgroundColor"))
         for element in (".moment", ".groove i"):
             self.assertNotIn(p.value(style.format(element, "", "backgroundColor")), (ground, "rgba(0, 0, 0, 0)"), element)
-        for element in ("#level input", ".l-felt"):
-            self.assertTrue(p.value(f"document.querySelector('{element}').checkVisibility()"), element)
+        self.assertTrue(p.value("document.querySelector('#level input').checkVisibility()"))
+        # The legend is there until the first take.
+        self.assertFalse(p.value("document.querySelector('.legend').checkVisibility()"))
         self.assertIn("gradient", p.value(style.format(".l-drawn", "::before", "backgroundImage")))
         self.assertIn("gradient", p.value(style.format(".beyond", "", "backgroundImage")))
 

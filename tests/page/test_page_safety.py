@@ -72,6 +72,7 @@ class Screens(StudioTest):
         for wanted in ("dark", "light"):
             p.call("Emulation.setEmulatedMedia", features=DARK if wanted == "dark" else [])
             p.until(f"{theme} === '{wanted}'")
+        p.open_popover("#more", "#p-more")
         p.click("#theme")
         p.until(f"{theme} === 'dark'")
         self.reload(p)

@@ -242,10 +242,28 @@ class Takes(TakesTest):
         self.reload(p)
         p.until(f"{TAKE}?.leaves_array && document.querySelector('#warnings').textContent === ''")
 
-    def test_other_methods_are_predicted_beside_this_one(self):
+    def test_the_chosen_method_has_its_predicted_error_and_no_other(self):
         p, _ = self.ready(self.serve())
         p.click("#hint-example")
-        p.until("[...document.querySelectorAll('#pane .error')].length > 5 && [...document.querySelectorAll('#pane .error')].every(e => /mm|not possible/.test(e.textContent))")
+        for name in ("park2016", "continuous"):
+            p.click(f"[data-value={name}]")
+            p.until(f"document.querySelector('[data-value={name}] .error').textContent.endsWith(' mm')")
+            self.assertEqual(p.value("[...document.querySelectorAll('#pane .error')].filter(e => e.textContent).length"), 1)
+
+    def test_four_phantoms_are_behind_more(self):
+        p, _ = self.ready(self.serve())
+        shown = "[...document.querySelectorAll('[aria-label^=Phantom] button')].filter(b => b.checkVisibility()).map(b => b.dataset.value)"
+        p.until(f"({shown}).join() === 'inverse-distance'")
+        p.click("[aria-label='More phantoms']")
+        p.until(f"({shown}).length === 5")
+        for button in ("[data-value=linear]", "[aria-label='More phantoms']"):
+            p.value(f"document.querySelector({quoted(button)}).scrollIntoView()")
+            p.click(button)
+        p.until(f"({shown}).join() === 'linear'")
+        # The keyboard goes from one to the next as before.
+        p.value("document.querySelector('[data-value=linear]').focus()")
+        p.key("ArrowDown")
+        p.until(f"({shown}).join() === 'log' && document.activeElement.dataset.value === 'log'")
 
     def test_strokes_of_the_same_time_are_chosen_in_turn(self):
         p, _ = self.ready(self.serve(), fingers=True)

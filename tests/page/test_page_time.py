@@ -58,7 +58,6 @@ class Time(StudioTest):
 
     def test_a_clip_follows_the_pointer_while_its_drag_makes_the_take_shorter_or_longer(self):
         p, _ = self.drawn()
-        p.click("#snap")
         clip = f"{TAKE}.strokes[0].timed.at(-1)[0] + ' ' + {TAKE}.strokes[0].start_s"
         # Held 4 px within its end, start and middle: no jump, and each step of the pointer is one of the clip.
         for grasp, by_s, wanted in ((-4, -0.5, lambda s: (length + s, start)), (4, 0.2, lambda s: (length - s, start + s)), (40, 0.7, lambda s: (length, start + s))):
@@ -69,7 +68,8 @@ class Time(StudioTest):
             px_s = one - self.at_time(p, start, CLIPS)[0]
             p.mouse("mousePressed", x + grasp, y)
             for step in range(1, 11):
-                p.move_to((x + grasp + by_s * px_s * step / 10, y))
+                # With Alt it does not snap.
+                p.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + grasp + by_s * px_s * step / 10, y=y, button="left", buttons=1, modifiers=ALT)
                 p.frames()
                 self.planned(p)
                 for is_now, ought in zip(map(float, p.value(clip).split()), wanted(by_s * step / 10)):
@@ -78,10 +78,26 @@ class Time(StudioTest):
         # The whole is shown again.
         p.until("!tactor.lanes.held_s")
 
+    def test_the_curve_that_is_touched_has_points(self):
+        p, _ = self.drawn()
+        x, y, w, h = p.value("(r => [r.x, r.y, r.width, r.height])(document.querySelector('#lanes').getBoundingClientRect())")
+        self.assertEqual(p.value("tactor.state.curve"), "")
+        speed = p.value("tactor.curve_points(tactor.lanes).find(q => q.kind === 'speed' && q.index === 2)")
+        strength = p.value("tactor.curve_points(tactor.lanes).find(q => q.kind === 'strength' && q.index === 0)")
+        for point in (strength, speed, strength):
+            p.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + point["x"], y=y + point["y"])
+            p.until(f"tactor.state.curve === '{point['kind']}'")
+        p.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + w / 2, y=y + h / 2)
+        p.until("tactor.state.curve === ''")
+        # A slider of the settings touches its curve, too.
+        p.click("#tab-timing")
+        p.click("#pane .more summary")
+        for i, kind in ((0, "speed"), (5, "strength")):
+            p.click(f"#pane .more .slider:nth-of-type({i + 1}) input" if kind == "speed" else "#pane .more div .slider input")
+            p.until(f"tactor.state.curve === '{kind}'")
+
     def test_a_point_of_the_strength_is_chosen_where_it_is_and_keeps_its_distance(self):
         p, _ = self.drawn()
-        p.value("document.querySelector('#show_speed').click()")
-        p.frames()
         rows, h = self.take(p)["strokes"][0]["timed"], p.until("tactor.lanes.curves && tactor.lanes.height")
         (t, u), (v, w) = next((a[:2], b[:2]) for a, b in zip(rows, rows[1:]) if a[1] <= 20 <= b[1])  # half of its way
         x, _ = self.at_time(p, t + (v - t) * (20 - u) / (w - u), 0)
@@ -194,7 +210,7 @@ class Time(StudioTest):
         p.until("Math.abs(tactor.state.at_s - 0.2) < 0.02")
         self.assertEqual(p.value(begun), before)
 
-    def test_moments_and_clips_snap_but_with_alt_or_the_button(self):
+    def test_moments_and_clips_snap_but_with_alt(self):
         p, _ = self.drawn()
         onset = p.value("tactor.state.plan.onsets[5]")
         x, y = self.at_time(p, onset, LANES)
@@ -203,11 +219,6 @@ class Time(StudioTest):
             p.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + 4, y=y, button="left", buttons=1, modifiers=modifiers)
             p.until(f"Math.abs(tactor.state.at_s - {onset}) < 0.03 && tactor.state.at_s {test} {onset}")
             p.mouse("mouseReleased", x, y)
-        p.click("#snap")
-        self.drag(p, 0.1, 0.2, LANES, up=False)
-        p.mouse("mouseMoved", x + 4, y)
-        p.until(f"Math.abs(tactor.state.at_s - {onset}) < 0.03 && tactor.state.at_s !== {onset}")
-        p.mouse("mouseReleased", x, y)
 
     def test_clips_are_copied_and_repeated(self):
         p, _ = self.drawn()

@@ -11,6 +11,7 @@ import {view, set_array, look_at_all, zoom, resize, place_in_page} from "./drawi
 import {label_boxes} from "./drawing/labels.js";
 import {felt_points} from "./drawing/felt.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
+import {handles} from "./time/curves.js";
 import "./time/timeline.js";
 import {play, stop, tick, silence_speaker, unanswered_s, stop_words} from "./service/player.js";
 import {change_point, remove_point, finish_early} from "./drawing/pointer.js";
@@ -29,7 +30,7 @@ import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
 
 const DONE_MS = 600; // time for which the button says that it has stopped
-const SWITCHES = ["loop", "speaker", "scrub", "snap", "show_speed", "show_strength"]; // buttons, and parts of the state
+const SWITCHES = ["loop", "speaker", "scrub"]; // buttons, and parts of the state
 
 // Light and dark.
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -61,10 +62,11 @@ on_click("redo", redo);
 on_click("new-take", () => { new_take(); say("Draw a new take"); });
 on_click("zoom-in", () => zoom(1.3));
 on_click("zoom-out", () => zoom(1 / 1.3));
-on_click("zoom-all", look_at_all);
+on_click("zoom-all", () => { look_at_all(); show_all_time(); });
 // The keys of a headset and of a screen that is locked.
 for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 for (const name of SWITCHES) on_click(name, () => { state[name] = !state[name]; changed("playing", "curves"); });
+on_click("scrub", () => say(state.scrub ? "Scrub is felt" : "Scrub is silent"));
 on_click("speaker", () => {
   if (!state.speaker) return silence_speaker();
   say(is_simulated() ? "You hear it while you draw" : "Play sounds on this computer's loudspeakers; they must not be on the array's card");
@@ -77,7 +79,11 @@ on_click("time-out", () => zoom_time(1.5));
 on_click("time-in", () => zoom_time(1 / 1.5));
 on_click("time-all", show_all_time);
 on_click("time-fold", fold_time);
-for (const b of all_of("[data-press]")) listen(b, "click", () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
+for (const b of all_of("[data-press]")) listen(b, "click", () => {
+  const pressed = by_id(b.dataset.press);
+  by_id("p-more").hidePopover();
+  if (pressed.popover) pressed.showPopover(); else pressed.click();
+});
 on_click("pill", () => open_sheet("inspector"));
 on_click("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on_click("sheet-close", () => open_sheet(""));
@@ -101,6 +107,7 @@ on_change(() => {
   const shown = state.drawing && !state.drawing.append ? null : take;
   set_text("take-name", shown?.name ?? "New take");
   set_text("take-facts", take_facts(shown));
+  by_id("legend").hidden = state.takes.length > 0;
   by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
   show_point();
 });
@@ -174,4 +181,4 @@ document.head.append(make("link", {rel: "manifest", href: URL.createObjectURL(ne
 })], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
-globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height, felt_points};
+globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height, felt_points, curve_points: handles};

@@ -25,13 +25,14 @@ export const state = {
   knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // level relative to the ceiling
   // Drawing, prediction and play.
   drawing: null,         // {began, before, tracks, kind, append}
-  plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
+  plan: null, plan_fault: null, plan_of: null, observer: null,
   outside: [],           // farthest place outside the array of each stroke
   playing: null,         // {take, began_ms, numbers, felt, waits, again, next, ending} and its round; see service/player.js
-  at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
+  at_s: 0, loop: false, speaker: false, scrub: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   compare: null,         // comparison of two methods, see settings/compare.js
-  tab: "method", sheet: "", placing: false, show_speed: true, show_strength: true,
+  tried: null,           // options of the card that is held, over those of the take
+  tab: "method", sheet: "", placing: false, curve: "", // the curve that is touched: "speed", "strength"
 };
 
 export const now_ms = () => performance.now();

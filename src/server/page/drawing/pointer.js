@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, current_stroke, ceiling_dbfs, is_cardless, say, now_ms} from "../state.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, is_cardless, is_simulated, say, now_ms} from "../state.js";
 import {by_id, listen} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, view, tactor_at, zoom, zoom_by_two, pan, ARROWS} from "./view.js";
@@ -8,13 +8,12 @@ import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../ta
 import {say_if_kept} from "../takes/keeping.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
 import {felt_points, grasp_felt, pull, step_felt} from "./felt.js";
-import {test_tactor, tell_level, on_stop} from "../service/player.js";
-import {show_tactor} from "../service/device.js";
+import {test_tactor, tap_tactor, tell_level, on_stop} from "../service/player.js";
+import {press, let_go} from "../service/hold.js";
 import {fault_sentence} from "../words.js";
 
 const RESTING_MS = 100;    // interval at which a resting finger sends its place, or its stroke would end
 const LEAST_MM = 1;        // a shorter touch is a tap
-const HOLD_MS = 500;
 const LEAST_STEP_MS = 2;   // least interval of sent points
 const REACH_PX = 22, LEAST_PX = 3; // reach of a point, and the distance from which on it is dragged
 const LINE_PX = 16, PINCH_PX = 200; // height of a wheel's line, and the wheel's distance that zooms by e
@@ -41,13 +40,13 @@ function down(id, px, e) {
   if (state.tool === "felt") { f.mode = "felt"; f.off = grasp_felt(mm); if (!f.off) return; }
   if (f.mode === "felt" || state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
   const tactor = tactor_at(mm);
-  if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_tactor(tactor, px); } }, HOLD_MS);
+  if (tactor >= 0) press(id, field, () => { f.mode = "held"; return drive_tactor(tactor); });
   f.tactor = tactor;
   fingers.set(id, f);
   // Two fingers that begin together on the ground only zoom.
   f.ground = f.kind === "touch" && outside_mm(array.edge, mm) > array.radius;
   const other = f.ground && [...fingers.values()].find(o => o !== f && o.ground && o.mode === "tap");
-  if (other) [f, other].forEach(o => { clearTimeout(o.hold); o.mode = "zoom"; });
+  if (other) [f, other].forEach(o => { o.mode = "zoom"; });
 }
 
 function moved(id, px, e) {
@@ -73,7 +72,7 @@ function moved(id, px, e) {
 }
 
 function begin(f) {
-  clearTimeout(f.hold);
+  let_go(f.id);
   f.mode = "draw";
   const now = f.down_ms;
   if (!state.drawing) {
@@ -100,15 +99,16 @@ function record(f, mm, at_ms) {
 }
 
 // Begins a live stroke, so that the drawing is felt.
-export function begin_live(f) {
+export function begin_live(f, own_options = current_take()?.options) {
   tell_level();
-  const o = request_options({options: current_take()?.options}, ceiling_dbfs());
+  const o = request_options({options: own_options}, ceiling_dbfs());
   if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // Tactile Brush must know the end first
   const live = new Set(state.options.filter(r => r.live).map(r => r.name));
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
   call("begin", {options}).then(r => {
     f.number = r.stroke;
     if (f.dropped) return tell("cancel", {stroke: f.number});
+    if (state.compare) tell("level", {db: state.level_db, stroke: f.number}); // which is silent but for a side
     send(f, now_ms(), true);
     if (!f.track.down) tell("end", {stroke: f.number});
   }, e => { if (!f.refused) say(fault_sentence(e)); f.refused = true; });
@@ -120,11 +120,29 @@ export function send(f, at_ms, always = false) {
 }
 setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, now_ms(), true)), RESTING_MS);
 
+// Drives a tactor until the function that it returns is called, or somebody stops. It is a stroke that rests: it ends by itself where this
+// page is gone, and at a tactor this phantom drives no other.
+export function drive_tactor(i) {
+  if (!is_connected()) return void say("No connection: nothing is driven");
+  const began_ms = now_ms(), f = {at: array.places[i], strength: 1, number: null, sent_ms: 0, track: {down: true}};
+  if (is_simulated()) tap_tactor(i, Infinity);
+  if (!is_cardless()) begin_live(f, {algorithm: "continuous", phantom: "barycentric"});
+  const end = () => {
+    clearInterval(timer);
+    if (state.tapped === i) tap_tactor(-1);
+    f.track.down = false; // one that has no number yet ends when it has
+    if (f.number !== null) tell("end", {stroke: f.number});
+    f.number = null;
+  };
+  const timer = setInterval(() => { if (state.stopped?.at > began_ms) end(); else send(f, now_ms(), true); }, RESTING_MS);
+  return end;
+}
+
 function up(id, cancelled = false) {
   const f = fingers.get(id);
   if (!f) return;
   fingers.delete(id);
-  clearTimeout(f.hold);
+  let_go(id);
   if (f.mode === "knot") { end_edit(); changed("take"); return; }
   if (f.mode === "tap" && !cancelled) return tap(f);
   if (f.mode !== "draw") return;
@@ -307,6 +325,7 @@ listen(field, "keydown", e => {
   if (act_on_point(e)) return e.preventDefault();
   if (e.key === "Enter") {
     e.preventDefault();
+    if (e.repeat) return;
     if (key) { key = null; up("key"); return; }
     key = array.box.middle.slice();
     down("key", to_px(key), {pointerType: "key", timeStamp: now_ms()});
@@ -319,4 +338,7 @@ listen(field, "keydown", e => {
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];
   moved("key", to_px(key), {pointerType: "key", timeStamp: now_ms()});
 });
-listen(field, "blur", () => { if (key) { key = null; up("key"); } });
+const lift_key = () => { if (key) { key = null; up("key"); } };
+// A tap of Enter leaves the touch down; a tactor that it held is let go.
+listen(field, "keyup", e => { if (e.key === "Enter" && let_go("key")) lift_key(); });
+listen(field, "blur", lift_key);

@@ -54,8 +54,9 @@ function insets() {
   const s = getComputedStyle(canvas), v = name => parseFloat(s.getPropertyValue(name)) || 0;
   Object.assign(view, {scale_bottom: v("--scale-bottom") || 20, scale_left: v("--scale-left") || 18});
   const free = {left: v("--free-left"), right: v("--free-right"), top: v("--free-top"), bottom: v("--free-bottom")};
-  const stage = by_id("stage").getBoundingClientRect(), gallery = by_id("p-gallery");
+  const stage = by_id("stage").getBoundingClientRect(), hint = by_id("hint").getBoundingClientRect(), gallery = by_id("p-gallery");
   const sheet = (gallery.matches(":popover-open") ? gallery : by_id(state.placing ? "place-bar" : "sheet-head")).getBoundingClientRect();
+  if (hint.width) { free.bottom = Math.max(free.bottom, stage.bottom - hint.top + 8); view.scale_bottom = -99; } // the words lie on the scale
   if (!sheet.width || sheet.left >= stage.right) return free;
   if (sheet.left > stage.left + 10) return {...free, right: stage.right - sheet.left + 10};
   return {...free, top: 12, bottom: stage.bottom - sheet.top + 8};

@@ -4,6 +4,8 @@ import {by_id, make, on_click, listen, set_text} from "../../../net/page/dom.js"
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
 import {test_tactor, unanswered_s, stop_words} from "./player.js";
+import {on_hold} from "./hold.js";
+import {drive_tactor} from "../drawing/pointer.js";
 import {array_name, number_text, fault_sentence} from "../words.js";
 
 const STOPPED_MS = 6000;
@@ -108,9 +110,13 @@ listen("p-device", "beforetoggle", () => {
 });
 on_change(() => {
   if (!state.hello) return;
-  by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => make("button",
-    {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
-    String(t.tactor ?? i))));
+  by_id("tactor-facts").replaceChildren();
+  by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => {
+    const b = make("button", {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i),
+      onfocus: () => show_tactor(i), onpointerdown: () => show_tactor(i)}, String(t.tactor ?? i));
+    on_hold(b, () => drive_tactor(i));
+    return b;
+  }));
 }, "array");
 listen("p-others", "beforetoggle", () => {
   by_id("people").replaceChildren(...(state.status?.who ?? []).map(w => make("li", {},
@@ -124,18 +130,14 @@ listen("own-name-text", "change", () => {
 });
 by_id("own-name-text").value = remembered("name") ?? "";
 export const own_name = () => remembered("name") || (matchMedia("(pointer: coarse)").matches ? "A phone" : "A browser");
-export function show_tactor(i, at) {
-  const t = state.hello?.array.tactors[i];
-  if (!t) return;
-  set_text("tactor-title", `Tactor ${t.tactor ?? i}`);
+// Shows what is known of a tactor.
+function show_tactor(i) {
+  const t = state.hello.array.tactors[i];
   list_facts("tactor-facts", {
-    Place: `${t.x_mm}, ${t.y_mm} mm`, Channel: t.channel, Gain: t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`,
+    Tactor: t.tactor ?? i, Place: `${t.x_mm}, ${t.y_mm} mm`, Channel: t.channel, Gain: t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`,
     Limit: `${number_text(t.max_dbfs ?? 0)} dBFS`, Threshold: typeof t.threshold_dbfs === "number" ? `${number_text(t.threshold_dbfs)} dBFS` : "not measured",
     Polarity: t.polarity < 0 ? "reversed" : "as wired",
   });
-  const p = by_id("p-tactor");
-  p.showPopover();
-  p.style.inset = `${Math.max(8, Math.min(innerHeight - 220, at[1] + 60))}px auto auto ${Math.max(8, Math.min(innerWidth - 352, at[0]))}px`;
 }
 // Clears the fault, which was about the take before the change.
 on_change(() => { state.fault = null; }, "take");

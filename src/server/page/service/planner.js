@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT Plans for the picture: one request at a time, always for the newest state.
 import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms, take_by_id} from "../state.js";
 import {call, is_connected} from "./connection.js";
-import {make_request, put_take, take_s, with_side, row, value} from "../takes/takes.js";
+import {make_request, put_take, with_side} from "../takes/takes.js";
 import {number_text} from "../words.js";
 import {thin} from "../takes/stroke.js";
 
-const COMPARED_MS = 500;   // idle time before other methods are predicted
-const COMPARED_S = 30;     // longest take for which they are predicted
-const MOST_KEPT = 200;
 const DRAFTED_POINTS = 2000; // most points of a drawing; more are thinned out before they are sent
 
-let draft = 0, busy = false, owed = false, compare_timer = 0, round = 0;
+let draft = 0, busy = false, owed = false;
 
 function request() {
   const take = current_take(), strokes = state.drawing ? draw_so_far(state.drawing) : take?.strokes;
@@ -35,18 +32,17 @@ function plan_soon() {
 async function ask() {
   const what = request();
   owed = false;
-  clearTimeout(compare_timer);
   if (!what) {
     Object.assign(state, {plan: null, plan_fault: null});
     return changed("plan");
   }
   busy = true;
   const began = now_ms();
-  const take = current_take(), was_drawing = state.drawing !== null;
+  const take = current_take(), was_drawing = state.drawing !== null, {tried} = state;
   try {
     const c = state.compare, on = c?.on, plan = await predict(what, {draft: ++draft});
     const rest = c && await predict(make_request(with_side(take, 1 - on))).catch(() => null);
-    if (was_drawing || current_take() === take && state.compare?.on === on) Object.assign(state, {plan, plan_fault: null,
+    if (was_drawing || current_take() === take && state.tried === tried && state.compare?.on === on) Object.assign(state, {plan, plan_fault: null,
       plan_of: was_drawing ? null : take});
     if (c) c.rest = rest;
   } catch (e) {
@@ -56,8 +52,7 @@ async function ask() {
   // A long drawing is planned less often: its picture must not slow down the hand.
   if (was_drawing) await new Promise(done => setTimeout(done, Math.min(2000, 2 * (now_ms() - began) - 20)));
   busy = false;
-  if (owed) return ask();
-  if (!was_drawing) compare_timer = setTimeout(compare, COMPARED_MS);
+  if (owed) ask();
 }
 // Returns the excess level of a plan's strokes, dB.
 export const excess_db = plan => plan?.warnings.find(w => w.kind === "level")?.over_db ?? 0;
@@ -74,7 +69,7 @@ export function limit_text({tactors: count, amplitudes}, dbfs) {
 // Sets a take's gain so that it can be played; the level of other takes stays. Returns false if it is not too strong, and for strokes that are only
 // tried.
 export async function weaken_take(take) {
-  const plan = await call("plan", {...make_request(take, ceiling_dbfs()), view: "peaks", bins: 1}), over_db = excess_db(plan);
+  const plan = await call("plan", {...make_request(with_side(take), ceiling_dbfs()), view: "peaks", bins: 1}), over_db = excess_db(plan);
   const now = take_by_id(take.id); // the take may have been edited meanwhile
   if (!over_db || !now) return false;
   const gain_db = (now.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
@@ -84,38 +79,10 @@ export async function weaken_take(take) {
   return true;
 }
 
-// Predicts the other algorithms and phantoms, one after the other, while there is no other request.
-async function compare() {
-  const take = current_take(), own = ++round;
-  if (!take?.strokes.length || state.drawing || take_s(take) > COMPARED_S) return;
-  const wanted = ["algorithm", "phantom"].flatMap(name =>
-    (row(name)?.choices ?? []).filter(v => v !== value(name)).map(v => [name, v]));
-  for (const [name, v] of wanted) {
-    if (own !== round || busy || current_take() !== take || !is_connected()) return;
-    const key = predicted_key(take, name, v);
-    if (state.predicted.has(key)) continue;
-    const what = make_request({...take, options: {...with_side(take).options, [name]: v}});
-    let found;
-    try { found = (await predict(what)).errors; } catch (e) {
-      if (e.code === 0) return;
-      found = {refused: e.message};
-    }
-    if (state.predicted.size > MOST_KEPT) state.predicted.clear();
-    state.predicted.set(key, found);
-    changed("predicted");
-  }
-}
-const numbers = new WeakMap();
-let last_number = 0;
-export function predicted_key(take, name, v) {
-  if (!numbers.has(take)) numbers.set(take, ++last_number);
-  return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}${state.compare?.on ? JSON.stringify(state.compare.other) : ""}`;
-}
-
 // Drops the plan of another take, or of this one before a change: without a connection no new plan replaces it.
 function forget_other_plan() {
   if (is_connected() || !state.plan && !state.plan_fault || !state.drawing && state.plan_of === current_take()) return;
   Object.assign(state, {plan: null, plan_fault: null, plan_of: null});
   changed("plan");
 }
-on_change(() => { ++round; forget_other_plan(); plan_soon(); }, "take", "drawing", "ink", "level", "link", "observer");
+on_change(() => { forget_other_plan(); plan_soon(); }, "take", "drawing", "ink", "level", "link", "observer");

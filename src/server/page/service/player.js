@@ -23,9 +23,9 @@ const ingredients = (take, {from_s, until_s}) => [take, from_s, until_s, state.c
 // Requests a round. If the page loops, the service repeats it without the page. Calls `start()` once everything is known.
 async function ask_for(p, round, start) {
   const whole = take_by_id(p.take), take = take_part(whole, round.from_s, round.until_s), made_of = ingredients(whole, round);
-  const repeats = state.loop && round.from_s === p.again.from_s && round.until_s === p.again.until_s;
+  const repeats = state.loop && !state.tried && round.from_s === p.again.from_s && round.until_s === p.again.until_s;
   const round_s = repeats && state.compare ? await longest_s(take, round.total_s) : round.total_s;
-  const answers = await submit(take, {start: start(), ...repeats && {repeat: true, round_s}});
+  const answers = await submit(take, {start: start(), ...repeats && {repeat: true, round_s}, ...state.tried && {held: true}});
   const sound_s = Math.max(...answers.map(r => r.total_s)), strokes = answers.flatMap(r => r.strokes);
   Object.assign(round, {made_of, repeats, strokes, firsts: answers.map(r => r.stroke), sound_s, total_s: Math.max(sound_s, round_s), ending: false});
   return strokes;
@@ -52,6 +52,14 @@ export async function play(part = part_to_play()) {
   if (felt) await ask_to_play();
   else await play_unfelt(take, state.playing);
   changed("playing");
+}
+// Plays the take with other options, again and again, until the function that it returns is called.
+export function play_by(options) {
+  if (state.compare || state.tried || !current_take()?.strokes.length) return null;
+  const {loop} = state, change = (tried, is_loop) => { Object.assign(state, {tried, loop: is_loop, plan_of: null}); changed("take"); };
+  change(options, true);
+  play();
+  return () => { quit_playing(); change(null, loop); };
 }
 async function play_unfelt(take, own) {
   if (!is_simulated() || !state.speaker) say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
@@ -291,10 +299,12 @@ export function test_tactor(i) {
     }, e => say(fault_sentence(e)));
 }
 
-// Plays a tactor that is tried as a sound if there is no card.
-function tap_tactor(i) {
+// Plays a tactor that is tried as a sound if there is no card, until a time or tap_tactor(-1).
+let tap_timer = 0;
+export function tap_tactor(i, ms = 1000 * TEST_S) {
   state.tapped = i;
-  if (i >= 0) setTimeout(tap_tactor, 1000 * TEST_S, -1);
+  clearTimeout(tap_timer);
+  if (i >= 0 && ms < Infinity) tap_timer = setTimeout(tap_tactor, ms, -1);
   changed("playing");
 }
 // Plays on this computer's loudspeakers if Listen is on.

@@ -26,7 +26,8 @@ on_change(() => {
   set_text("feel-text", `${simulated ? "Hear" : "Feel"} ${on ? "on" : "off"}`);
   const hint = by_id("hint");
   hint.hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
-  if (hinted === hint.hidden && !state.drawing) { hinted = !hint.hidden; changed("layout"); } // the canvas never moves under a finger
+  const shown = !hint.hidden && by_id("hint-example").textContent; // the array makes room for these words
+  if (shown !== hinted && !state.drawing) { hinted = shown; changed("layout"); } // the canvas never moves under a finger
   if (!warned && !by_id("banner").hidden) by_id("p-gallery").hidePopover(); // a new banner must be visible
   warned = !by_id("banner").hidden;
   hear_touches();

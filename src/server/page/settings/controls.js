@@ -2,6 +2,7 @@
 // Controls of a value: each has an element, and an update() that shows the value again.
 import {make, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
+import {on_hold} from "../service/hold.js";
 
 let last_id = 0;
 const new_id = () => `c${++last_id}`;
@@ -36,16 +37,18 @@ export function choose_by_arrows(group, buttons) {
     if (!step) return;
     e.preventDefault();
     const next = buttons[(buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length];
+    next.click(); // shows it, if it was hidden
     next.focus();
-    next.click();
   });
 }
 // Makes buttons of which one is chosen. Arrow keys move, as in any group of radio buttons.
-export function choice({label, get, set, values, shape = "segments", visible_label = true}) {
+// `hold(value)` begins what lasts while a button is held.
+export function choice({label, get, set, values, shape = "segments", visible_label = true, hold}) {
   const buttons = values.map(v => make("button", {role: "radio", "data-value": v.value,
     onclick: () => { set(v.value); update(); }}, ...v.content ?? [v.name]));
   const group = make("div", {role: "radiogroup", "aria-label": label, class: shape}, ...buttons);
   choose_by_arrows(group, buttons);
+  if (hold) buttons.forEach((b, i) => on_hold(b, () => hold(values[i].value)));
   function update() {
     const at = values.findIndex(v => v.value === get());
     buttons.forEach((b, i) => {

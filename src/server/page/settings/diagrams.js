@@ -32,33 +32,6 @@ export function algorithm_picture(name) {
   }
   return picture(56, 36, ...parts);
 }
-// Returns the amplitudes, as in a plan, of three tactors at the corners of an even triangle, for a point that moves from the first tactor (part 0)
-// to the middle between the other two (part 1).
-export function shares_at(name, part) {
-  const height = Math.sqrt(0.75), to_first = part * height, to_other = Math.hypot(0.5, (1 - part) * height); // the sides are 1
-  const [a, b] = {
-    "inverse-distance": () => part === 0 ? [1, 0] : part === 1 ? [0, 0.5] : [1 / to_first, 1 / to_other],
-    gaussian: () => [to_first, to_other].map(d => Math.exp(-((d / 0.6) ** 2))),
-  }[name]?.() ?? [1 - part, part / 2];
-  if (name === "linear") return [a, b];
-  if (name === "log") return [Math.log2(1 + a), Math.log2(1 + b)];
-  return [a, b].map(energy => Math.sqrt(energy / (a + 2 * b)));
-}
-export function phantom_picture(name) {
-  const curve = k => Array.from({length: 25}, (_, i) => [4 + i * 2, 32 - 27 * shares_at(name, i / 24)[k]]);
-  return picture(56, 36, base(33), line(curve(1), {stroke: "var(--ink2)"}), line(curve(0)),
-    make("circle", {cx: 4, cy: 33, r: 2.5, fill: "currentColor"}), make("circle",
-    {cx: 52, cy: 33, r: 2.5, fill: "var(--ink2)"}));
-}
-const WAVES = {
-  sine: t => Math.sin(2 * Math.PI * t), square: t => t % 1 < 0.5 ? 1 : -1, triangle: t => 1 - 4 * Math.abs((t + 0.25) % 1 - 0.5),
-  sawtooth: t => 2 * ((t + 0.5) % 1) - 1,
-  noise: t => Math.sin(37 * t) * 0.6 + Math.sin(61 * t + 1) * 0.4 + Math.sin(97 * t) * 0.3,
-};
-export function wave_picture(name) {
-  return picture(40, 22, line(Array.from({length: 81}, (_, i) => [2 + i * 0.45,
-    11 - 8 * Math.max(-1, Math.min(1, WAVES[name](i / 40)))])));
-}
 // Draws bursts and the interval between their onsets, to scale.
 export function timing_picture(burst_s, soa_s) {
   const scale = 250 / Math.max(3 * soa_s, 2 * soa_s + burst_s), x = i => 22 + i * soa_s * scale;

@@ -5,11 +5,11 @@ import {by_id, make, all_of, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {slider, choice, toggle, entry, button, choose_by_arrows} from "./controls.js";
 import {set_option, end_edit, edit_stroke, edit_take, put_stroke, row, value, algorithm} from "../takes/takes.js";
-import {predicted_key} from "../service/planner.js";
-import {algorithm_picture, phantom_picture, wave_picture, timing_picture, envelope_picture} from "./diagrams.js";
+import {play_by} from "../service/player.js";
+import {algorithm_picture, timing_picture, envelope_picture} from "./diagrams.js";
 import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
 import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
-import {set_strength, strengths, set_speed} from "../time/curves.js";
+import {set_strength, strengths, set_speed, touch_curve} from "../time/curves.js";
 import {toggle_compare} from "./compare.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
 import {starting_at, choose_clip} from "../time/clips.js";
@@ -26,7 +26,7 @@ const ms = (v, digits = 0) => `${number_text(v * 1000, digits)} ms`;
 const percent = v => `${Math.round(100 * v)} %`;
 const tabs = [...all_of("[data-tab]")];
 
-let controls = [], structure = "";
+let controls = [], structure = "", all_phantoms = false;
 
 // Joins controls and other elements into one control.
 function join(tag, attributes, ...parts) {
@@ -36,22 +36,26 @@ function join(tag, attributes, ...parts) {
 const more = (title, open, ...parts) => join("details", {class: "more", open}, make("summary", {}, title), ...parts);
 
 // Panes.
-const algorithm_choice = () => cards("Algorithm", "algorithm", ALGORITHMS, algorithm_picture, true);
-const phantom_choice = () => cards("Phantom: how tactors share a point", "phantom", PHANTOMS, phantom_picture, false);
-function cards(label, name, words, picture, large) {
+const algorithm_choice = () => cards("Algorithm", "algorithm", ALGORITHMS, algorithm_picture);
+const phantom_choice = () => cards("Phantom: how tactors share a point", "phantom", PHANTOMS);
+// Cards with a picture have the number of the chosen one; of the others the chosen one is shown, and all after More.
+function cards(label, name, words, picture) {
   const values = (row(name)?.choices ?? Object.keys(words)).map(id => {
-    const error = make("span", {class: "error"}), [title, text] = words[id] ?? [plain_name(id), ""];
-    return {value: id, content: [picture(id), make("b", {}, title), error, make("p", {}, text)],
-      update: () => { error.textContent = predicted_text(name, id); }};
+    const error = picture && make("span", {class: "error"}), [title, text] = words[id] ?? [plain_name(id), ""];
+    return {value: id, content: [picture?.(id), make("b", {}, title), error, make("p", {}, text)].filter(Boolean), update: b => {
+      if (picture) error.textContent = predicted_text(name, id); else b.hidden = !all_phantoms && value(name) !== id;
+    }};
   });
-  return join("section", {}, make("h2", {}, label, large && make("span", {}, "predicted error")),
-    choice({label, visible_label: false, shape: large ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v), values}));
+  const list = choice({label, visible_label: false, shape: picture ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v), values,
+    hold: v => play_by({[name]: v})});
+  return join("section", {}, make("h2", {}, label, picture && make("span", {}, "predicted error")), list, picture
+    ? make("p", {class: "hint-text"}, "Hold a card to feel the take by it.")
+    : button("More", null, e => { all_phantoms = !all_phantoms; e.currentTarget.setAttribute("aria-expanded", all_phantoms); list.update(); },
+      {class: "button small outlined", "aria-label": "More phantoms", "aria-expanded": String(all_phantoms)}));
 }
 function predicted_text(name, id) {
-  const take = current_take();
-  if (!take) return "";
-  const e = value(name) === id ? state.plan?.errors : state.predicted.get(predicted_key(take, name, id));
-  return !e ? "" : e.refused ? "not possible" : typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm` : "";
+  const e = value(name) === id && state.plan?.errors;
+  return typeof e?.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm` : "";
 }
 
 // Controls of the stroke that is edited; hidden without one.
@@ -123,9 +127,9 @@ function burst_controls() {
 const WAVE_NAMES = [["sine", "Sine"], ["square", "Square"], ["triangle", "Triangle"], ["sawtooth", "Saw"], ["noise", "Noise"]];
 function vibration_controls() {
   const kind = () => String(value("waveform") ?? "sine").split(":")[0];
-  const wave = choice({label: "Waveform", shape: "waves", get: kind, set: v => set_option("waveform", v === "noise"
+  const wave = choice({label: "Waveform", get: kind, set: v => set_option("waveform", v === "noise"
     ? "noise:100-400" : v),
-    values: WAVE_NAMES.map(([v, name]) => ({value: v, name, content: [wave_picture(v), name]}))});
+    values: WAVE_NAMES.map(([value, name]) => ({value, name}))});
   const noise = entry({label: "Noise from – to, Hz", get: () => String(value("waveform")).split(":")[1] ?? "",
     set: v => set_option("waveform", v ? `noise:${v}` : null), hint: "100-400"});
   const carrier = option_slider("carrier", {least: 20, most: 1000, log: true, step: 1, get: () => value("carrier") ?? 250, text: v => `${Math.round(v)} Hz`});
@@ -190,9 +194,11 @@ function build() {
 }
 for (const b of tabs) listen(b, "click", () => { state.tab = b.dataset.tab; changed("tab"); });
 choose_by_arrows(by_id("tabs"), tabs);
+// The curve of a slider that is touched stands out.
+listen("pane", "focusin", e => touch_curve(/^(speed|strength)/.exec(e.target.labels?.[0]?.textContent.toLowerCase())?.[0] ?? ""));
 
 on_change(what => {
-  if (state.drawing && !what.has("drawing")) return;
+  if (state.drawing && !what.has("drawing") || state.tried) return;
   build();
   controls.forEach(c => c.update());
-}, "take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing");
+}, "take", "plan", "tab", "array", "options", "theme", "level", "observer", "drawing");

@@ -4,7 +4,7 @@ import {state, changed} from "../state.js";
 import {by_id, make, show_pressed, all_of} from "../../../net/page/dom.js";
 import {play, stop} from "../service/player.js";
 import {undo, redo, choose_take} from "../takes/takes.js";
-import {look_at_all, zoom} from "../drawing/view.js";
+import {zoom} from "../drawing/view.js";
 import {show_all_time, zoom_time, clear_marks} from "../time/time_axis.js";
 import {step_burst} from "../time/lanes.js";
 import {copy_clip} from "../time/clips.js";
@@ -14,7 +14,7 @@ import {toggle_compare, close_compare, choose_side} from "./compare.js";
 
 const KEYS = [["Space, X, Esc", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E, W", "draw, straight line, edit points, move what is felt"],
   ["B, 1, 2", "compare two methods, feel the one, the other"], ["F", "feel, or hear, on or off"], ["N", "new take"], ["G", "gallery"], ["0, +, −", "show all, larger, smaller"],
-    ["T", "timeline: open, close"], ["J", "scrub is felt"], ["H, arrows", "place on the body"], ["Enter, Shift Enter", "in the timeline: start, range"],
+    ["T", "timeline: open, close"], ["J, Alt", "in the timeline: scrub is felt or silent, no snapping"], ["H, arrows", "place on the body"], ["Enter, Shift Enter", "in the timeline: start, range"],
     ["Shift Home", "clear both"], ["Ctrl D", "copy the stroke"], ["[, ], Z", "more time, less time, all of it"],
   [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
     ["Enter, arrows", "in the array: touch and lift, move"], ["Tab, arrows, Enter", "with Points, Felt: next point, move it (shift: less), curve or corner"],
@@ -32,7 +32,7 @@ export function new_take() {
 const ACTIONS = {
   p: e => play(e.shiftKey ? {from_s: state.at_s} : undefined), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
     w: () => choose_tool("felt"), b: toggle_compare, 1: () => choose_side(0), 2: () => choose_side(1), f: press("feel"), j: press("scrub"), n: new_take, g: press("gallery-open"), x: () => stop(),
-  0: () => { look_at_all(); show_all_time(); }, "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
+  0: press("zoom-all"), "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
   h: () => { open_sheet(""); show_place(); }, t: () => fold_time(), "[": () => zoom_time(1.5), "]": () => zoom_time(1 / 1.5), z: show_all_time,
   ",": () => step_burst(-1), ".": () => step_burst(1),
 };

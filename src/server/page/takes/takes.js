@@ -74,7 +74,9 @@ export function put_stroke(change, same, index = state.stroke) {
 }
 export const edit_stroke = (change, same) => put_stroke(s => change(editable(s)), same);
 // Returns a take as played by a side of a comparison (0: the take itself; default: the sounding side).
-export const with_side = (take, side = state.compare?.on) => side && take ? {...take, options: {...take.options, ...state.compare.other}} : take;
+// A card that is held is over both.
+export const with_side = (take, side = state.compare?.on) => take && (side || state.tried)
+  ? {...take, options: {...take.options, ...side && state.compare.other, ...state.tried}} : take;
 // Options of the take, and their rows in the table.
 export const row = name => state.options.find(o => o.name === name);
 export const value = name => with_side(current_take())?.options[name] ?? row(name)?.default ?? null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT Speed and strength along the strokes, requested and felt, and the points that change them.
-import {state, current_take, current_stroke} from "../state.js";
+import {state, changed, current_take, current_stroke} from "../state.js";
 import {paint, write, plot} from "../look.js";
 import {left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
@@ -17,11 +17,10 @@ export function draw_curves(p, l) {
   const letters = {size: 11, align: "right"};
   write(p, `${Math.round(most)} mm/s`, l.width - 4, top + 16, "ink3", letters);
   write(p, "0", l.width - 4, bottom, "ink3", letters);
-  [["speed", "ink", state.show_speed], ["as felt", "felt-ink", state.show_speed], ["strength", "ink2", state.show_strength]]
-    .forEach(([name, tone, on], i) => on && write(p, name, left(l) - 8, top + 16 + 15 * i, tone, letters));
+  [["speed", "ink"], ["as felt", "felt-ink"], ["strength", "ink2"]].forEach(([name, tone], i) => write(p, name, left(l) - 8, top + 16 + 15 * i, tone, letters));
   take.strokes.forEach((s, i) => {
-    if (state.show_speed) draw_speed(p, l, s, i, y_speed);
-    if (state.show_strength) draw_strength(p, l, s, top, bottom);
+    draw_speed(p, l, s, i, y_speed);
+    draw_strength(p, l, s, top, bottom);
   });
   draw_handles(p, l);
 }
@@ -50,25 +49,32 @@ const speeds_felt = kept_for(plan => plan.felt_rows.map(felt => {
     return found;
   }));
 export const felt_speeds = plan => plan ? speeds_felt(plan) : [];
+// The curve that is touched stands out, and has its points.
+const alpha = kind => !state.curve || state.curve === kind ? 1 : 0.3;
+export function touch_curve(kind) {
+  if (state.curve === kind) return;
+  state.curve = kind;
+  changed("curves");
+}
 function draw_speed(p, l, s, i, y) {
   const line = (rows, from, tone) => {
     plot(p, ...rows.map(([t, v]) => [to_x(l, from + t), y(v)]));
-    paint(p, {line: tone, width: 1.5});
+    paint(p, {line: tone, width: 1.5, alpha: alpha("speed")});
   };
   line(felt_speeds(state.plan)[i] ?? [], 0, "felt");
   line(speed_rows(s.timed), s.start_s, "ink");
 }
-// Returns the points that can be dragged: {x, y, kind, index}.
+// Returns the points that can be dragged, {x, y, kind, index}: first those of the curve that is touched.
 export function handles(l) {
   const s = current_stroke();
   if (!s || !l.curves) return [];
   const e = editable(s), d = duration_s(s), top = l.height - l.curves, bottom = l.height - 8, found = [];
   const mean = length_mm(s.timed) / d, most = most_speed(current_take());
-  if (state.show_speed) find_speeds(e.pace).forEach(([part, v], index) => found.push({kind: "speed", index,
+  find_speeds(e.pace).forEach(([part, v], index) => found.push({kind: "speed", index,
     x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(Math.min(1, v * mean / most), top, bottom), mean, most}));
-  if (state.show_strength) strength_points(e).forEach(([part, v], index) => found.push({kind: "strength", index,
+  strength_points(e).forEach(([part, v], index) => found.push({kind: "strength", index,
     x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(v, top, bottom)}));
-  return found;
+  return found.sort((a, b) => (b.kind === state.curve) - (a.kind === state.curve));
 }
 const strength_points = s => s.strength.length >= 3 && s.strength.length <= 12 ? s.strength
   : s.strength.length < 3 ? [s.strength[0], [0.5, interpolate(s.strength, 0.5)[1]], s.strength.at(-1)]
@@ -80,11 +86,12 @@ function draw_strength(p, l, s, top, bottom) {
   const rows = s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed, duration_s(s) * k / 199)) : s.timed;
   plot(p, ...rows.map(q => [to_x(l, s.start_s + q[0]), y_strength(Math.min(1, q[3] ?? 1), top, bottom)]));
   p.setLineDash([1, 4]);
-  paint(p, {line: "ink2", width: 2});
+  paint(p, {line: "ink2", width: 2, alpha: alpha("strength")});
   p.setLineDash([]);
 }
 function draw_handles(p, l) {
   for (const h of handles(l)) {
+    if (h.kind !== state.curve) return;
     p.beginPath();
     if (h.kind === "speed") p.rect(h.x - 4, h.y - 4, 8, 8); else p.arc(h.x, h.y, 5, 0, 7);
     paint(p, {fill: "panel", line: "ink2", width: 1.75});

@@ -100,7 +100,7 @@ export const clear_marks = () => set_marks({start_s: 0, range: null});
 export function set_range(a, b) { if (Math.abs(b - a) >= LEAST_S) set_marks({range: [a, b].sort((p, q) => p - q)}); }
 
 // Returns a moment, snapped to the start, to a burst, or to an end of another stroke if it is near.
-export const snapped = (l, t, e, moved, to_bursts = true) => e.altKey || !state.snap ? t : [marks().start_s,
+export const snapped = (l, t, e, moved, to_bursts = true) => e.altKey ? t : [marks().start_s,
   ...current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [],
   ...to_bursts && state.plan?.onsets || []].find(v => Math.abs(to_x(l, v) - to_x(l, t)) <= SNAP_PX) ?? t;
 

@@ -7,7 +7,7 @@ import {look_at} from "../service/player.js";
 import {PAUSE_S, begin_live, send} from "../drawing/pointer.js";
 import {full, mini, total, shown, left, to_x, to_time, clip_box, most_scroll, scroll_to, show_time, zoom_time, CLIP, LEAST_S} from "./time_axis.js";
 import {set_marks, set_range, clear_marks, snapped} from "./time_axis.js";
-import {handles, set_strength, set_speed} from "./curves.js";
+import {handles, set_strength, set_speed, touch_curve} from "./curves.js";
 import {choose_clip, toggle_append, copy_clip, with_copies, starting_at} from "./clips.js";
 import {tell} from "../service/connection.js";
 
@@ -27,6 +27,7 @@ function lane_down(l, e) {
     return void Object.assign(held, {kind: "scroll", from: l.scroll, by: x < left(l) ? -1 : most_scroll(l) / (l.bottom - l.top) + 1});
   if (!l.mini && take) {
     if (y < l.ruler - 2) return void Object.assign(held, hold_ruler(l, x, e));
+    touch_curve_at(l, x, y);
     const handle = handles(l).find(h => Math.hypot(h.x - x, h.y - y) < REACH);
     if (handle) return void Object.assign(held, handle, {x, y, rise: (y - handle.y) / (l.curves - 20)});
     if (y >= l.ruler - 2 && y <= l.ruler + CLIP) {
@@ -42,6 +43,11 @@ function lane_down(l, e) {
     }
   }
   look_at(to_time(l, x));
+}
+// Touches the curve whose point is nearest, if a pointer is among the curves.
+function touch_curve_at(l, x, y) {
+  const far = h => Math.hypot(h.x - x, h.y - y), nearest = l.curves && y > l.height - l.curves && handles(l).reduce((a, b) => a && far(a) <= far(b) ? a : b, null);
+  touch_curve(nearest ? nearest.kind : "");
 }
 // Grasps a thing on the ruler: an end of the range, the moment, or a place where a range begins.
 function hold_ruler(l, x, e) {
@@ -64,7 +70,10 @@ function pull_end({take, stroke, index, key}, px, t) {
   if (strokes[take.strokes.length]) say(`“${strokes[index].name}” × ${strokes.length - take.strokes.length + 1}`);
 }
 function lane_moved(e) {
-  if (!held) return;
+  if (!held) {
+    const r = full.canvas.getBoundingClientRect();
+    return e.target === full.canvas ? touch_curve_at(full, e.clientX - r.left, e.clientY - r.top) : undefined;
+  }
   const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x), s = held.stroke;
   const high = (held.l.height - 8 - y) / (held.l.curves - 20) + held.rise, limited = (v, a, b) => Math.min(b, Math.max(a, v));
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
@@ -134,6 +143,7 @@ for (const l of [full, mini]) {
   listen(l.canvas, "pointerdown", e => { if (e.button === 0) lane_down(l, e); });
   listen(l.canvas, "pointermove", lane_moved);
   for (const end of ["pointerup", "pointercancel"]) listen(l.canvas, end, lane_up);
+  listen(l.canvas, "pointerleave", () => { if (!held) touch_curve(""); });
   listen(l.canvas, "wheel", e => {
     if (l.mini) return;
     e.preventDefault();
