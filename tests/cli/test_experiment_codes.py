@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from experiments import DESK, SHORT, SMALL, PersonTest, contents, read_table
+from experiments import DESK, SHORT, SMALL, PersonTest, Terminal, contents, read_table
 from harness import ROOT, main
 import studies
 
@@ -165,6 +165,19 @@ class Codes(PersonTest):
         self.assertEqual({k: v for k, v in self.session()["codes"].items() if k != "numbers"}, {"serial": {"baud": 57600}})
         self.assertIn("for a recorder: a serial port (57600 baud).", self.ok("report", "study").stdout)
 
+    def test_a_session_goes_on_without_a_trigger_box_that_has_gone(self):
+        box, port = os.openpty()
+        self.write("desk.toml", DESK + f'[sync]\ncode = {{ serial = "{os.ttyname(port)}" }}\n')
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+        process = self.start_tool(*self.args(), **pipes, text=True)
+        self.assertEqual(os.read(box, 1), b"\0")
+        os.close(port)
+        os.close(box)
+        said = process.communicate("y\n" * 3 + "1\n" * 5)[1]
+        self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(said.count("tactor: the serial port did not take a code\n"), 4)  # of an answer
+        self.assertEqual([e["event"] for e in self.events("marks")], ["stimulus", "answer"] * 2)
+
     def test_what_is_no_serial_port_is_refused_before_the_first_trial(self):
         self.write("as-it-was", "as it was")
         for path, status, says in (("/dev/ttyNONE", 3, "No such file or directory"), ("/dev/null", 2, "it is not a serial port"),
@@ -172,6 +185,10 @@ class Codes(PersonTest):
             self.write("desk.toml", DESK + f'[sync]\ncode = {{ serial = "{path}" }}\n')
             self.refused(status, *self.args(), stdin="", says=(f"desk.toml:5:8: serial: {path}: {says}",))
         self.assertEqual((self.dir / "as-it-was").read_text(), "as it was")
+        self.write("desk.toml", DESK + '[sync]\ncode = { serial = "/dev/tty" }\n')
+        t = Terminal(self, self.args())
+        self.assertEqual(t.end(), 2)
+        self.assertIn("serial: /dev/tty: it is the terminal of this session", t.said())
         self.write("desk.toml", DESK + '[sync]\ncode = { serial = "/dev/ttyS0", baud = 1 }\n')
         self.refused(2, "experiment", "short.toml", "--dry-run", says=("desk.toml:5:40: baud is 1 (one of 4800, 9600, ",))
         self.assertFalse((self.dir / "study").exists())

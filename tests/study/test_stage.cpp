@@ -626,17 +626,17 @@ TEST_CASE("nothing but a terminal is opened as a serial port")
     const std::string fifo = (files / "fifo").string();
     const std::string file = files.write("file", "as it was").string();
     REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
-    const auto refusal = [](const std::string& path) {
+    const auto why = [](const std::string& path) {
         return caught_message([&] { study::open_serial_port(path, 9600, {"a.toml", 3}); });
     };
     for (const std::string& path :
          {std::string("/dev/null"), std::string("/dev/zero"), fifo, file, std::string("/dev")})
-        CHECK(refusal(path) ==
+        CHECK(why(path) ==
               "a.toml:3: serial: " + path +
                   ": it is not a serial port (list the ports by ls /dev/serial/by-id /dev/ttyS*)");
     CHECK(files.bytes("file") == "as it was");
-    CHECK(refusal("/dev/ttyNONE") == "a.toml:3: serial: /dev/ttyNONE: No such file or directory (the ports "
-                                     "that are there: ls /dev/serial/by-id /dev/ttyS*)");
+    CHECK(why("/dev/ttyNONE") == "a.toml:3: serial: /dev/ttyNONE: No such file or directory (the ports "
+                                 "that are there: ls /dev/serial/by-id /dev/ttyS*)");
 }
 
 TEST_CASE("codes that cannot be sent are refused by name before the session")
