@@ -184,13 +184,13 @@ TEST_CASE("held strokes end with their client's connection, and others play on")
     const auto watcher = rig.client();
     rig.ok(watcher, "subscribe", {{"events", {"strokes"}}});
     const auto goes = rig.client();
-    constexpr double most_s = 600.0;
+    constexpr double long_s = 500.0;
     const auto rests = [](double seconds, const json& more) {
         json params{{"points", {{0, 0, 0}, {seconds, 0, 0}}}, {"options", {{"algorithm", "continuous"}}}};
         params.update(more);
         return params;
     };
-    const json held = rig.ok(goes, "play", rests(most_s, {{"held", true}}))["stroke"];
+    const json held = rig.ok(goes, "play", rests(long_s, {{"held", true}}))["stroke"];
     const json repeats = rig.ok(goes, "play", touch(0, 0, {{"held", true}, {"repeat", true}}))["stroke"];
     const json plays_on = rig.ok(goes, "play", rests(1.0, {{"held", false}}))["stroke"];
     rig.until([&] { return !watcher.box->stroke_messages(held).empty(); });
