@@ -37,8 +37,21 @@ struct percept_sample {
 
 /// Distance of the prediction from the target.
 struct percept_summary {
-    std::optional<double> rms_error_mm = {};     ///< none if nothing is felt
-    std::optional<double> largest_error_mm = {}; ///< none if nothing is felt
+    /// Distance at equal times from the felt place to the target. None if nothing is felt, as the others.
+    std::optional<double> rms_error_mm = {};
+    std::optional<double> largest_error_mm = {};
+    /// Time from the target to the felt path: the lag, of 0 ... longest_lag_s in steps of percept_step_s, at
+    /// which the RMS error is least; the shortest of equal ones. Before its start the target is at its start.
+    std::optional<double> lag_s = {};
+    std::optional<double> rms_at_lag_mm = {};
+    /// Parts of the error at equal times along the target's movement and across it. While the target rests,
+    /// its last movement counts, or else its first. None if it never moves.
+    std::optional<double> along_rms_mm = {};
+    std::optional<double> along_max_mm = {};
+    std::optional<double> across_rms_mm = {};
+    std::optional<double> across_max_mm = {};
+    /// Distance from the felt place to the nearest point of the path through the samples' targets.
+    std::optional<double> rms_to_path_mm = {};
     /// Coefficient of variation (standard deviation / mean) of speed. None for a movement that is too short
     /// to have a speed, or that is not felt to move.
     std::optional<double> speed_cv = {};
@@ -52,6 +65,8 @@ struct percept_summary {
 inline constexpr double percept_step_s = 0.001;
 /// Width of the centred moving average, s: 50 samples on either side of the middle one.
 inline constexpr double percept_window_s = 0.1;
+/// Longest lag of percept_summary, s.
+inline constexpr double longest_lag_s = 0.2;
 /// Longest movement that can be predicted, s.
 inline constexpr double longest_percept_s = 3600.0;
 
@@ -76,7 +91,8 @@ struct person {
 /// speed is the central difference of the average.
 ///
 /// O(samples * log n) for a stroke of n points, and for each burst O(1) in the number of bursts that overlap
-/// with it. An hour has 3,600,001 samples, 317 MB; follow_percept() and summarise() keep none.
+/// with it. An hour has 3,600,001 samples, 317 MB. follow_percept() keeps none, and summarise() only their
+/// targets, 65 MB.
 ///
 /// \throws error (bad_input) if the stroke is longer than longest_percept_s, if the plan names a tactor that
 ///         the array does not have, and if a list of `who` is neither empty nor one finite number for each
@@ -92,7 +108,7 @@ TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, c
                                const std::function<void(const percept_sample&)>& each);
 
 /// Summarises samples. Errors and speed count only while something is felt. Standard deviations are those of
-/// the population (divided by n).
+/// the population (divided by n). O(n log n) for n samples of a path that does not return to where it was.
 [[nodiscard]] TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
 
 /// Summarises all samples of predict_percept() without storing them.

@@ -2,10 +2,12 @@
 #include "percept/compare.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 
 #include "core/words.hpp"
 #include "percept/observer.hpp"
+#include "percept/path_errors.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -134,9 +137,43 @@ std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactor
     return people;
 }
 
+// Sets the errors of taps in a summary. Each tap counts once, at its onset.
+void report_taps(const std::vector<tap>& taps, const stroke& s, const target_places& targets,
+                 percept_summary& r)
+{
+    path_errors errors(targets);
+    std::array<double, lag_count> x_mm{};
+    std::array<double, lag_count> y_mm{};
+    for (const tap& t : taps) {
+        for (std::size_t k = 0; k < lag_count; ++k) {
+            const point at =
+                s.motion.position(t.onset_s - static_cast<double>(lag_count - 1 - k) * percept_step_s);
+            x_mm[k] = at.x_mm;
+            y_mm[k] = at.y_mm;
+        }
+        const auto nearest = static_cast<std::size_t>(std::lround(t.onset_s / percept_step_s));
+        errors.add(std::min(nearest, targets.size() - 1), {x_mm.data(), y_mm.data()}, t.felt);
+    }
+    errors.report(r);
+}
+
+prediction predict_low_speed(const array& a, const stroke& s, const target_places& targets, const plan& p,
+                             const low_speed_observer& o, const person& who = {})
+{
+    prediction r;
+    if (p.curve) {
+        r.unpredicted = "continuous has no bursts, and this observer feels only taps";
+        return r;
+    }
+    r.taps = predict_taps(a, s, p, o, who);
+    r.tapped = summarise(r.taps);
+    report_taps(r.taps, s, targets, r.felt);
+    return r;
+}
+
 // Predicts what each person feels of a plan, by the choice's observer.
 row_spread predict_spread(const std::vector<drawn_person>& people, const array& a, const stroke& s,
-                          const plan& p, const comparison_choice& choice)
+                          const target_places& targets, const plan& p, const comparison_choice& choice)
 {
     const bool by_taps = choice.observer.kind == observer_kind::low_speed;
     const double speeds_each =
@@ -156,76 +193,45 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
         if (by_taps) {
             low_speed_observer o = choice.observer.low_speed;
             o.sigma_mm = std::clamp(o.sigma_mm * x.sigma_factor, least_sigma_mm, most_sigma_mm);
-            const std::vector<tap> taps = predict_taps(a, s, p, o, x.who);
-            tapped.push_back(summarise(taps));
+            const prediction one = predict_low_speed(a, s, targets, p, o, x.who);
+            felt.push_back(one.felt);
+            tapped.push_back(one.tapped);
             if (choice.keep_samples)
-                draw_taps(speeds, r, taps);
+                draw_taps(speeds, r, one.taps);
         } else if (choice.keep_samples) {
             const std::vector<percept_sample> samples = predict_percept(a, s, p, x.who);
             felt.push_back(summarise(samples));
             draw_samples(speeds, r, samples);
         } else {
-            felt.push_back(summarise(a, s, p, x.who));
+            felt.push_back(predict_summary(a, targets, s.motion.duration_s(), p, x.who));
         }
         choice.after_person();
     }
-    if (by_taps) {
-        r.rms_error_mm = find_interval(tapped, &tap_summary::rms_error_mm);
-        r.largest_error_mm = find_interval(tapped, &tap_summary::largest_error_mm);
-        r.felt_length_mm = find_interval(tapped, &tap_summary::felt_length_mm);
-        r.length_ratio = find_interval(tapped, &tap_summary::length_ratio);
-    } else {
-        r.rms_error_mm = find_interval(felt, &percept_summary::rms_error_mm);
-        r.largest_error_mm = find_interval(felt, &percept_summary::largest_error_mm);
-        r.speed_cv = find_interval(felt, &percept_summary::speed_cv);
-        r.intensity_cv = find_interval(felt, &percept_summary::intensity_cv);
-    }
+    r.rms_error_mm = find_interval(felt, &percept_summary::rms_error_mm);
+    r.largest_error_mm = find_interval(felt, &percept_summary::largest_error_mm);
+    r.lag_s = find_interval(felt, &percept_summary::lag_s);
+    r.rms_at_lag_mm = find_interval(felt, &percept_summary::rms_at_lag_mm);
+    r.along_rms_mm = find_interval(felt, &percept_summary::along_rms_mm);
+    r.along_max_mm = find_interval(felt, &percept_summary::along_max_mm);
+    r.across_rms_mm = find_interval(felt, &percept_summary::across_rms_mm);
+    r.across_max_mm = find_interval(felt, &percept_summary::across_max_mm);
+    r.rms_to_path_mm = find_interval(felt, &percept_summary::rms_to_path_mm);
+    r.speed_cv = find_interval(felt, &percept_summary::speed_cv);
+    r.intensity_cv = find_interval(felt, &percept_summary::intensity_cv);
+    r.felt_length_mm = find_interval(tapped, &tap_summary::felt_length_mm);
+    r.length_ratio = find_interval(tapped, &tap_summary::length_ratio);
     for (std::size_t i = 0; i < speeds.speeds.size(); ++i)
         if (const auto range = find_interval(speeds.speeds[i], std::identity{}))
             r.speeds.push_back({speeds.times_s[i], range->low, range->high});
     return r;
 }
 
-prediction predict_low_speed(const array& a, const stroke& s, const plan& p, const low_speed_observer& o)
+prediction predict_on(const array& a, const stroke& s, const target_places& targets, const plan& p,
+                      const observer_choice& o, const std::function<void(const percept_sample&)>& each = {})
 {
-    prediction r;
-    if (p.curve) {
-        r.unpredicted = "continuous has no bursts, and this observer feels only taps";
-    } else {
-        r.taps = predict_taps(a, s, p, o);
-        r.tapped = summarise(r.taps);
-        r.felt.rms_error_mm = r.tapped.rms_error_mm;
-        r.felt.largest_error_mm = r.tapped.largest_error_mm;
-    }
-    return r;
-}
-
-// Predicts all rows at once, since they share the target.
-void predict_centroids(comparison& c, const array& a, bool keep_samples)
-{
-    std::vector<comparison_row*> rows;
-    std::vector<const plan*> plans;
-    for (comparison_row& row : c.rows)
-        if (row.plan) {
-            rows.push_back(&row);
-            plans.push_back(&*row.plan);
-        }
-    try {
-        const std::vector<percept_summary> felt = predict_summaries(a, c.target, plans);
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            rows[i]->felt = felt[i];
-            if (keep_samples)
-                rows[i]->samples = predict_percept(a, c.target, *plans[i]);
-        }
-    } catch (const error& e) {
-        // The target is too long for any plan.
-        if (e.kind() != error_kind::bad_input)
-            throw;
-        for (comparison_row* row : rows) {
-            row->plan.reset();
-            row->refused = e;
-        }
-    }
+    if (o.kind == observer_kind::low_speed)
+        return predict_low_speed(a, s, targets, p, o.low_speed);
+    return {.felt = predict_summary(a, targets, s.motion.duration_s(), p, {}, each)};
 }
 
 } // namespace
@@ -241,15 +247,18 @@ std::string prediction_note(const observer_choice& o)
 prediction predict(const array& a, const stroke& s, const plan& p, const observer_choice& o,
                    const std::function<void(const percept_sample&)>& each)
 {
-    if (o.kind == observer_kind::low_speed)
-        return predict_low_speed(a, s, p, o.low_speed);
-    const plan* const one = &p;
-    return {.felt = predict_summaries(a, s, {&one, 1}, each).front()};
+    return predict_on(a, s, target_places(s.motion), p, o, each);
 }
 
 bool comparison::playable() const
 {
     return std::any_of(rows.begin(), rows.end(), [](const comparison_row& r) { return r.plan.has_value(); });
+}
+
+bool comparison::predicted() const
+{
+    return std::any_of(rows.begin(), rows.end(),
+                       [](const comparison_row& r) { return r.plan.has_value() && r.unpredicted.empty(); });
 }
 
 comparison compare(const stroke& target, const array& a, const layout& faces, const plan_options& options,
@@ -262,6 +271,7 @@ comparison compare(const stroke& target, const array& a, const layout& faces, co
     s.choices.faces.reset();
     comparison c{s, choice.observer, choice.compensate, choice.spread, options.faces};
     const std::vector<drawn_person> people = draw_people(choice.spread, a.tactors.size());
+    std::optional<target_places> targets; // of all rows; a target may be too long for any
     for (const algorithm_kind algorithm : choice.algorithms)
         for (const phantom_kind phantom : choice.phantoms) {
             comparison_row row{{}, algorithm, phantom};
@@ -272,11 +282,13 @@ comparison compare(const stroke& target, const array& a, const layout& faces, co
                 row.plan = choice.compensate
                                ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).plan
                                : make_plan(a, faces, s, o);
-                if (choice.observer.kind == observer_kind::low_speed)
-                    static_cast<prediction&>(row) =
-                        predict_low_speed(a, s, *row.plan, choice.observer.low_speed);
+                if (!targets)
+                    targets.emplace(s.motion);
+                static_cast<prediction&>(row) = predict_on(a, s, *targets, *row.plan, choice.observer);
+                if (choice.keep_samples && choice.observer.kind == observer_kind::centroid)
+                    row.samples = predict_percept(a, s, *row.plan);
                 if (!people.empty() && row.unpredicted.empty())
-                    row.spread = predict_spread(people, a, s, *row.plan, choice);
+                    row.spread = predict_spread(people, a, s, *targets, *row.plan, choice);
             } catch (const error& e) {
                 if (e.kind() != error_kind::bad_input)
                     throw;
@@ -285,8 +297,6 @@ comparison compare(const stroke& target, const array& a, const layout& faces, co
             }
             c.rows.push_back(std::move(row));
         }
-    if (choice.observer.kind == observer_kind::centroid)
-        predict_centroids(c, a, choice.keep_samples);
     return c;
 }
 

@@ -47,6 +47,13 @@ struct speed_range {
 struct row_spread {
     std::optional<interval> rms_error_mm = {};
     std::optional<interval> largest_error_mm = {};
+    std::optional<interval> lag_s = {};
+    std::optional<interval> rms_at_lag_mm = {};
+    std::optional<interval> along_rms_mm = {};
+    std::optional<interval> along_max_mm = {};
+    std::optional<interval> across_rms_mm = {};
+    std::optional<interval> across_max_mm = {};
+    std::optional<interval> rms_to_path_mm = {};
     std::optional<interval> speed_cv = {};
     std::optional<interval> intensity_cv = {};
     std::optional<interval> felt_length_mm = {};
@@ -66,7 +73,7 @@ std::string prediction_note(const observer_choice& o);
 
 /// Prediction of how a plan feels.
 struct prediction {
-    percept_summary felt = {};    ///< of the centroid observer; low_speed sets only the errors
+    percept_summary felt = {};    ///< of the centroid observer; low_speed sets only the errors, at the bursts
     tap_summary tapped = {};      ///< by low_speed
     std::vector<tap> taps = {};   ///< by low_speed
     std::string unpredicted = {}; ///< reason why low_speed has no prediction; empty: it has one
@@ -97,6 +104,8 @@ struct comparison {
 
     /// Returns true if any algorithm can play the stroke.
     bool playable() const;
+    /// Returns true if any row has figures.
+    bool predicted() const;
 };
 
 /// Algorithms, models and observer of a comparison.

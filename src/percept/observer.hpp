@@ -3,8 +3,8 @@
 /// Parts of predictions that several files use.
 #pragma once
 
+#include <cstddef>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include <tactor/percept.hpp>
@@ -22,11 +22,17 @@ std::vector<double> person_gains(const array& a, const person& who);
 /// Refuses a plan that drives a tactor which the array does not have. \throws error (bad_input).
 [[noreturn]] void refuse_tactor(const array& a, unsigned tactor);
 
-/// Returns summarise() of predict_percept() for each plan, equal to the last bit. Stores no samples, and
-/// looks the target up once for all plans. Passes the samples of each plan to `each`, without their speeds.
+/// Returns the number of samples of a movement: at 0, 1, 2 ... ms.
+/// \throws error (bad_input) if it is longer than longest_percept_s.
+std::size_t count_percept_samples(double duration_s);
+
+class target_places;
+
+/// Returns summarise() of predict_percept(), equal to the last bit. Stores no samples. Plans of one stroke
+/// share `targets`, its places. Passes the samples to `each`, without speeds and target intensities.
 /// \throws error (bad_input) as predict_percept().
-std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
-                                               std::span<const plan* const> plans,
-                                               const std::function<void(const percept_sample&)>& each = {});
+percept_summary predict_summary(const array& a, const target_places& targets, double duration_s,
+                                const plan& p, const person& who = {},
+                                const std::function<void(const percept_sample&)>& each = {});
 
 } // namespace tactor::detail

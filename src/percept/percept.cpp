@@ -16,6 +16,7 @@
 #include "core/path/shape.hpp"
 #include "core/words.hpp"
 #include "percept/observer.hpp"
+#include "percept/path_errors.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -161,20 +162,21 @@ private:
 };
 
 } // namespace
-} // namespace tactor::detail
 
-namespace tactor {
-inline namespace v0 {
-namespace {
-
-std::size_t count_samples(double duration_s)
+std::size_t count_percept_samples(double duration_s)
 {
     if (!(duration_s <= longest_percept_s))
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("lasts {}, too long for a prediction", seconds_text(duration_s)),
                     fmt::format("at most {} s", longest_percept_s));
-    return static_cast<std::size_t>((duration_s + detail::same_time_s) / percept_step_s) + 1;
+    return static_cast<std::size_t>((duration_s + same_time_s) / percept_step_s) + 1;
 }
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+namespace {
 
 percept_sample target_at(const stroke& s, std::size_t i)
 {
@@ -263,74 +265,46 @@ private:
     double squares_ = 0.0;
 };
 
-/// Distance of a prediction from its target, summed sample by sample.
+/// A percept, summed sample by sample.
 class summing {
 public:
-    /// Adds a sample except its speed, which may come later. Speeds are added in their own order.
+    /// `targets` are those of the samples. They must live as long.
+    explicit summing(const detail::target_places& targets) : errors_(targets) {}
+
+    /// Adds the next sample except its speed, which may come later. Speeds are added in their own order.
     void add(const percept_sample& x)
     {
-        ++count_;
         intensity_.add(x.intensity);
-        shared_ += x.shared ? 1.0 : 0.0;
-        if (!x.felt)
-            return;
-        ++felt_;
-        const double off = detail::length_mm(*x.felt, x.target);
-        squares_ += off * off;
-        largest_ = std::max(largest_, off);
+        shared_ += x.shared ? 1 : 0;
+        if (x.felt) {
+            ++felt_;
+            errors_.add(count_, *x.felt);
+        }
+        ++count_;
     }
 
     /// Adds the speed of a sample at which something is felt.
     void add_speed(double mm_s) { speed_.add(mm_s); }
 
-    /// Adds a sample with its speed, if known.
-    void add_all(const percept_sample& x)
-    {
-        add(x);
-        if (x.felt && x.speed_mm_s)
-            add_speed(*x.speed_mm_s);
-    }
-
     percept_summary result() const
     {
+        const auto count = static_cast<double>(count_);
         percept_summary r;
-        if (!(count_ > 0.0))
-            return r;
-        if (felt_ > 0.0) {
-            r.rms_error_mm = std::sqrt(squares_ / felt_);
-            r.largest_error_mm = largest_;
-        }
+        errors_.report(r);
         r.speed_cv = speed_.coefficient_of_variation();
         r.intensity_cv = intensity_.coefficient_of_variation();
-        r.silent_share = (count_ - felt_) / count_;
-        r.shared_share = shared_ / count_;
+        r.silent_share = static_cast<double>(count_ - felt_) / count;
+        r.shared_share = static_cast<double>(shared_) / count;
         return r;
     }
 
 private:
+    detail::path_errors errors_;
     moments speed_;
     moments intensity_;
-    double count_ = 0.0;
-    double felt_ = 0.0;
-    double shared_ = 0.0;
-    double squares_ = 0.0;
-    double largest_ = 0.0;
-};
-
-/// Sums of what is felt of a plan, sample by sample.
-struct followed_plan {
-    detail::sounding now;
-    running_speed speed = {};
-    summing sums = {};
-
-    /// Fills in what is felt at a time, and adds it.
-    void add(percept_sample& x)
-    {
-        now.at(x.t_s, x);
-        sums.add(x);
-        if (const auto v = speed.next(x.felt); v && speed.was_felt())
-            sums.add_speed(*v);
-    }
+    std::size_t count_ = 0;
+    std::size_t felt_ = 0;
+    std::size_t shared_ = 0;
 };
 
 } // namespace
@@ -339,7 +313,7 @@ void follow_percept(const array& a, const stroke& s, const plan& p, const person
                     const std::function<void(const percept_sample&)>& each)
 {
     constexpr std::size_t delay = running_speed::delay;
-    const std::size_t count = count_samples(s.motion.duration_s());
+    const std::size_t count = detail::count_percept_samples(s.motion.duration_s());
     const array felt = detail::felt_array(a, who);
     detail::sounding now(felt, p, s.motion.duration_s(), detail::person_gains(a, who));
     running_speed speed;
@@ -360,23 +334,27 @@ void follow_percept(const array& a, const stroke& s, const plan& p, const person
 std::vector<percept_sample> predict_percept(const array& a, const stroke& s, const plan& p, const person& who)
 {
     std::vector<percept_sample> samples;
-    samples.reserve(count_samples(s.motion.duration_s()));
+    samples.reserve(detail::count_percept_samples(s.motion.duration_s()));
     follow_percept(a, s, p, who, [&](const percept_sample& x) { samples.push_back(x); });
     return samples;
 }
 
 percept_summary summarise(const array& a, const stroke& s, const plan& p, const person& who)
 {
-    summing sums;
-    follow_percept(a, s, p, who, [&](const percept_sample& x) { sums.add_all(x); });
-    return sums.result();
+    return detail::predict_summary(a, detail::target_places(s.motion), s.motion.duration_s(), p, who);
 }
 
 percept_summary summarise(const std::vector<percept_sample>& samples)
 {
-    summing sums;
-    for (const percept_sample& x : samples)
-        sums.add_all(x);
+    if (samples.empty())
+        return {};
+    const detail::target_places targets(samples);
+    summing sums(targets);
+    for (const percept_sample& x : samples) {
+        sums.add(x);
+        if (x.felt && x.speed_mm_s)
+            sums.add_speed(*x.speed_mm_s);
+    }
     return sums.result();
 }
 
@@ -385,27 +363,24 @@ percept_summary summarise(const std::vector<percept_sample>& samples)
 
 namespace tactor::detail {
 
-std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
-                                               std::span<const plan* const> plans,
-                                               const std::function<void(const percept_sample&)>& each)
+percept_summary predict_summary(const array& a, const target_places& targets, double duration_s,
+                                const plan& p, const person& who,
+                                const std::function<void(const percept_sample&)>& each)
 {
-    const std::size_t count = count_samples(s.motion.duration_s());
-    std::vector<followed_plan> all;
-    all.reserve(plans.size());
-    for (const plan* p : plans)
-        all.push_back({detail::sounding(a, *p, s.motion.duration_s(), {})});
-    for (std::size_t i = 0; i < count; ++i) {
-        percept_sample x = target_at(s, i);
-        for (followed_plan& f : all) {
-            f.add(x);
-            if (each)
-                each(x);
-        }
+    const array felt_at = felt_array(a, who);
+    sounding now(felt_at, p, duration_s, person_gains(a, who));
+    running_speed speed;
+    summing sums(targets);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        percept_sample x{.t_s = static_cast<double>(i) * percept_step_s, .target = targets.at(i)};
+        now.at(x.t_s, x);
+        sums.add(x);
+        if (const auto v = speed.next(x.felt); v && speed.was_felt())
+            sums.add_speed(*v);
+        if (each)
+            each(x);
     }
-    std::vector<percept_summary> summaries;
-    for (const followed_plan& f : all)
-        summaries.push_back(f.sums.result());
-    return summaries;
+    return sums.result();
 }
 
 } // namespace tactor::detail

@@ -36,7 +36,7 @@ HAS_NOT = {
     "to_string all_values from_string": "closed sets are str",
     "error_category make_error_code": "exceptions have classes",
     "distance_mm": "math.dist",
-    "same_place_mm edge_tolerance_mm continuous_step_s percept_step_s percept_window_s longest_percept_s default_speed_mm_s no_limit": "constants of the model, in the documents",
+    "same_place_mm edge_tolerance_mm continuous_step_s percept_step_s percept_window_s longest_lag_s longest_percept_s default_speed_mm_s no_limit": "constants of the model, in the documents",
     "describe least_sigma_mm most_sigma_mm least_sigma_v_mm_s most_sigma_v_mm_s": "words and bounds, which messages say",
     "felt_places compensate compensated_places": "compare(observer=...) and plan(compensate=...) ask them of plans",
     "burst_ramp_s": "in the record of each burst: Plan.to_dict()",

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Distance of felt places from a target: at equal times, along and across its path, at a lag, and from the
+/// path as a whole.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <tactor/path.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/stroke.hpp>
+
+#include "core/path/shape.hpp"
+
+namespace tactor::detail {
+
+/// Number of lags that are tried: 0, 1, 2 ... 200 ms.
+inline constexpr std::size_t lag_count = 201;
+static_assert(longest_lag_s == (lag_count - 1) * percept_step_s);
+
+/// Places of a target at a time and at the 200 ms before it. The last is that of the time itself.
+struct target_window {
+    const double* x_mm; ///< lag_count values, ascending in time
+    const double* y_mm;
+};
+
+/// Places of a target at 0, 1, 2 ... ms, and the path of straight pieces through them.
+class target_places {
+public:
+    /// \throws error (bad_input) if the movement is longer than longest_percept_s.
+    explicit target_places(const trajectory& m);
+    /// Takes the targets of samples, at least one.
+    explicit target_places(const std::vector<percept_sample>& samples);
+
+    std::size_t size() const noexcept { return x_mm_.size() - (lag_count - 1); }
+    /// Returns the place at i ms.
+    point at(std::size_t i) const noexcept { return {x_mm_[i + lag_count - 1], y_mm_[i + lag_count - 1]}; }
+    /// Returns the places at i ms and before. Before its start the target is at its start.
+    target_window window(std::size_t i) const noexcept { return {&x_mm_[i], &y_mm_[i]}; }
+    /// Returns the unit vector of the movement at i ms; none while the target rests.
+    std::optional<point> direction(std::size_t i) const noexcept;
+    /// Returns the distance from the nearest point of the path. `near` is any point of the path: the search
+    /// is the shorter, the nearer it is. O(log n) for places near a path that does not return to them.
+    double off_path_mm(point p, point near) const noexcept;
+
+private:
+    static constexpr std::size_t fan = 16;
+
+    void add(point p);
+    void make_boxes();
+    void search(std::size_t level, std::size_t i, point p, double& square) const noexcept;
+
+    std::vector<double> x_mm_; ///< after lag_count - 1 copies of the first
+    std::vector<double> y_mm_;
+    /// Boxes round 16 pieces each, then round 16 of these boxes each, up to a single one.
+    std::vector<std::vector<box>> boxes_;
+};
+
+/// Errors of felt places, summed place by place.
+class path_errors {
+public:
+    /// `targets` must live as long.
+    explicit path_errors(const target_places& targets) : targets_(targets) {}
+
+    /// Adds what is felt at i ms. Times must ascend, here and below.
+    void add(std::size_t i, point felt) { add(i, targets_.window(i), felt); }
+    /// Adds what is felt at a time of which `window` has the places. The direction is that at i ms.
+    void add(std::size_t i, target_window window, point felt);
+
+    /// Sets the errors of a summary; none if nothing is felt.
+    void report(percept_summary& r) const;
+
+private:
+    std::optional<point> last_direction(std::size_t i);
+
+    const target_places& targets_;
+    std::optional<point> direction_;         ///< that of the last movement, or of the first before it begins
+    std::size_t next_ = 0;                   ///< the first time whose direction was not looked at
+    std::array<double, lag_count> lagged_{}; ///< sums of squares, by place in the window
+    double felt_ = 0.0;
+    double largest_ = 0.0;
+    double along_ = 0.0; ///< sums of squares
+    double across_ = 0.0;
+    double off_path_ = 0.0;
+    double along_max_ = 0.0;
+    double across_max_ = 0.0;
+    std::optional<point> last_felt_; ///< its distance from the path is known
+    double last_off_mm_ = 0.0;
+};
+
+} // namespace tactor::detail
