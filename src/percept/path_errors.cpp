@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
 
 #include "percept/observer.hpp"
 
@@ -53,31 +56,53 @@ void target_places::add(point p)
     y_mm_.insert(y_mm_.end(), times, p.y_mm);
 }
 
+// Takes all pieces. Of a long path, which may go round and round, takes the first of those that begin in one
+// square of 0.01 mm and end in one.
+void target_places::choose_pieces()
+{
+    const std::size_t all = std::max<std::size_t>(size() - 1, 1);
+    if (all <= most_pieces) {
+        pieces_.resize(all);
+        std::iota(pieces_.begin(), pieces_.end(), 0U);
+        return;
+    }
+    constexpr double squares_per_mm = 100.0; // with coordinates of up to 1e6 mm
+    const auto number = [](double mm) { return static_cast<std::int32_t>(std::floor(mm * squares_per_mm)); };
+    std::vector<std::pair<std::array<std::int32_t, 4>, std::uint32_t>> found;
+    found.reserve(all);
+    for (std::size_t i = 0; i < all; ++i) {
+        const point a = at(i);
+        const point b = piece_end(i);
+        found.push_back({{number(a.x_mm), number(a.y_mm), number(b.x_mm), number(b.y_mm)},
+                         static_cast<std::uint32_t>(i)});
+    }
+    std::sort(found.begin(), found.end());
+    for (std::size_t i = 0; i < all; ++i)
+        if (i == 0 || found[i].first != found[i - 1].first)
+            pieces_.push_back(found[i].second);
+    std::sort(pieces_.begin(), pieces_.end());
+}
+
 void target_places::make_boxes()
 {
-    std::vector<box> level;
-    // Neighbouring boxes share the place between them.
-    for (std::size_t first = 0; first == 0 || first + 1 < size(); first += fan) {
-        box b{at(first), at(first)};
-        for (std::size_t i = first; i < std::min(first + fan + 1, size()); ++i) {
-            b.low = {std::min(b.low.x_mm, at(i).x_mm), std::min(b.low.y_mm, at(i).y_mm)};
-            b.high = {std::max(b.high.x_mm, at(i).x_mm), std::max(b.high.y_mm, at(i).y_mm)};
-        }
-        level.push_back(b);
-    }
-    boxes_.push_back(std::move(level));
-    while (boxes_.back().size() > 1) {
-        std::vector<box> above;
-        for (std::size_t i = 0; i < boxes_.back().size(); ++i) {
-            const box& b = boxes_.back()[i];
+    choose_pieces();
+    const auto joined = [](const box& a, const box& b) {
+        return box{{std::min(a.low.x_mm, b.low.x_mm), std::min(a.low.y_mm, b.low.y_mm)},
+                   {std::max(a.high.x_mm, b.high.x_mm), std::max(a.high.y_mm, b.high.y_mm)}};
+    };
+    std::vector<box> below;
+    for (const std::uint32_t i : pieces_)
+        below.push_back(box_around({at(i), piece_end(i)}));
+    do {
+        std::vector<box> level;
+        for (std::size_t i = 0; i < below.size(); ++i)
             if (i % fan == 0)
-                above.push_back(b);
-            box& all = above.back();
-            all.low = {std::min(all.low.x_mm, b.low.x_mm), std::min(all.low.y_mm, b.low.y_mm)};
-            all.high = {std::max(all.high.x_mm, b.high.x_mm), std::max(all.high.y_mm, b.high.y_mm)};
-        }
-        boxes_.push_back(std::move(above));
-    }
+                level.push_back(below[i]);
+            else
+                level.back() = joined(level.back(), below[i]);
+        boxes_.push_back(level);
+        below = std::move(level);
+    } while (below.size() > 1);
 }
 
 std::optional<point> target_places::direction(std::size_t i) const noexcept
@@ -98,14 +123,15 @@ void target_places::search(std::size_t level, std::size_t i, point p, double& sq
             search(level - 1, k, p, square);
         return;
     }
-    for (std::size_t k = fan * i; k < std::min(fan * (i + 1), size() - 1); ++k)
-        square = std::min(square, square_to_piece(p, at(k), at(k + 1)));
+    for (std::size_t k = fan * i; k < std::min(fan * (i + 1), pieces_.size()); ++k)
+        square = std::min(square, square_to_piece(p, at(pieces_[k]), piece_end(pieces_[k])));
 }
 
 double target_places::off_path_mm(point p, point near) const noexcept
 {
     double square = dot(p - near, p - near);
-    search(boxes_.size() - 1, 0, p, square);
+    if (square > same_place_mm * same_place_mm)
+        search(boxes_.size() - 1, 0, p, square);
     return std::sqrt(square);
 }
 

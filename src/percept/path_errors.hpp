@@ -4,8 +4,10 @@
 /// path as a whole.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -42,19 +44,23 @@ public:
     target_window window(std::size_t i) const noexcept { return {&x_mm_[i], &y_mm_[i]}; }
     /// Returns the unit vector of the movement at i ms; none while the target rests.
     std::optional<point> direction(std::size_t i) const noexcept;
-    /// Returns the distance from the nearest point of the path. `near` is any point of the path: the search
-    /// is the shorter, the nearer it is. O(log n) for places near a path that does not return to them.
+    /// Returns the distance from the nearest point of the path, for more than most_pieces accurate to
+    /// 0.015 mm. `near` is any point of the path: the search is the shorter, the nearer it is.
     double off_path_mm(point p, point near) const noexcept;
 
 private:
     static constexpr std::size_t fan = 16;
+    static constexpr std::size_t most_pieces = 10'000;
 
     void add(point p);
+    void choose_pieces();
     void make_boxes();
+    point piece_end(std::size_t piece) const noexcept { return at(std::min(piece + 1, size() - 1)); }
     void search(std::size_t level, std::size_t i, point p, double& square) const noexcept;
 
     std::vector<double> x_mm_; ///< after lag_count - 1 copies of the first
     std::vector<double> y_mm_;
+    std::vector<std::uint32_t> pieces_; ///< places at which the pieces begin that are searched; at least one
     /// Boxes round 16 pieces each, then round 16 of these boxes each, up to a single one.
     std::vector<std::vector<box>> boxes_;
 };

@@ -170,6 +170,16 @@ TEST_CASE("lag and distance from the path by brute force")
     }
 }
 
+TEST_CASE("a path that goes round a hundred times is one circle")
+{
+    // 140.3 ms for each turn: no two turns have the same places.
+    const auto target = [](int i) { return on_circle(16.0, 2.0 * pi * i / 140.3); };
+    const percept_summary r = summarise(
+        make_samples(14000, target, [](int i) { return on_circle(16.0 + 0.3 * (i % 3 - 1), 0.7 * i); }));
+    // 0.3 mm inside, on it, 0.3 mm outside. Straight pieces are up to 0.004 mm inside of the circle.
+    CHECK(*r.rms_to_path_mm == doctest::Approx(0.3 * std::sqrt(2.0 / 3.0)).epsilon(0.02));
+}
+
 TEST_CASE("while the target rests, its last movement is the direction, and before it moves its first")
 {
     // Rests at (0, 0), goes right by 10 mm, rests, goes down by 10 mm, rests. All felt 1 mm right and 2 mm
