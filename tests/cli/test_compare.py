@@ -8,6 +8,7 @@ from pictures import NS, PlotTest, Svg, number
 
 ALGORITHMS = ("park2016", "tactile-brush", "continuous")
 CENTROID = ("rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv", "silent_share", "shared_share")
+PLACE = ("rms_to_path_mm", "rms_error_mm", "largest_error_mm", "along_rms_mm", "along_max_mm", "across_rms_mm", "across_max_mm")
 LOW_SPEED = ("rms_error_mm", "largest_error_mm", "felt_length_mm", "target_length_mm", "length_ratio")
 ASK = ("--observer", "low-speed")
 MOVE = ("--compensate", "low-speed")
@@ -26,6 +27,10 @@ FIGURES = (
 )
 
 
+def rms(values):
+    return math.sqrt(sum(v * v for v in values) / len(values))
+
+
 class CompareTest(PlotTest):
     def compare(self, *args):
         return json.loads(self.ok("compare", *args, "--format", "json").stdout)
@@ -37,6 +42,12 @@ class CompareTest(PlotTest):
     def said(self, svg):
         return " ".join(svg.texts())
 
+    def tables(self, *args):
+        """Returns the rows of the table of places and of that of times, each a list of words, and the text."""
+        text = self.ok("compare", *args).stdout
+        place, time = (part.splitlines() for part in text.split("\n\n")[1:3])
+        return [[line.split() for line in lines if line.split(" ")[0] in ALGORITHMS] for lines in (place, time)], text
+
 
 class Table(CompareTest):
     def test_figures_of_each_algorithm_and_observer(self):
@@ -46,6 +57,35 @@ class Table(CompareTest):
                 self.assertEqual(result["algorithm"], algorithm)
                 for name, value in zip(LOW_SPEED if "observer" in args else CENTROID, wanted, strict=True):
                     self.assertAlmostEqual(result[name], value, delta=1e-6, msg=f"{args} {algorithm} {name}")
+
+    def test_errors_at_a_lag_and_from_the_path(self):
+        wanted = {("park2016", "barycentric"): (1.43, 0.72, 0.0, 0.035), ("park2016", "inverse-distance"): (2.09, 1.69, 0.22, 0.035),
+                  ("tactile-brush", "inverse-distance"): (6.72, 6.72, 4.02, 0.0)}
+        rows = {(r["algorithm"], r["phantom"]): r for r in self.compare("park2016-1", "--phantoms", "inverse-distance,barycentric")["results"]}
+        for row, (*errors, lag_s) in wanted.items():
+            for name, value in zip(("rms_error_mm", "rms_at_lag_mm", "rms_to_path_mm"), errors, strict=True):
+                self.assertAlmostEqual(rows[row][name], value, delta=0.02, msg=f"{row} {name}")
+            self.assertAlmostEqual(rows[row]["lag_s"], lag_s, 9)
+        for r in rows.values():
+            self.assertAlmostEqual(math.hypot(r["along_rms_mm"], r["across_rms_mm"]), r["rms_error_mm"], 9)
+            self.assertLessEqual(r["rms_at_lag_mm"], r["rms_error_mm"])
+
+    def test_errors_of_taps_count_at_their_onsets(self):
+        r = self.compare("park2016-1", *ASK)["results"][0]
+
+        def target(t):  # half a circle round (20, 20), against the clock
+            a = math.pi * max(0.0, t) / 1.4
+            return 20 - 16 * math.sin(a), 20 - 16 * math.cos(a)
+
+        taps = [(t["onset_s"], (t["felt_x_mm"], t["felt_y_mm"])) for t in r["taps"]]
+        lags = [rms([math.dist(felt, target(t - by / 1000)) for t, felt in taps]) for by in range(201)]
+        self.assertAlmostEqual(r["rms_at_lag_mm"], min(lags), 6)
+        self.assertAlmostEqual(r["lag_s"], lags.index(min(lags)) / 1000, 9)
+        off = [abs(math.dist(felt, (20, 20)) - 16) if felt[0] <= 20 else min(math.dist(felt, (20, y)) for y in (4, 36)) for _, felt in taps]
+        self.assertAlmostEqual(r["rms_to_path_mm"], rms(off), 3)
+        parts = [(math.pi * t / 1.4, felt[0] - target(t)[0], felt[1] - target(t)[1]) for t, felt in taps]
+        self.assertAlmostEqual(r["along_rms_mm"], rms([y * math.sin(a) - x * math.cos(a) for a, x, y in parts]), 2)
+        self.assertAlmostEqual(r["across_rms_mm"], rms([y * math.cos(a) + x * math.sin(a) for a, x, y in parts]), 2)
 
     def test_every_chosen_algorithm_with_every_chosen_phantom(self):
         c = self.compare("park2016-1", "--algorithms", "continuous,park2016", "--phantoms", "barycentric,linear")
@@ -63,12 +103,12 @@ class Table(CompareTest):
 
     def test_text_holds_the_same_figures(self):
         args = ("park2016-3", "--phantoms", "inverse-distance,gaussian")
-        text = self.ok("compare", *args).stdout
-        rows = [line.split() for line in text.splitlines() if line.split(" ")[0] in ALGORITHMS]
-        for row, result in zip(rows, self.compare(*args)["results"], strict=True):
-            self.assertEqual(row[:2], [result["algorithm"], result["phantom"]])
-            self.assertEqual(row[3:], [f"{result[f]:.3f}" for f in CENTROID[:4]] + [f"{100 * result[f]:.1f}" for f in CENTROID[4:]])
-            self.assertEqual(row[2], "-" if result["bursts"] is None else str(result["bursts"]))
+        (places, times), text = self.tables(*args)
+        for place, time, result in zip(places, times, self.compare(*args)["results"], strict=True):
+            self.assertEqual(place, [result["algorithm"], result["phantom"], *(f"{result[f]:.3f}" for f in PLACE)])
+            self.assertEqual(time, [result["algorithm"], result["phantom"], "-" if result["bursts"] is None else str(result["bursts"]),
+                                    f"{1000 * result['lag_s']:.0f}", *(f"{result[f]:.3f}" for f in ("rms_at_lag_mm", *CENTROID[2:4])),
+                                    *(f"{100 * result[f]:.1f}" for f in CENTROID[4:])])
         self.assertTrue(all(len(line) <= 80 for line in text.splitlines() if line[:4] in ("park", "tact", "cont")))
         self.assertEqual((text.count("not a measurement"), text.count("warning: tactile-brush")), (1, 1))
 
@@ -225,7 +265,7 @@ class Spread(CompareTest):
         self.assertNotEqual(wide, interval("--spread-seed", "2"))
 
     def test_text_and_picture_hold_the_same_and_state_the_ranges(self):
-        for observer, figures in (("centroid", CENTROID[:4]), ("low-speed", (*LOW_SPEED[:3], "length_ratio"))):
+        for observer, figures in (("centroid", CENTROID[2:4]), ("low-speed", ("felt_length_mm", "length_ratio"))):
             args = ("park2016-1", "--observer", observer, "--spread", "50")
             spreads = [r["spread"] for r in self.compare(*args)["results"] if r["spread"]]
             text, svg = self.ok("compare", *args).stdout, self.picture(*args)
@@ -234,10 +274,12 @@ class Spread(CompareTest):
                     self.assertIn(word, each)
             self.assertEqual("sigma from 1/2 to 2" in text, observer == "low-speed")
             lines = [line.split() for line in text.splitlines() if line.lstrip().startswith(("5 %", "95 %"))]
-            self.assertEqual(len(lines), 2 * len(spreads))
+            self.assertEqual(len(lines), 4 * len(spreads))
             for i, spread in enumerate(spreads):
                 for end in (0, 1):
-                    self.assertEqual(lines[2 * i + end][2:], [f"{spread[f][end]:.3f}" for f in figures])
+                    self.assertEqual(lines[2 * i + end][2:], [f"{spread[f][end]:.3f}" for f in PLACE])
+                    self.assertEqual(lines[2 * (len(spreads) + i) + end][2:], [f"{1000 * spread['lag_s'][end]:.1f}",
+                                     *(f"{spread[f][end]:.3f}" for f in ("rms_at_lag_mm", *figures))])
             bands, chart = svg.all("band"), svg.all("chart")[0]
             self.assertEqual((len(bands), len(svg.all("person"))), (len(spreads), 40 * len(spreads)))
             heights = [float(p.split(",")[1]) for p in bands[0].get("points").split()]

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -107,49 +111,115 @@ std::string names(const comparison_row& r)
     return fmt::format("{:<13} {:<16}", to_string(r.algorithm), to_string(r.phantom));
 }
 
-std::string one_end(const std::optional<interval>& v, double interval::*end)
+// A column of a table: its heading, and its figure for a row and for the ends of a spread.
+struct column {
+    std::string_view title;
+    std::function<std::string(const comparison_row&)> text;
+    std::optional<interval> row_spread::*spread = nullptr;
+    double factor = 1.0; // of the ends
+    int digits = 3;      // of the ends
+};
+
+// A column of lengths or ratios.
+column plain_column(std::string_view title, std::optional<double> percept_summary::*value,
+                    std::optional<interval> row_spread::*spread)
 {
-    return figure(v ? std::optional(*v.*end) : std::nullopt);
+    return {title, [value](const comparison_row& r) { return figure(r.felt.*value); }, spread};
 }
 
-// Under a row, in its columns.
-void print_spread(const comparison_row& r, bool by_taps)
+std::vector<column> place_columns()
+{
+    using felt = percept_summary;
+    using ends = row_spread;
+    return {plain_column("path", &felt::rms_to_path_mm, &ends::rms_to_path_mm),
+            plain_column("RMS", &felt::rms_error_mm, &ends::rms_error_mm),
+            plain_column("max", &felt::largest_error_mm, &ends::largest_error_mm),
+            plain_column("RMS", &felt::along_rms_mm, &ends::along_rms_mm),
+            plain_column("max", &felt::along_max_mm, &ends::along_max_mm),
+            plain_column("RMS", &felt::across_rms_mm, &ends::across_rms_mm),
+            plain_column("max", &felt::across_max_mm, &ends::across_max_mm)};
+}
+
+std::vector<column> time_columns(bool by_taps)
+{
+    using felt = percept_summary;
+    using ends = row_spread;
+    constexpr double ms = 1000.0;
+    std::vector<column> all{{"bursts",
+                             [](const comparison_row& r) {
+                                 return r.plan->curve ? "-" : fmt::format("{}", r.plan->bursts.size());
+                             }},
+                            {"ms",
+                             [](const comparison_row& r) {
+                                 return r.felt.lag_s ? fmt::format("{:.0f}", ms * *r.felt.lag_s) : "-";
+                             },
+                             &ends::lag_s, ms, 1},
+                            plain_column("lag", &felt::rms_at_lag_mm, &ends::rms_at_lag_mm)};
+    const auto percent = [](double felt::*share) {
+        return [share](const comparison_row& r) { return fmt::format("{:.1f}", 100.0 * r.felt.*share); };
+    };
+    if (by_taps) {
+        all.push_back({"felt mm", [](const comparison_row& r) { return figure(r.tapped.felt_length_mm); },
+                       &ends::felt_length_mm});
+        all.push_back(
+            {"target mm", [](const comparison_row& r) { return figure(r.tapped.target_length_mm); }});
+        all.push_back({"ratio", [](const comparison_row& r) { return figure(r.tapped.length_ratio); },
+                       &ends::length_ratio});
+    } else {
+        all.push_back(plain_column("speed", &felt::speed_cv, &ends::speed_cv));
+        all.push_back(plain_column("intens.", &felt::intensity_cv, &ends::intensity_cv));
+        all.push_back({"silent", percent(&felt::silent_share)});
+        all.push_back({"shared", percent(&felt::shared_share)});
+    }
+    return all;
+}
+
+// Prints a line of a table, with the text of each column.
+template <class Text>
+void print_line(std::string_view begins, const std::vector<column>& columns, Text text)
+{
+    constexpr std::size_t least_width = 6;
+    std::string line = fmt::format("{:<30}", begins);
+    for (const column& c : columns)
+        line += fmt::format(" {:>{}}", text(c), std::max(least_width, c.title.size()));
+    fmt::print("{}\n", line);
+}
+
+// Prints the ends of a spread under a row, in its columns.
+void print_spread(const comparison_row& r, const std::vector<column>& columns)
 {
     if (!r.spread)
         return;
-    const row_spread& s = *r.spread;
-    for (const auto& [name, end] : {std::pair{"5 %", &interval::low}, std::pair{"95 %", &interval::high}}) {
-        fmt::print("{:>30} {:>6} {:>6} {:>6} ", name, "", one_end(s.rms_error_mm, end),
-                   one_end(s.largest_error_mm, end));
-        if (by_taps)
-            fmt::print("{:>8} {:>8} {:>6}\n", one_end(s.felt_length_mm, end), "",
-                       one_end(s.length_ratio, end));
-        else
-            fmt::print("{:>6} {:>7}\n", one_end(s.speed_cv, end), one_end(s.intensity_cv, end));
+    for (const auto& [name, end] : {std::pair{"5 %", &interval::low}, std::pair{"95 %", &interval::high}})
+        print_line(fmt::format("{:>30}", name), columns, [&, end = end](const column& c) {
+            if (c.spread == nullptr)
+                return std::string();
+            const std::optional<interval>& v = (*r.spread).*c.spread;
+            return v ? fmt::format("{:.{}f}", c.factor * (*v).*end, c.digits) : "-";
+        });
+}
+
+// Prints a table under headings of groups of columns.
+void print_table(const comparison& c, std::string_view groups, const std::vector<column>& columns)
+{
+    fmt::print("\n{}\n", groups);
+    print_line("algorithm     phantom", columns, [](const column& one) { return one.title; });
+    for (const comparison_row& r : c.rows) {
+        if (r.refused || !r.unpredicted.empty())
+            continue;
+        print_line(names(r), columns, [&r](const column& one) { return one.text(r); });
+        print_spread(r, columns);
     }
 }
 
-void print_row(const comparison_row& r, bool by_taps)
+// Says why rows have no figures.
+void print_missing(const comparison& c)
 {
-    if (r.refused) {
-        say(stdout, "{} refused: {}\n", names(r), r.refused->what());
-        return;
-    }
-    if (!r.unpredicted.empty()) {
-        say(stdout, "{} no prediction: {}\n", names(r), r.unpredicted);
-        return;
-    }
-    if (by_taps) {
-        fmt::print("{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.plan->bursts.size(),
-                   figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm),
-                   figure(r.tapped.felt_length_mm), figure(r.tapped.target_length_mm),
-                   figure(r.tapped.length_ratio));
-        return;
-    }
-    const std::string bursts = r.plan->curve ? "-" : fmt::format("{}", r.plan->bursts.size());
-    fmt::print("{} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6.1f} {:>6.1f}\n", names(r), bursts,
-               figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm), figure(r.felt.speed_cv),
-               figure(r.felt.intensity_cv), 100.0 * r.felt.silent_share, 100.0 * r.felt.shared_share);
+    for (const comparison_row& r : c.rows)
+        if (r.refused)
+            say(stdout, "{} refused: {}\n", names(r), r.refused->what());
+        else if (!r.unpredicted.empty())
+            say(stdout, "{} no prediction: {}\n", names(r), r.unpredicted);
 }
 
 // Prints each warning once: most are the same for all phantom models.
@@ -165,20 +235,6 @@ void print_notes(const comparison& c)
             }
 }
 
-void print_heading(bool by_taps)
-{
-    if (by_taps) {
-        fmt::print("\n{:<13} {:<16} {:>6} {:>13} {:>17}\n", "", "", "", "error mm   ", "length mm    ");
-        fmt::print("{:<13} {:<16} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", "algorithm", "phantom", "bursts",
-                   "RMS", "max", "felt", "target", "ratio");
-        return;
-    }
-    fmt::print("\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",
-               "% of time ");
-    fmt::print("{:<13} {:<16} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6}\n", "algorithm", "phantom", "bursts",
-               "RMS", "max", "speed", "intens.", "silent", "shared");
-}
-
 void print_one(const comparison& c, const std::string& title, const array& a)
 {
     const trajectory& m = c.target.motion;
@@ -189,11 +245,17 @@ void print_one(const comparison& c, const std::string& title, const array& a)
     if (c.target.note != note_kind::none)
         say(stdout, "note: {}\n", files::note_text(c.target.note));
     const bool by_taps = c.observer.kind == observer_kind::low_speed;
-    print_heading(by_taps);
-    for (const comparison_row& r : c.rows) {
-        print_row(r, by_taps);
-        print_spread(r, by_taps);
+    if (c.predicted()) {
+        print_table(c,
+                    fmt::format("{:<30} {:>6} {:>13} {:>13} {:>13}", "error mm", "to", "equal times ",
+                                "along path ", "across path "),
+                    place_columns());
+        print_table(c,
+                    fmt::format("{:<37} {:>6} {:>6} {:>{}}", "", "lag", "RMS at",
+                                by_taps ? "length      " : "CV        % of time ", by_taps ? 25 : 28),
+                    time_columns(by_taps));
     }
+    print_missing(c);
     print_notes(c);
 }
 
@@ -208,8 +270,10 @@ void print_text(const std::vector<comparison>& all, const std::vector<std::strin
         say(stdout, "{}.\n", detail::spread_note(all.front().spread, o.kind == observer_kind::low_speed));
     say(stdout, "{}\nThis is {}.\n",
         o.kind == observer_kind::low_speed
-            ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
-            : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
+            ? "Errors count at the onsets of the bursts; length: of the chain of bursts.\n"
+              "Path: to its nearest point; lag: the delay with the least RMS error."
+            : "Path: to its nearest point; lag: the delay with the least RMS error;\n"
+              "CV: standard deviation / mean; shared: a tactor serves two bursts.",
         detail::prediction_note(o));
 }
 

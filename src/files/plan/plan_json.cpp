@@ -258,6 +258,13 @@ void members(Io& io, Spread& s)
         "of the figures of the same names. Each interval is null where that is null for somebody"};
     io("rms_error_mm", ends(s.rms_error_mm), figure);
     io("largest_error_mm", ends(s.largest_error_mm), figure);
+    io("along_rms_mm", ends(s.along_rms_mm), figure);
+    io("along_max_mm", ends(s.along_max_mm), figure);
+    io("across_rms_mm", ends(s.across_rms_mm), figure);
+    io("across_max_mm", ends(s.across_max_mm), figure);
+    io("lag_s", ends(s.lag_s), figure);
+    io("rms_at_lag_mm", ends(s.rms_at_lag_mm), figure);
+    io("rms_to_path_mm", ends(s.rms_to_path_mm), figure);
     io("speed_cv", ends(s.speed_cv), figure);
     io("intensity_cv", ends(s.intensity_cv), figure);
     io("felt_length_mm", ends(s.felt_length_mm), figure);
@@ -267,13 +274,27 @@ void members(Io& io, Spread& s)
 template <class Io>
 void error_members(Io& io, const prediction& r, observer_kind by)
 {
-    constexpr about error{
-        "distance from the position felt to the target; null where nothing is felt, or nothing is predicted",
-        detail::from_0};
+    constexpr about error{"distance at equal times from the position felt to the target. This and all down "
+                          "to rms_to_path_mm are null where nothing is felt, or nothing is predicted",
+                          detail::from_0};
+    constexpr about along{"part of that distance along the movement of the target; null also where the "
+                          "target never moves",
+                          detail::from_0};
+    constexpr about across{"part of it across that movement, likewise", detail::from_0};
     const bool by_energy = by == observer_kind::centroid;
     const bool by_taps = has_taps(r, by);
     io.or_null("rms_error_mm", r.felt.rms_error_mm, error);
     io.or_null("largest_error_mm", r.felt.largest_error_mm, error);
+    io.or_null("along_rms_mm", r.felt.along_rms_mm, along);
+    io.or_null("along_max_mm", r.felt.along_max_mm, along);
+    io.or_null("across_rms_mm", r.felt.across_rms_mm, across);
+    io.or_null("across_max_mm", r.felt.across_max_mm, across);
+    io.or_null("lag_s", r.felt.lag_s,
+               {"how late the felt path is: the shift by which the RMS error gets least, in steps of 1 ms",
+                {0.0, longest_lag_s}});
+    io.or_null("rms_at_lag_mm", r.felt.rms_at_lag_mm, {"the RMS error with that shift", detail::from_0});
+    io.or_null("rms_to_path_mm", r.felt.rms_to_path_mm,
+               {"distance from the position felt to the nearest point of the path", detail::from_0});
     io.or_null("speed_cv", r.felt.speed_cv,
                {"standard deviation of speed by its mean; null where the stroke is too short for a speed. "
                 "This and the next three are null with the observer low-speed",
