@@ -174,8 +174,12 @@ py::dict summary(const plan_handle& p)
         s = summarise(p.on->value(), p.drawn(), p.plan());
     }
     return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,
-                    "speed_cv"_a = s.speed_cv, "intensity_cv"_a = s.intensity_cv,
-                    "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
+                    "lag_s"_a = s.lag_s, "rms_at_lag_mm"_a = s.rms_at_lag_mm,
+                    "along_rms_mm"_a = s.along_rms_mm, "along_max_mm"_a = s.along_max_mm,
+                    "across_rms_mm"_a = s.across_rms_mm, "across_max_mm"_a = s.across_max_mm,
+                    "rms_to_path_mm"_a = s.rms_to_path_mm, "speed_cv"_a = s.speed_cv,
+                    "intensity_cv"_a = s.intensity_cv, "silent_share"_a = s.silent_share,
+                    "shared_share"_a = s.shared_share);
 }
 
 // Returns the plan for another array with the same places.

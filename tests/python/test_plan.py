@@ -174,7 +174,11 @@ def test_sensations_are_predicted(palm, stroke):
     plan = tactor.plan(palm, stroke, algorithm="continuous", phantom="barycentric")
     samples = plan.percept()
     assert len(samples) == 1201 and samples[600].target == pytest.approx(samples[600].felt, abs=1e-9)
-    assert plan.percept_summary()["rms_error_mm"] < 1e-9
+    felt = plan.percept_summary()
+    assert felt["rms_error_mm"] < 1e-9
+    assert set(felt) == {*"rms_error_mm largest_error_mm lag_s rms_at_lag_mm along_rms_mm along_max_mm across_rms_mm across_max_mm".split(),
+                         *"rms_to_path_mm speed_cv intensity_cv silent_share shared_share".split()}
+    assert felt["lag_s"] == 0 and felt["rms_to_path_mm"] < 1e-9
 
 
 def test_the_timing_law():

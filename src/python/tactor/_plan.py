@@ -354,7 +354,16 @@ class Plan(_Value):
         return self._keep("percept", lambda: Percept(*self._core.felt()))  # type: ignore[no-any-return]
 
     def percept_summary(self) -> dict[str, float | None]:
-        """Compares prediction and target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
+        """Compares prediction and target.
+
+        Returns
+        -------
+        dict
+            rms_error_mm and largest_error_mm at equal times; along_rms_mm, along_max_mm, across_rms_mm and across_max_mm, their parts along
+            and across the target's movement; lag_s, how late the felt path is, and rms_at_lag_mm, the RMS error with that shift;
+            rms_to_path_mm, from the felt place to the nearest point of the path; speed_cv and intensity_cv, standard deviation / mean;
+            silent_share and shared_share, of the time. None where a figure does not exist.
+        """
         return self._core.summary()  # type: ignore[no-any-return]
 
     def to_pandas(self) -> _t.Any:

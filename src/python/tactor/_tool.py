@@ -112,7 +112,9 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     Returns
     -------
     Comparison
-        A list of dicts. An algorithm that cannot play the stroke says why under "refused".
+        A list of dicts with the errors of each: "rms_to_path_mm" from the path, "rms_error_mm" at equal times, "along_rms_mm" and
+        "across_rms_mm" along and across the movement, "lag_s" and "rms_at_lag_mm", "speed_cv", and more: tactor-json(5) has all.
+        An algorithm that cannot play the stroke says why under "refused".
 
     Raises
     ------
