@@ -120,16 +120,15 @@ void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
 }
 
 // Returns the facts of a prediction: for taps, the length in place of the speed.
-std::array<std::string, 3> facts(const comparison_row& p)
+std::array<std::string, 4> facts(const comparison_row& p)
 {
     const auto text = [](const std::optional<double>& v) { return v ? fmt::format("{:.2f}", *v) : "-"; };
-    const double lag_ms = 1000.0 * p.felt.lag_s.value_or(0.0);
-    return {fmt::format("{} mm from path", text(p.felt.rms_to_path_mm)),
-            fmt::format(
-                "RMS {} mm{}", text(p.felt.rms_error_mm),
-                lag_ms > 0.0 ? fmt::format(", {} at lag {:.0f} ms", text(p.felt.rms_at_lag_mm), lag_ms) : ""),
-            p.taps.empty() ? fmt::format("speed CV {}", text(p.felt.speed_cv))
-                           : fmt::format("length {} of target", text(p.tapped.length_ratio))};
+    return {
+        fmt::format("{} mm from path", text(p.felt.rms_to_path_mm)),
+        fmt::format("RMS {} mm", text(p.felt.rms_error_mm)),
+        fmt::format("lag {:.0f} ms: {} mm", 1000.0 * p.felt.lag_s.value_or(0.0), text(p.felt.rms_at_lag_mm)),
+        p.taps.empty() ? fmt::format("speed CV {}", text(p.felt.speed_cv))
+                       : fmt::format("length {} of target", text(p.tapped.length_ratio))};
 }
 
 void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const array_frame& f,
