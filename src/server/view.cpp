@@ -160,8 +160,8 @@ std::string add_percept(reply_json& head, const planned& p, const array& a)
         stroke["felt_first"] = first;
         stroke["felt_count"] = felt.rows() - first;
         stroke["errors"] = files::errors_json(r, p.observer.kind);
-        if (const double rms = r.felt.rms_error_mm.value_or(0.0); rms > largest) {
-            largest = rms;
+        if (const double off_mm = r.felt.rms_to_path_mm.value_or(0.0); off_mm > largest) {
+            largest = off_mm;
             head["errors"] = stroke["errors"];
         }
     }

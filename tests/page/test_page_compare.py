@@ -63,7 +63,7 @@ class Compare(StudioTest):
         p.key("Digit2", "2")
         p.until("tactor.state.compare.on === 1")
         p.value("document.querySelector('[data-value=continuous]').click()")
-        p.until(f"{TEXT.format('.side:nth-child(2)')}.includes('Continuous') && /mm off/.test({TEXT.format('.side:nth-child(2)')})")
+        p.until(f"{TEXT.format('.side:nth-child(2)')}.includes('Continuous') && /mm from the path · (slightly )?(un)?even/.test({TEXT.format('.side:nth-child(2)')})")
         self.assertIn("Park 2016", p.value(TEXT.format(".side")))
         self.assertEqual(self.take(p)["options"], {})
         p.until("tactor.state.plan.continuous && !tactor.state.compare.rest.continuous")

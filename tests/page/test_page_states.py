@@ -261,9 +261,19 @@ class Everywhere(StudioTest):
         p, _ = self.ready(self.serve("--array", self.many(3, 3, 60)))
         self.draw(p, *self.way([10, 10], [110, 90]))
         self.planned(p)
-        part = p.until("tactor.state.plan.errors?.rms_error_mm") / 60
-        word = "close to" if part < 0.06 else "near" if part < 0.15 else "far from"
-        self.assertEqual(p.until("document.querySelector('#predicted .tile p').textContent"), f"{word} the path, RMS")
+        errors = p.until("tactor.state.plan.errors?.lag_s !== undefined && tactor.state.plan.errors")
+        part = errors["rms_to_path_mm"] / 60
+        word = "on" if part < 0.03 else "near" if part < 0.1 else "off"
+        lag = f"late by {errors['lag_s'] * 1000:.0f} ms" if errors["lag_s"] else "in time"
+        self.assertEqual(p.until("document.querySelector('#predicted .tile p').textContent"), f"{word} the path, {lag}")
+        tiles = p.value("[...document.querySelectorAll('#predicted .tile > div')].map(e => e.textContent)")
+        self.assertEqual(tiles, [f"{errors['rms_to_path_mm']:.1f}mm", f"{errors['speed_cv']:.2f}CV of speed"])
+        p.value("document.querySelector('#pane .more:has(#all-errors)').open = true")
+        shown = p.value("document.querySelector('#all-errors').innerText")
+        for figure in (f"{errors['rms_error_mm']:.1f} mm RMS, at most {errors['largest_error_mm']:.1f} mm",
+                       f"{errors['along_rms_mm']:.1f} mm RMS, at most {errors['along_max_mm']:.1f} mm",
+                       f"{errors['across_rms_mm']:.1f} mm RMS, at most {errors['across_max_mm']:.1f} mm"):
+            self.assertIn(figure, shown)
 
     def test_points_by_the_keyboard(self):
         p, _ = self.ready(self.serve())

@@ -247,7 +247,7 @@ class Takes(TakesTest):
         p.click("#hint-example")
         for name in ("park2016", "continuous"):
             p.click(f"[data-value={name}]")
-            p.until(f"document.querySelector('[data-value={name}] .error').textContent.endsWith(' mm')")
+            p.until(f"document.querySelector('[data-value={name}] .error').textContent.match(/^\\d+\\.\\d mm, (slightly )?(un)?even$/)")
             self.assertEqual(p.value("[...document.querySelectorAll('#pane .error')].filter(e => e.textContent).length"), 1)
 
     def test_four_phantoms_are_behind_more(self):

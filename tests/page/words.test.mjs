@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {readFileSync, readdirSync} from "node:fs";
 import {test} from "node:test";
-import {fault_sentence, fault_text} from "../../src/server/page/words.js";
+import {error_facts, even_word, facts_text, fault_sentence, fault_text, lag_word, path_word} from "../../src/server/page/words.js";
 
 const fault = (what, why, hint = "", more = {}) => ({message: `${what}: ${why}`, data: {what, why, hint, ...more}});
 
@@ -26,4 +26,22 @@ test("no module shows a fault in other words", () => {
   for (const name of readdirSync(folder, {recursive: true}).filter(n => n.endsWith(".js")))
     for (const line of readFileSync(new URL(name, folder), "utf8").split("\n"))
       assert.doesNotMatch(line, /(say|show|set_text)\(.*\.message|state\.fault = .*\.message/, name);
+});
+
+test("errors are said by what they mean, and the rest on demand", () => {
+  // park2016-1 on palm-3x3 with inverse-distance, as `tactor compare` prints it.
+  const e = {rms_error_mm: 2.094158, largest_error_mm: 5.352373, lag_s: 0.035, rms_at_lag_mm: 1.684544, along_rms_mm: 2.076332,
+    along_max_mm: 5.285772, across_rms_mm: 0.272661, across_max_mm: 0.841733, rms_to_path_mm: 0.223959, speed_cv: 0.684962};
+  assert.equal(path_word(e.rms_to_path_mm / 20), "on the path");
+  assert.equal(lag_word(e.lag_s), "late by 35 ms");
+  assert.equal(even_word(e.speed_cv), "uneven");
+  assert.deepEqual([path_word(1 / 20), path_word(4 / 20), lag_word(0), even_word(0.3), even_word(0)],
+    ["near the path", "off the path", "in time", "slightly uneven", "even"]);
+  assert.deepEqual(Object.fromEntries(error_facts(e)), {"To the path": "0.2 mm RMS, to its nearest point",
+    "At equal times": "2.1 mm RMS, at most 5.4 mm", "Along the path": "2.1 mm RMS, at most 5.3 mm", "Across it": "0.3 mm RMS, at most 0.8 mm",
+    "Lag": "late by 35 ms; shifted by that, 1.7 mm RMS", "Speed": "uneven: its standard deviation is 0.68 of its mean (CV)"});
+  // What is not predicted is not there: a touch at rest has no direction and no speed.
+  assert.deepEqual(error_facts({rms_error_mm: 0, largest_error_mm: 0, lag_s: 0, rms_at_lag_mm: 0, along_rms_mm: null, rms_to_path_mm: 0, speed_cv: null})
+    .map(([name]) => name), ["To the path", "At equal times", "Lag"]);
+  assert.equal(facts_text({refused: true}), "");
 });

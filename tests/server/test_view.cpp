@@ -149,7 +149,7 @@ json compared(const planned& p, std::size_t i, const planning& with)
 // Checks a prediction against the row of `tactor compare`.
 void check_errors(const json& errors, const json& row)
 {
-    CHECK(errors.size() == 10);
+    CHECK(errors.size() == 17);
     for (const auto& [name, value] : errors.items())
         CHECK_MESSAGE(row[name] == value, name);
 }
@@ -332,7 +332,7 @@ TEST_CASE("percept of several strokes: errors of each, and on top those of the w
     for (std::size_t i = 0; i < 3; ++i) {
         const json& s = v["strokes"][i];
         check_errors(s["errors"], compared(p, i, with));
-        worst = std::max(worst, s["errors"]["rms_error_mm"].get<double>());
+        worst = std::max(worst, s["errors"]["rms_to_path_mm"].get<double>());
         CHECK(s["felt_first"] == first);
         const auto count = s["felt_count"].get<std::size_t>();
         REQUIRE(count > 0);
@@ -340,7 +340,7 @@ TEST_CASE("percept of several strokes: errors of each, and on top those of the w
         first += count;
     }
     CHECK(v["felt"].size() == first);
-    CHECK(v["errors"]["rms_error_mm"] == worst);
+    CHECK(v["errors"]["rms_to_path_mm"] == worst);
 }
 
 TEST_CASE("peaks: the largest amplitude of each tactor in each part of the time")

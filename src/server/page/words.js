@@ -20,9 +20,24 @@ export const OPTION_NAMES = {
   noise_seed: "Seed of the noise", ramp: "Ramp", envelope: "Envelope", attack: "Attack", release: "Release", sl: "Level above the threshold",
   intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength", level_dbfs: "Level", phase: "One carrier through the stroke",
 };
-// Returns a word for an error, as a part of the pitch.
-export const place_word = part => part < 0.06 ? "close to the path" : part < 0.15 ? "near the path" : "far from the path";
-export const even_word = cv => cv < 0.25 ? "even speed" : cv < 0.5 ? "slightly uneven" : "uneven speed";
+// Words for a prediction: its distance from the path as a part of the pitch, its lag, and the coefficient of variation of its speed.
+export const path_word = part => part < 0.03 ? "on the path" : part < 0.1 ? "near the path" : "off the path";
+export const lag_word = s => s >= 0.0005 ? `late by ${Math.round(1000 * s)} ms` : "in time";
+export const even_word = cv => cv < 0.25 ? "even" : cv < 0.5 ? "slightly uneven" : "uneven";
+// Returns names and values of all errors of a prediction, without those that it does not have.
+export function error_facts(e) {
+  const mm = v => `${number_text(v)} mm`, has = v => typeof v === "number";
+  const part = (rms, most) => has(rms) && `${mm(rms)} RMS, at most ${mm(most)}`;
+  return Object.entries({
+    "To the path": has(e.rms_to_path_mm) && `${mm(e.rms_to_path_mm)} RMS, to its nearest point`,
+    "At equal times": part(e.rms_error_mm, e.largest_error_mm),
+    "Along the path": part(e.along_rms_mm, e.along_max_mm),
+    "Across it": part(e.across_rms_mm, e.across_max_mm),
+    "Lag": has(e.lag_s) && `${lag_word(e.lag_s)}${e.lag_s > 0 ? `; shifted by that, ${mm(e.rms_at_lag_mm)} RMS` : ""}`,
+    "Speed": has(e.speed_cv) && `${even_word(e.speed_cv)}: its standard deviation is ${number_text(e.speed_cv, 2)} of its mean (CV)`,
+  }).filter(([, text]) => text);
+}
+export const facts_text = e => e && !e.refused ? error_facts(e).map(fact => fact.join(": ")).join("\n") : "";
 export function seconds_text(s) {
   if (s < 59.995) return `${s.toFixed(2)} s`;
   const tenths = Math.round(s * 10);

@@ -7,7 +7,7 @@ import {with_level} from "../takes/stroke_file.js";
 import {file_name, give_toml} from "../takes/files.js";
 import {study_files, study_command} from "./study.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
-import {ALGORITHMS, PHANTOMS, number_text} from "../words.js";
+import {ALGORITHMS, PHANTOMS, even_word, facts_text, number_text} from "../words.js";
 
 const LONGEST_WAIT_S = 0.07; // longest wait for the next burst; message and ramp take up to 30 ms more
 const LEAD_S = 0.02;         // time before the burst at which the side changes
@@ -72,7 +72,8 @@ function side_name(side) {
   return `${word(ALGORITHMS, "algorithm")}, ${word(PHANTOMS, "phantom")}`;
 }
 const side_facts = e => !e ? "not possible"
-  : `${number_text(e.rms_error_mm)} mm off${e.speed_cv ? ` · ${Math.round(100 / (1 + e.speed_cv))} % even` : ""}`;
+  : typeof e.rms_to_path_mm !== "number" ? "not predicted"
+  : `${number_text(e.rms_to_path_mm)} mm from the path${typeof e.speed_cv === "number" ? ` · ${even_word(e.speed_cv)}` : ""}`;
 
 const side_cards = all_of(".side"), votes = by_id("votes");
 side_cards.forEach((b, card) => listen(b, "click", () => choose_side(card)));
@@ -91,7 +92,9 @@ on_change(() => {
   side_cards.forEach((b, card) => {
     show_pressed(b, c.order[card] === c.on);
     b.childNodes[1].textContent = blind ? "hidden" : side_name(card);
-    b.childNodes[2].textContent = blind ? "" : side_facts(plan_of_side(card)?.errors);
+    const errors = plan_of_side(card)?.errors;
+    b.childNodes[2].textContent = blind ? "" : side_facts(errors);
+    b.title = blind ? "" : facts_text(errors);
   });
   votes.hidden = !blind;
   votes.childNodes.forEach(b => { b.disabled = c.heard.size < 2; });

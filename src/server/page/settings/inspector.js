@@ -7,7 +7,7 @@ import {slider, choice, toggle, entry, button, choose_by_arrows} from "./control
 import {set_option, end_edit, edit_stroke, edit_take, put_stroke, row, value, algorithm} from "../takes/takes.js";
 import {play_by} from "../service/player.js";
 import {algorithm_picture, timing_picture, envelope_picture} from "./diagrams.js";
-import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
+import {ALGORITHMS, PHANTOMS, OPTION_NAMES, error_facts, facts_text, even_word, number_text, plain_name, seconds_text} from "../words.js";
 import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
 import {set_strength, strengths, set_speed, touch_curve} from "../time/curves.js";
 import {toggle_compare} from "./compare.js";
@@ -43,19 +43,29 @@ function cards(label, name, words, picture) {
   const values = (row(name)?.choices ?? Object.keys(words)).map(id => {
     const error = picture && make("span", {class: "error"}), [title, text] = words[id] ?? [plain_name(id), ""];
     return {value: id, content: [picture?.(id), make("b", {}, title), error, make("p", {}, text)].filter(Boolean), update: b => {
-      if (picture) error.textContent = predicted_text(name, id); else b.hidden = !all_phantoms && value(name) !== id;
+      const e = value(name) === id ? state.plan?.errors : null;
+      if (picture) { error.textContent = predicted_text(e); error.title = facts_text(e); } else b.hidden = !all_phantoms && value(name) !== id;
     }};
   });
   const list = choice({label, visible_label: false, shape: picture ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v), values,
     hold: v => play_by({[name]: v})});
-  return join("section", {}, make("h2", {}, label, picture && make("span", {}, "predicted error")), list, picture
+  return join("section", {}, make("h2", {}, label, picture && make("span", {}, "from the path, speed")), list, picture
     ? make("p", {class: "hint-text"}, "Hold a card to feel the take by it.")
     : button("More", null, e => { all_phantoms = !all_phantoms; e.currentTarget.setAttribute("aria-expanded", all_phantoms); list.update(); },
       {class: "button small outlined", "aria-label": "More phantoms", "aria-expanded": String(all_phantoms)}));
 }
-function predicted_text(name, id) {
-  const e = value(name) === id && state.plan?.errors;
-  return typeof e?.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm` : "";
+// Returns a number and a word: the distance from the path, and how even the speed is.
+function predicted_text(e) {
+  return [typeof e?.rms_to_path_mm === "number" && `${number_text(e.rms_to_path_mm)} mm`, typeof e?.speed_cv === "number" && even_word(e.speed_cv)]
+    .filter(Boolean).join(", ");
+}
+function all_errors() {
+  const list = make("dl", {id: "all-errors"});
+  return join("details", {class: "more"}, make("summary", {}, "All predicted errors"), {element: list, update() {
+    const facts = error_facts(state.plan?.errors ?? {});
+    list.replaceChildren(...facts.length > 0 ? facts.flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, text)])
+      : [make("dd", {}, "There is no prediction.")]);
+  }});
 }
 
 // Controls of the stroke that is edited; hidden without one.
@@ -179,7 +189,7 @@ function build() {
   structure = now;
   const parts = {
     method: () => [algorithm_choice(), phantom_choice(), button("Compare two by feeling", null, toggle_compare, {class: "button outlined"}),
-      observer_choice(), others("method")],
+      observer_choice(), all_errors(), others("method")],
     timing: () => [current_stroke() && pace_controls(), current_stroke() && stroke_controls(), algorithm() === "park2016" && burst_controls(),
       others("timing")],
     vibration: () => [vibration_controls(), others("vibration")],

@@ -5,8 +5,8 @@ import {icon} from "../look.js";
 import {set_option, edit_take, fit_take, algorithm} from "../takes/takes.js";
 import {excess_db, limit_text, weaken_take} from "../service/planner.js";
 import {spark} from "./diagrams.js";
-import {place_word, even_word, number_text, fault_sentence} from "../words.js";
-import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
+import {path_word, lag_word, even_word, facts_text, number_text, fault_sentence} from "../words.js";
+import {duration_s, length_mm, outside_mm, off_path_mm} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
 import {felt_speeds} from "../time/curves.js";
 
@@ -14,14 +14,15 @@ const OUTSIDE_MM = 0.5;
 
 // Shows the prediction.
 function show_predicted() {
-  const {rms_error_mm: mm, speed_cv: cv} = state.plan?.errors ?? {}, is_known = typeof mm === "number";
+  const errors = state.plan?.errors ?? {}, {rms_to_path_mm: mm, lag_s, speed_cv: cv} = errors, is_known = typeof mm === "number";
   by_id("pill").hidden = !is_known;
-  set_text("pill-text", is_known ? `${number_text(mm)} mm off` : "");
+  by_id("predicted").title = facts_text(errors);
+  set_text("pill-text", is_known ? `${number_text(mm)} mm from the path` : "");
   by_id("predicted").replaceChildren(...!is_known
     ? [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : state.link === "lost" && current_take() ? "No connection: there is no plan." : "Draw, and the prediction shows here.")]
-    : [tile(number_text(mm), "mm off", [place_word(mm / array.pitch), ", RMS"], spark(errors_over_time())),
+    : [tile(number_text(mm), "mm", [path_word(mm / array.pitch), `, ${lag_word(lag_s)}`], spark(errors_over_time())),
       typeof cv !== "number" ? tile("–", "", ["speed is not predicted"], spark([]))
-        : tile(`${Math.round(100 / (1 + cv))}`, "% even", [even_word(cv), `, CV ${cv.toFixed(2)}`], spark(felt_speed(), mean_speed()))]);
+        : tile(number_text(cv, 2), "CV of speed", [even_word(cv)], spark(felt_speed(), mean_speed()))]);
 }
 const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
   make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")), picture);
@@ -29,10 +30,10 @@ function errors_over_time() {
   const take = current_take(), plan = state.plan;
   if (!take) return [];
   const step = Math.max(1, Math.floor(plan.felt.length / 80));
-  return plan.felt_rows.flatMap((rows, i) => !take.strokes[i] ? [] : rows.filter((_, k) => k % step === 0).map(f => {
-    const q = interpolate(take.strokes[i].timed, f[0] - plan.strokes[i].start_s);
-    return Math.hypot(q[1] - f[1], q[2] - f[2]);
-  }));
+  return plan.felt_rows.flatMap((rows, i) => {
+    const path = take.strokes[i]?.timed.map(q => [q[1], q[2]]) ?? [];
+    return path.length === 0 ? [] : rows.filter((_, k) => k % step === 0).map(f => off_path_mm(path, [f[1], f[2]]));
+  });
 }
 const felt_speed = () => felt_speeds(state.plan).flat().map(r => r[1]);
 const mean_speed = () => { const s = current_stroke(); return s ? length_mm(s.timed) / duration_s(s) : null; };
