@@ -29,7 +29,7 @@ class Block:
 def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
     for kind, pattern in (("c++", r"^#include|^const tactor::"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
-                          ("drawing", r"-->"), ("runner", r"PsychPortAudio|TcpClient|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
+                          ("drawing", r"-->"), ("runner", r"PsychPortAudio|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):
             return kind
@@ -175,6 +175,8 @@ NOT_RUN = {
     "(echo 20 20; sleep": "the suite cli-remote does the same without sleeping",
     "tactor serve": "goes on until it is ended: the suite cli-serve runs it",
     '{"': "is a line of the service's protocol: the suite cli-serve speaks it",
+    "mcs ": "the lane tests/lanes/clients compiles it",
+    "mono ": "the lane tests/lanes/clients runs it",
     "oscsend": "needs a server: the suite cli-serve_osc runs it",
     "echo '{": "needs a server: the suite cli-serve says the same",
     "ulimit ": "says what step 4 of the page has changed",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve with other people's programs: wscat, and SuperCollider with the example for it. Usage: test_clients.py TOOL
-SOURCE_ROOT WSCAT"""
+"""tactor serve with other people's programs: wscat, and SuperCollider and C# with the examples for them. Usage:
+test_clients.py TOOL SOURCE_ROOT WSCAT"""
 import json
 import os
 import pathlib
@@ -16,7 +16,7 @@ WSCAT = pathlib.Path(sys.argv.pop(3))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from harness import PATIENCE_S, ROOT, ToolTest, Wav, main  # noqa: E402
 from osc import Sender  # noqa: E402
-from serving import MESSAGE, Server, ServeTest  # noqa: E402
+from serving import LONG, MESSAGE, Server, ServeTest  # noqa: E402
 
 
 class Program:
@@ -197,6 +197,69 @@ class SuperCollider(ToolTest):
         self.assertEqual(s.terminate()[0], 0)
         self.ok("render", "park2016-1", "--sample-format", "s32", "-o", "rendered.wav")
         self.assertIn(Wav(self.dir / "rendered.wav").data.strip(b"\0"), felt.read_bytes())
+
+
+@unittest.skipUnless(shutil.which("mcs") and shutil.which("mono"), "Mono is not here")
+class CSharp(ServeTest):
+    def setUp(self):
+        super().setUp()
+        source = ROOT / "examples/serve_client.cs"
+        compiler, *options = re.search(r"^//   (mcs .*)$", source.read_text(encoding="utf-8"), re.M)[1].split()
+        self.env |= {"HOME": str(self.dir), "LC_ALL": "C.UTF-8"}
+        built = self.start_tool(*options[:-1], "-warnaserror", f"-out:{self.dir}/serve_client.exe", source, program=compiler,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual((built.communicate(timeout=PATIENCE_S)[0], built.returncode), ("", 0))
+
+    def start_client(self, server, *args):
+        host, _, port = server.where["tcp"].rpartition(":")
+        stroke, *token = args or ["park2016-1"]
+        return self.start_tool(self.dir / "serve_client.exe", stroke, host, port, *token, program="mono", stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+
+    def check_end(self, client, status, out, err):
+        self.assertEqual((*client.communicate(timeout=PATIENCE_S), client.returncode), (out, err, status))
+
+    def test_a_stroke_is_played_to_its_end(self):
+        felt = self.dir / "felt.raw"
+        s = self.serve("--tcp", "0", device=("-D", f"raw:{felt}"))
+        self.check_end(self.start_client(s), 0, "park2016-1: finished\n", "")
+        self.assertEqual(s.terminate()[0], 0)
+        self.ok("render", "park2016-1", "--sample-format", "s32", "-o", "rendered.wav")
+        self.assertIn(Wav(self.dir / "rendered.wav").data.strip(b"\0"), felt.read_bytes())
+
+    def test_a_name_with_quotes_reaches_the_service(self):
+        nowhere = 'no "where"\\ \u00e9'
+        p = self.start_client(self.serve("--tcp", "0"), nowhere)
+        out, err = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual((p.returncode, out), (1, ""))
+        self.assertTrue(err.startswith(f"serve_client: stroke: no preset '{nowhere}'"), err)
+
+    def test_a_token(self):
+        s = self.serve("--tcp", "0", config=self.token())
+        self.check_end(self.start_client(s, "park2016-1", "secret"), 0, "park2016-1: finished\n", "")
+        p = self.start_client(s, "park2016-1", "guess")
+        self.assertIn("token", p.communicate(timeout=PATIENCE_S)[1])
+        self.assertEqual(p.returncode, 1)
+
+    def test_a_stroke_that_is_stopped(self):
+        s = self.serve("--tcp", "0")
+        watcher = s.watcher()
+        other = s.client()
+        other.ok("play", **LONG)  # its end is not taken for the client's
+        p = self.start_client(s)
+        for _ in range(2):
+            watcher.notification(lambda m: m["params"]["state"] == "started")
+        watcher.ok("stop")
+        self.check_end(p, 1, "park2016-1: cancelled\n", "")
+
+    def test_a_service_that_ends_or_is_not_there(self):
+        s = self.serve("--tcp", "0")
+        watcher = s.watcher()
+        p = self.start_client(s)
+        watcher.notification(lambda m: m["params"]["state"] == "started")
+        s.kill()
+        self.check_end(p, 1, "", "serve_client: the service closed the connection\n")
+        self.check_end(self.start_client(s), 1, "", "serve_client: Connection refused\n")
 
 
 if __name__ == "__main__":
