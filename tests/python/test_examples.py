@@ -268,6 +268,15 @@ def test_a_study_becomes_a_figure(root, tool, tmp_path, monkeypatch, capsys):
     assert re.fullmatch(r"difference -?[\d.]+, t\(2\) = -?[\d.]+, p = [\d.e-]+\n", capsys.readouterr().out)
 
 
+def test_the_guide_draws_live(root, tmp_path):
+    guide = (root / "man/guide/python.md").read_text(encoding="utf-8")
+    code = textwrap.dedent(re.search(r"## Draw live, point by point\n\n((?:    .*\n|\n)+)", guide)[1])
+    # It does not end by itself, however slowly this machine sends points.
+    (tmp_path / "live.py").write_text(code.replace("level_dbfs=-40", "level_dbfs=-40, timeout=86400"))
+    report = run(tmp_path / "live.py")
+    assert "state='finished'" in report and "points=100," in report and "outside_points=0" in report
+
+
 def test_the_readme_runs(root, tmp_path):
     text = (root / "README.md").read_text(encoding="utf-8")
     block = re.search(r"## From Python\n\n((?:    .*\n|\n)+)", text)[1]
