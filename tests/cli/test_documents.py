@@ -201,7 +201,7 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
 }
 # Files that documents name and that are in the sources.
 FILES = {
-    "man/guide/questions.md": {"left.wav": "examples/strokes/comb.wav", "right.wav": "examples/strokes/comb.wav"},
+    "man/guide/questions.md": {"felt.toml": "examples/arrays/palm-measured.toml", "left.wav": "examples/strokes/comb.wav", "right.wav": "examples/strokes/comb.wav"},
     "man/guide/study.md": {"felt.toml": "examples/arrays/palm-measured.toml"},
     "man/tactor-check.1": {"palm.toml": "examples/arrays/palm-measured.toml"},
     "man/tactor-options.7": {"palm.toml": "examples/arrays/palm-measured.toml"},
@@ -473,6 +473,14 @@ class OneName(ToolTest):
         used = set.union(*lines.values())
         self.assertEqual(len(used), 3)
         self.assertEqual(used & self.TAKEN, set())
+        buttons, codes = [], []
+        for text in self.texts().values():
+            buttons += map(int, re.findall(r"^dtoverlay=gpio-key,gpio=(\d+)", text, re.M))
+            codes += [set(map(int, found.split(","))) for found in re.findall(r"\boffsets = \[([\d, ]+)\]", text)]
+        self.assertEqual((len(set(buttons)), set(buttons) & (used | self.TAKEN)), (2, set()))
+        # Codes take lines that are free beside a USB card.
+        self.assertEqual([found for found in codes if found & (used | set(buttons)) or found - set(range(18, 28))], [])
+        self.assertIn(8, map(len, codes))
 
 
 if __name__ == "__main__":

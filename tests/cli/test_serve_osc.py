@@ -3,10 +3,11 @@
 message does."""
 import contextlib
 import os
+import re
 import socket
 import subprocess
 
-from harness import PATIENCE_S, main
+from harness import PATIENCE_S, ROOT, main
 from osc import Sender, begun_by_a_time_tag
 from serving import ServeTest
 
@@ -92,6 +93,37 @@ class ServeOsc(ServeTest):
         began, period_s = begun_by_a_time_tag(self, self.serve("--osc", "0"))
         # The live stroke to a period; timed/test_osc_times.py checks lateness and precision.
         self.assertGreater(min(began), -1.5 * period_s - 0.002)
+
+    def test_an_xy_pad_draws_as_how_to_says(self):
+        s = self.serve("--osc", "0")
+        watcher = s.watcher("strokes", "touches")
+        guide = (ROOT / "man/guide/how-to.md").read_text(encoding="utf-8").partition("## Draw with TouchOSC")[2].partition("\n## ")[0]
+        rows = re.findall(r"^\| [^|]* \| `(/tactor/\w+)` \| ([^|]*) \|$", guide, re.M)
+        self.assertEqual(rows, [("/tactor/begin", "the constant 1, the constant text `timeout_s=5`"),
+                                ("/tactor/to", "the constant 1, x scaled to 0 to 40, y scaled to 0 to 40"), ("/tactor/end", "the constant 1")])
+        for number, of_pad, end in ((1, int, 30.0), (2, float, 25.0)):  # whatever type the pad sends
+            pad = Sender(self, s)
+            pad.say("/tactor/begin", of_pad(number), "timeout_s=3600")  # 5 s may be short on a busy machine
+            for x, y in ((0.0, 0.0), (40.0, 10.0), (20.0, end)):
+                pad.say("/tactor/to", of_pad(number), x, y)
+            # The last point is always shown.
+            place = watcher.notification(lambda m: m["method"] == "touches" and m["params"]["y_mm"] == end)["params"]
+            self.assertEqual((place["x_mm"], place["down"]), (20, True))
+            pad.say("/tactor/end", of_pad(number))
+            self.assertEqual([pad.next()[1:] for _ in range(2)], [[number, "started"], [number, "finished"]])
+        pad.say("/tactor/play", 2, "park2016-1")
+        self.assertEqual(pad.next(), ["/tactor/stroke", 2, "started"])
+        pad.say("/tactor/stop")
+        self.assertEqual(pad.next(), ["/tactor/stroke", 2, "cancelled"])
+
+    def test_a_finger_at_rest_ends_a_stroke_without_a_longer_timeout(self):
+        s = self.serve("--osc", "0")
+        pad = Sender(self, s)
+        pad.say("/tactor/begin", 1)
+        pad.say("/tactor/to", 1, 20.0, 20.0)
+        self.assertEqual([pad.next()[1:] for _ in range(2)], [[1, "started"], [1, "interrupted"]])
+        pad.say("/tactor/to", 1, 21.0, 20.0)
+        self.assertEqual(pad.next()[:2], ["/tactor/error", "/tactor/to"])
 
     def test_oscsend_and_oscdump_work(self):
         s = self.serve("--osc", "0")
