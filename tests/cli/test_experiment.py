@@ -422,6 +422,29 @@ class Folder(ExperimentTest):
             self.simulate("01", "--resume", spec=spec)
             self.assertEqual(self.without_cut(), whole, f"cut at {cut} of {len(text)}")
 
+    def test_a_session_of_another_version_resumes_if_its_stimuli_are_the_same(self):
+        self.simulate()
+        whole = contents(self.dir / "study")
+        table = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
+        session = self.dir / "study/sourcedata/sub-01/session.json"
+        told = json.loads(session.read_text(encoding="utf-8"))
+
+        def begun_by_another_version(change):
+            table.write_bytes(b"".join(whole["sub-01/beh/sub-01_task-howgood_beh.tsv"].splitlines(True)[:-1]))
+            other = json.loads(json.dumps(told))
+            other["versions"] = {"tactor": "0.0.9", "build": "another one"}
+            change(other)
+            session.write_text(json.dumps(other, indent=2) + "\n", encoding="utf-8")
+            self.forget_last_run()
+
+        begun_by_another_version(lambda other: other["stimuli"][0].update(duration_s=9))
+        self.simulate("01", "--resume", status=2, says=("stimuli", "as it began"))
+        begun_by_another_version(lambda other: None)
+        self.simulate("01", "--resume")
+        self.assertEqual(table.read_bytes(), whole["sub-01/beh/sub-01_task-howgood_beh.tsv"])
+        self.assertEqual(json.loads(session.read_text(encoding="utf-8"))["versions"]["tactor"], "0.0.9")
+        self.ok("analyze", "study")
+
     def test_a_session_resumes_only_with_its_options(self):
         self.simulate("01", "--seed", "3")
         for seed, spec, says in (("4", "seed=1,sigma=1", "seed 3"), ("3", "seed=9", "simulation")):
