@@ -294,6 +294,11 @@ class Strokes(PlanTest):
             self.refused(2, "plan", *args)
         self.refused(2, "plan", "-", stdin="[stroke]\n" + far)
 
+    def test_slow_strokes_last_as_their_speeds_say(self):
+        plans = self.plan(ROOT / "examples/strokes/slow.toml")["plans"]
+        self.assertEqual([round(p["total_s"], 3) for p in plans], [13.333, 1.333, 0.133])  # 40 mm at 3, 30 and 300 mm/s
+        self.assertEqual([round(p["start_s"], 3) for p in plans], [0, 14.333, 16.667])
+
     def test_every_example_can_be_planned(self):  # test_plot.py plans on each array
         strokes = [f for f in sorted((ROOT / "examples/strokes").iterdir()) if f.suffix in (".toml", ".csv", ".svg")]
         self.assertEqual({f.suffix for f in strokes}, {".toml", ".csv", ".svg"})
