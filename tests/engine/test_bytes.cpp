@@ -6,17 +6,21 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include <tactor/plan.hpp>
 
+#include "count_allocations.hpp"
 #include "has.hpp"
 #include "rig.hpp"
+#include "rt/nonblocking.hpp"
 
 namespace bytes_test {
 
@@ -53,6 +57,12 @@ std::vector<float> read_floats(const std::vector<std::byte>& bytes)
     std::vector<float> all(bytes.size() / sizeof(float));
     std::memcpy(all.data(), bytes.data(), bytes.size());
     return all;
+}
+
+// A host's audio callback. tests/lanes/realtime checks that nothing in it allocates, locks or waits.
+void call_back(renderer& r, std::span<std::byte> out) noexcept TACTOR_NONBLOCKING
+{
+    r.process(out);
 }
 
 constexpr unsigned period = 48;
@@ -122,6 +132,36 @@ TEST_CASE("the DAC gets the renderer's bytes, in every format")
         CHECK_FALSE(r.first_sound(from + s.frames()));
         CHECK(r.captured(0, from) == std::vector<std::byte>(from * r.dac.frame_bytes()));
     }
+}
+
+TEST_CASE("bursts of any sound are rendered in a host's own real-time callback, with limits and without")
+{
+    plan pieces[4]; // as a stroke's keys can say: a plain sine, and what needs more than that
+    for (plan& p : pieces)
+        p = make_plan(palm(), preset_stroke("park2016-3"));
+    pieces[1].wave = {.kind = waveform_kind::noise, .low_hz = 60.0, .high_hz = 400.0};
+    pieces[2].course = {{0.0, 60.0}, {1.0, 300.0}};
+    pieces[3].wave.kind = waveform_kind::square;
+    pieces[3].am = {.hz = 20.0, .depth = 0.8};
+    std::vector<placed_plan> at_once;
+    for (const plan& p : pieces)
+        at_once.push_back({.plan = p, .start_s = 0.0});
+    std::vector<std::vector<std::byte>> heard;
+    for (const std::optional<drive_limits>& limits :
+         {std::optional<drive_limits>{},
+          std::optional{drive_limits{.power_dbfs = -30.0, .max_drive_s = 0.2}}}) {
+        const score s(palm(), at_once, {.level_dbfs = -12.0, .limits = limits});
+        std::vector<std::byte> out(s.frames() * s.channels() * sizeof(float));
+        renderer r(s, format_kind::float32);
+        const std::size_t block = 64 * s.channels() * sizeof(float);
+        const count_allocations count; // counts nothing under RealtimeSanitizer, which counts itself
+        for (std::size_t at = 0; at < out.size(); at += block)
+            call_back(r, std::span(out).subspan(at, std::min(block, out.size() - at)));
+        CHECK(count.calls() == 0);
+        CHECK(out == rendered(s, format_kind::float32));
+        heard.push_back(out);
+    }
+    CHECK(heard[0] != heard[1]); // the limits act
 }
 
 TEST_CASE("odd periods, one channel more and many buffers give the same bytes")
