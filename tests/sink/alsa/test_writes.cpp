@@ -37,6 +37,7 @@ struct device_answers {
     std::optional<snd_pcm_uframes_t> period_frames = {};
     std::optional<snd_pcm_uframes_t> buffer_frames = {};
     std::optional<snd_pcm_sframes_t> delay = {};
+    bool refuses_running = false; ///< does not make ready what runs, as the kernel
 };
 
 const device_answers* answers = nullptr;
@@ -71,6 +72,13 @@ snd_pcm_sframes_t snd_pcm_status_get_delay(const snd_pcm_status_t* s)
     return answers != nullptr && answers->delay
                ? *answers->delay
                : real(snd_pcm_status_get_delay, "snd_pcm_status_get_delay")(s);
+}
+
+int snd_pcm_prepare(snd_pcm_t* pcm)
+{
+    if (answers != nullptr && answers->refuses_running && snd_pcm_state(pcm) == SND_PCM_STATE_RUNNING)
+        return -EBUSY;
+    return real(snd_pcm_prepare, "snd_pcm_prepare")(pcm);
 }
 
 int snd_pcm_hw_params_is_batch(const snd_pcm_hw_params_t* p)
@@ -218,6 +226,29 @@ TEST_CASE("the played position never goes back, whatever delay a driver reports"
     const device_answers late{.delay = static_cast<snd_pcm_sframes_t>(p.written) - 40};
     const device_says it(late);
     CHECK(s.out->position().played == 96);
+}
+
+TEST_CASE("more frames in the queue than were written, a DAC's own among them, are none that were played")
+{
+    stream s(false);
+    s.dac.advance_queued(96);
+    const stream_position p = s.out->position();
+    REQUIRE(p.played == 96);
+    const device_answers own{.delay = static_cast<snd_pcm_sframes_t>(p.written) + 48};
+    const device_says it(own);
+    CHECK(s.out->position().played == 96);
+    s.start(); // at the start nothing was played, and the DAC's own delay is there already
+    CHECK(s.out->position().played == 0);
+}
+
+TEST_CASE("a stream that runs is stopped before it is made ready, which the kernel refuses else")
+{
+    stream s(false);
+    const device_answers kernel{.refuses_running = true};
+    const device_says it(kernel);
+    REQUIRE(s.dac.running());
+    s.start();
+    CHECK(s.dac.starts() == 2);
 }
 
 TEST_CASE("the drive time of a PCM on a card is kept under the card's place")
