@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // JSON-RPC, and its lines on a connection.
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <new>
@@ -343,6 +344,15 @@ TEST_CASE("a peer that does not read is dropped")
         p.io.poll();
     }
     CHECK(p.closed);
+}
+
+TEST_CASE("who ends a connection does not wait for a peer that reads nothing")
+{
+    pair p;
+    p.end->send(std::string(2'000'000, 'x')); // more than a socket takes
+    p.end->finish();
+    while (!p.closed) // after a second; a minute is as good as never
+        REQUIRE(p.io.run_one_for(std::chrono::minutes(1)) == 1);
 }
 
 TEST_CASE("a file that a peer asked for leaves room for messages")
