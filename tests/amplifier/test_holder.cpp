@@ -113,6 +113,11 @@ TEST_CASE("a line goes off when its player is silent, which notices and may swit
             ::poll(nullptr, 0, 50);
         CHECK(!h->beat());
     }
+    // Switched on again it is as before; where this thread stands still for so long it is silent once more.
+    bool holds = false;
+    for (int i = 0; i < 1000 && !holds; ++i)
+        holds = h->set(true) && h->beat();
+    CHECK(holds);
 }
 
 TEST_CASE("a line that cannot be switched is reported")
