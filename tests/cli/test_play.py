@@ -54,6 +54,15 @@ class Play(ToolTest):
             r = self.ok("play", "s.toml", *long[5:], "--level-dbfs", "-40.1", "--together", "sum", "--max-drive-s", "0.3", "--drive-window-s", "1")
             self.assertEqual((json.loads(r.stdout)["counters"]["drives_cut"] > 0, "wait 0.7 s before the next stroke" in r.stderr), (cut, cut), r.stderr)
 
+    def test_the_kernel_ends_a_thread_that_runs_away_with_real_time_priority(self):
+        """In microseconds without a pause, after which the amplifier's own process switches off."""
+        p = self.start_tool("play", *self.SHORT[:3], "3600", "-D", "null", stdout=subprocess.PIPE, text=True)
+        self.assertIn("null: 9 channels", p.stdout.readline())
+        soft, hard = resource.prlimit(p.pid, resource.RLIMIT_RTTIME)
+        self.assertTrue(0 < soft <= 200_000 and soft <= hard <= 1_000_000, (soft, hard))
+        p.send_signal(signal.SIGINT)
+        self.assertEqual((p.wait(PATIENCE_S), p.stdout.close()), (130, None))
+
     def test_ctrl_c_fades_out_reports_and_exits_130(self):
         raw = self.dir / "out.raw"
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
