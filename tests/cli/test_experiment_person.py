@@ -50,6 +50,9 @@ class AtTheTerminal(PersonTest):
         self.assertAlmostEqual(float(rows[1]["onset"]), (int(rows[1]["frame_1"]) - int(rows[0]["frame_1"])) / RATE, 5)
         # At least half a second, the animation's 0.2 s, and the stimuli are between two trials.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]) + 0.7)
+        # They begin with the answer, whose time counts from the end of the stimuli.
+        answered_s = float(rows[0]["duration"]) + float(rows[0]["response_time"])
+        self.assertGreater(float(rows[1]["onset"]), answered_s + 0.69)
         self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
         for text in (t.all, re.sub(r'tactor: warning: motion ".*', "", t.said())):
             self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
