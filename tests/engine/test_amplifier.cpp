@@ -400,19 +400,23 @@ TEST_CASE("a mute that is refused once is retried, and the stream goes on")
     CHECK(r.play_out(r.submit(tone(0.1))).state == state_kind::finished);
 }
 
-TEST_CASE("a mute that stays refused ends the stream")
+TEST_CASE("a mute that stays refused ends the stream, also while the system sleeps")
 {
-    playing r;
-    r.line.refusals = always;
-    r.dac.suspend();
-    r.step();
-    r.wait(500 * ms);
-    CHECK_FALSE(r.link.amplifier.stuck);
-    r.wait(600 * ms);
-    CHECK(r.link.amplifier.stuck);
-    r.dac.wake(true);
-    end(r);
-    CHECK(r.feed.end().why == may_be_on);
+    for (const bool wakes : {true, false}) {
+        CAPTURE(wakes);
+        playing r;
+        r.line.refusals = always;
+        r.dac.suspend();
+        r.step();
+        r.wait(500 * ms);
+        CHECK_FALSE(r.link.amplifier.stuck);
+        r.wait(600 * ms);
+        CHECK(r.link.amplifier.stuck);
+        if (wakes)
+            r.dac.wake(true);
+        end(r);
+        CHECK(r.feed.end().why == may_be_on);
+    }
 }
 
 TEST_CASE("a device lost while the line refuses: the reason names the line that may be on")

@@ -462,6 +462,22 @@ TEST_CASE("a file that becomes foreign, or is kept locked, closes all channels w
     }
 }
 
+TEST_CASE("a file that another process keeps locked counts as the limit from the beginning")
+{
+    const folder here;
+    const runtime r(here.path());
+    process one("x");
+    one.drive(0.5);
+    one.play(slow_rate);
+    const std::string path = (here / "tactor/drive-time-x").string();
+    const detail::owned_fd held(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+    REQUIRE(detail::lock_file(held, 0));
+    const process next("x");
+    CHECK(next.book.levels() == std::vector<double>(9, 5.0));
+    CHECK(next.book.doubt() ==
+          path + " is locked by another program: each tactor counts as driven for as long as it may be");
+}
+
 TEST_CASE("a lock that another process holds for a moment costs nothing")
 {
     const folder here;
