@@ -87,6 +87,18 @@ TEST_CASE("the gain recovers a while after the loud part")
     const std::vector<double> x = channel(score(row(4), {{quiet, {}}}, o), 0);
     CHECK(largest(x, 0.05, 0.2) < 0.9);
     CHECK(largest(x, 1.2, 1.3) == doctest::Approx(1.0));
+    // A tactor that goes on alone comes back slowly: the power of nine falls by e in 50 ms, three is the
+    // limit.
+    plan rest = make_plan({make_burst(0.0, 0.2, {}), make_burst(0.2, 0.3, {{0, 1.0}})});
+    for (unsigned i = 0; i < 9; ++i)
+        rest.bursts[0].drives.push_back({i, 1.0});
+    const std::vector<double> y = channel(score(row(9), {{rest, {}}}, o), 0);
+    for (const double after_s : {0.02, 0.03, 0.04}) {
+        CAPTURE(after_s);
+        const double gain = std::sqrt(3.0 / (9.0 * std::exp(-after_s / 0.05)));
+        CHECK(largest(y, 0.2 + after_s, 0.204 + after_s) == doctest::Approx(gain).epsilon(0.05));
+    }
+    CHECK(largest(y, 0.35, 0.45) == doctest::Approx(1.0));
 }
 
 TEST_CASE("a tactor may be driven for five seconds, then it fades")
