@@ -293,6 +293,26 @@ TEST_CASE("two answers of equal standing have lapses at both ends")
     CHECK(*m.jnd == doctest::Approx(0.6744897501960817 * 1.7).epsilon(0.01));
 }
 
+TEST_CASE("the interval of a jnd is that of the slope in the unit of the jnd")
+{
+    const run_outline run = make_run(task_kind::constant);
+    const std::vector<std::size_t> answers{1, 2, 4, 10, 16, 18, 19}; // of 20 to the values -3 to 3
+    std::vector<trial> trials;
+    for (std::size_t k = 0; k < answers.size(); ++k)
+        for (std::size_t i = 0; i < 20; ++i)
+            trials.push_back({.value = static_cast<double>(k) - 3.0, .positive = i < answers[k]});
+    // The distance from a half to three quarters, of the normal and of the logistic function.
+    for (const auto& [kind, quartile] :
+         {std::pair(sigmoid::normal, 0.6744897501960817), {sigmoid::logistic, 1.0986122886681098}}) {
+        const person_measures m = measure_trials(run, trials, kind, "jnd");
+        REQUIRE(m.jnd_ci);
+        CHECK(m.jnd_ci->first < *m.jnd);
+        CHECK(m.jnd_ci->second > *m.jnd);
+        CHECK(m.jnd_ci->first == doctest::Approx(quartile * m.bootstrap.slope->first).epsilon(1e-12));
+        CHECK(m.jnd_ci->second == doctest::Approx(quartile * m.bootstrap.slope->second).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("the t test of the pse is false in one study of twenty, with lapses and without")
 {
     for (const std::size_t people : {12U, 24U})

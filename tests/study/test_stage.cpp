@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stimuli on devices whose clock the test has: frames, and what makes a trial void.
+// Stimuli on devices whose clock the test has: frames, and what makes a trial void. What a session that goes
+// on takes from its table.
 #include "study/session/stage.hpp"
 
 #include <algorithm>
@@ -73,11 +74,37 @@ attribute = "uniformity"
 trials = 2
 )";
 
-environment nine_tactors(double longest_drive_s, double window_s)
+const char* climb = R"(
+[experiment]
+name = "climb"
+level = { dbfs = -20 }
+gap_s = 0.1
+[[motion]]
+name = "east"
+path = "M0 20H40"
+duration = 0.2
+[[method]]
+name = "a"
+algorithm = "tactile-brush"
+[[run]]
+name = "r"
+task = "adaptive"
+question = "Which was stronger?"
+vary = "level_dbfs"
+procedure = "1up1down"
+range = [-40, -8]
+steps = [4]
+start = -16
+standard = -24
+trials = 8
+)";
+
+environment nine_tactors(double longest_drive_s, double window_s, std::optional<double> power_dbfs = {})
 {
     environment e;
     e.tactors = palm();
     e.config.limits.emplace();
+    e.config.limits->power_dbfs = power_dbfs;
     e.config.limits->max_drive_s = longest_drive_s;
     e.config.limits->window_s = window_s;
     return e;
@@ -90,8 +117,9 @@ struct set_up {
     study::stage there;
     std::optional<running_clock> clock; // after the stage, which blocks the signals of threads to come
 
-    explicit set_up(double longest_drive_s = 5.0, double window_s = 10.0)
-        : where(nine_tactors(longest_drive_s, window_s)), there(nine(), {}, where, source(dac))
+    explicit set_up(double longest_drive_s = 5.0, double window_s = 10.0,
+                    std::optional<double> power_dbfs = {})
+        : where(nine_tactors(longest_drive_s, window_s, power_dbfs)), there(nine(), {}, where, source(dac))
     {
         clock.emplace(dac, running_clock::capture_kind::kept);
     }
@@ -230,6 +258,10 @@ TEST_CASE("a stimulus that a limit changed says so")
     CHECK(g.flaw.empty());
     CHECK(g.limited);
     s.there.finish();
+    set_up quiet(5.0, 10.0, -20.0); // of all tactors together, below the usual -12 dBFS of one
+    CHECK_FALSE(quiet.there.give(tone(0.1, 0, {.level_dbfs = -30.0}), 0.0, nobody).limited);
+    CHECK(quiet.there.give(tone(0.1), 0.0, nobody).limited);
+    quiet.there.finish();
 }
 
 TEST_CASE("a stimulus that falls silent because of those before says so")
@@ -265,6 +297,44 @@ TEST_CASE("a stimulus that has waited for room is whole")
         CHECK_FALSE(g.limited);
     }
     s.there.finish();
+}
+
+TEST_CASE("a tactor that has rested before its device was lost needs no rest when it is back")
+{
+    std::vector<std::unique_ptr<fake_dac>> cards;
+    std::unique_ptr<running_clock> clock;
+    session::stream_options o;
+    o.reopen_s = 3600.0;
+    const environment where = nine_tactors(0.3, 6.0);
+    study::stage there(nine(), o, where, [&](session::stream_parts& p) {
+        p.open = [&] {
+            clock.reset();
+            cards.push_back(std::make_unique<fake_dac>());
+            auto card = alsa::adopt(cards.back()->pcm(), nine());
+            clock = std::make_unique<running_clock>(*cards.back());
+            return card;
+        };
+        p.player = patient(p.player.limits);
+        p.player.realtime = false;
+        p.times.retry_s = p.times.proof_s = 0.001;
+    });
+    const auto waits = [&](double seconds) {
+        bool waited = false;
+        CHECK(there.make_room(tone(seconds), lead_s, [&](double) { return waited = true; }));
+        return waited;
+    };
+    CHECK_FALSE(there.give(tone(0.25), lead_s, nobody).limited);
+    CHECK(waits(0.25));
+    CHECK(there.pass(6.0, [](double) { return true; }));
+    CHECK_FALSE(waits(0.25));
+    cards.back()->disconnect();
+    while (!there.lost())
+        std::this_thread::yield();
+    REQUIRE(there.reopen());
+    CHECK(cards.size() == 2);
+    CHECK_FALSE(waits(0.25));
+    there.finish();
+    clock.reset();
 }
 
 TEST_CASE("a tactor of the walk that a limit silenced is driven again when it has rested")
@@ -667,6 +737,46 @@ TEST_CASE("codes that cannot be sent are refused by name before the session")
         warnings.back() ==
         "[sync.codes]: number 44 marks several events: stimulus, motion \"east\", method \"b\", interval 2; "
         "answer, run \"r\", answer 1");
+}
+
+TEST_CASE("a session goes on with the stimuli that its table names, the second of a pair too")
+{
+    const coded_session c(coded_array);
+    const study::run_sequence& run = c.p.runs[0];
+    study::trial_row row = study::planned_row(c.p, run.trials[0], {1, 1});
+    row.response = "1";
+    CHECK_FALSE(study::replay(c.p, run, {row}).done());
+    for (std::string study::trial_row::*plan : {&study::trial_row::plan_1, &study::trial_row::plan_2}) {
+        study::trial_row other = row;
+        std::swap((other.*plan).front(), (other.*plan).back());
+        REQUIRE(other.*plan != row.*plan);
+        CHECK(caught_message([&] { study::replay(c.p, run, {other}); }).find("run r: line 2: trial 1") == 0);
+    }
+}
+
+TEST_CASE("a trial that became void does not move its track, and its answer counts when it comes again")
+{
+    coded_session c(coded_array, climb);
+    const study::run_definition& r = c.p.definition.runs[0];
+    study::run_table table(c.store, r, false);
+    const auto next = [&](unsigned trial, unsigned attempt) {
+        const study::session_step step{study::step_kind::trial, 0, 0, false, {trial, attempt}};
+        return study::find_trial(c.p, step, c.store);
+    };
+    const auto add = [&](unsigned trial, unsigned attempt, bool is_void) {
+        const study::planned_trial t = next(trial, attempt);
+        study::trial_row row = study::planned_row(c.p, t, {trial, attempt});
+        // The value under test, not its standard, was the stronger one.
+        study::set_response(row, c.p, r, row.method_1 == "a" ? 1 : 2, 0.5);
+        row.is_void = is_void;
+        table.add(row, 0, rate);
+        return *study::find_value(c.p.definition, t);
+    };
+    CHECK(add(1, 1, true) == -16.0);
+    CHECK(add(2, 1, false) == -16.0);
+    CHECK(add(1, 2, true) == -20.0);
+    CHECK(add(1, 3, false) == -20.0);
+    CHECK(*study::find_value(c.p.definition, next(3, 1)) == -24.0);
 }
 
 } // namespace stage_test
