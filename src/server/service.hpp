@@ -112,8 +112,8 @@ public:
     /// Handles a large message, which another thread parses. Calls `done` with the result in this
     /// thread.
     void receive_large(client_number number, std::string text, std::function<void(bool)> done);
-    /// Ends the live and held strokes of a client that sends no more. Returns true if it has been sent all its
-    /// messages.
+    /// Ends the live and held strokes of a client that sends no more. Returns true if it has been sent all
+    /// its messages.
     bool input_ended(client_number number);
     /// Sets the handler for the moment when such a client has been sent all its messages.
     void on_all_sent(std::function<void(client_number)> f) { all_sent_ = std::move(f); }

@@ -448,7 +448,7 @@ TEST_CASE("a score that drives a channel without a tactor is refused, others pla
 TEST_CASE("a continuous stroke counts every tactor of its array as driven")
 {
     CHECK(complaint(palm(), short_continuous()).empty());
-    has(complaint(first_of_palm(8), short_continuous()), "it drives tactor 8 on channel 8, where");
+    has(complaint(first_of_palm(8), short_continuous()), "it drives tactor 8 on channel 8, but");
 }
 
 TEST_CASE("a score that drives a tactor above the player's limit is refused, with both levels")

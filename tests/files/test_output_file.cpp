@@ -140,7 +140,7 @@ TEST_CASE("a reader that leaves is a failure that says so")
     CHECK(f.write("x", 1) == 1);
     ::close(reader);
     CHECK(f.write("x", 1) == 0);
-    CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("ended before"), error);
+    CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("ended too early"), error);
 }
 
 TEST_CASE("names of descriptors are written to from their position")
@@ -228,7 +228,7 @@ TEST_CASE("a file that another program wrote or somebody changed is replaced by 
             std::string changed = written;
             changed[place] = changed[place] == 'y' ? 'z' : 'y';
             write("c", changed);
-            CHECK_THROWS_WITH_AS(check("c", false), doctest::Contains("it was changed"), error);
+            CHECK_THROWS_WITH_AS(check("c", false), doctest::Contains("somebody changed it after"), error);
         }
         for (const std::string& changed : {written + "\n", written + "<sha256 >", written.substr(0, 29000)}) {
             write("c", changed);
@@ -237,7 +237,7 @@ TEST_CASE("a file that another program wrote or somebody changed is replaced by 
         }
     }
     write("d", "ours, without a hash");
-    CHECK_THROWS_WITH_AS(check("d", false), doctest::Contains("it was changed"), error);
+    CHECK_THROWS_WITH_AS(check("d", false), doctest::Contains("somebody changed it after"), error);
 }
 
 } // namespace output_file_test

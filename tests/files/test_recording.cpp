@@ -123,7 +123,7 @@ TEST_CASE("a file that is not a WAV file of one channel is refused by name")
     CHECK(refused("", "not a WAV file"));
     CHECK(refused("RIFF\1\2\3\4WAVE", "no samples"));
     CHECK(refused(wav(data), "before their format"));
-    CHECK(refused(wav(chunk("fmt ", "short") + data), "cut off"));
+    CHECK(refused(wav(chunk("fmt ", "short") + data), "incomplete"));
     CHECK(refused(wav(chunk("fmt ", format(1, 40)) + data), "format 1 with 40 bits"));
     CHECK(refused(wav(chunk("fmt ", format(3, 16)) + data), "format 3 with 16 bits"));
     CHECK(refused("RIFF\1\2\3\4AVI LIST", "not a WAV file"));

@@ -318,7 +318,7 @@ TEST_CASE("faults of an SVG file are named by line and column")
          "a.svg:1:7: <line> has both data-duration-s and"},
         {"<svg><line x2='1' data-speed-mm-s='fast'/></svg>",
          "a.svg:1:36: data-speed-mm-s of <line>: 'fast' is not"},
-        {"<svg><line x2='1000' data-speed-mm-s='0.001'/></svg>", "a.svg:1:7: <line> takes 1e+06 s"},
+        {"<svg><line x2='1000' data-speed-mm-s='0.001'/></svg>", "a.svg:1:7: <line> lasts 1e+06 s"},
         {"<svg><line x2='1' data-start-s='-1'/></svg>", "a.svg:1:33: data-start-s of <line>: -1 ("},
         {"<svg><line x2='1' data-intensity='1 2'/></svg>",
          "a.svg:1:36: data-intensity of <line>: '2' follows the number"},

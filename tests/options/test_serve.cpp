@@ -75,7 +75,7 @@ TEST_CASE("[serve]: impossible values are refused with their place")
                             "pi.lan:", "pi.lan:0", "pi.lan:080", "pi.lan:65536", "pi.lan:http", ":80", "::1",
                             "user@pi.lan", "[]", "[pi.lan]", "pi.lan?x"})
         CHECK(says(fmt::format("allow_hosts = ['pi.lan', '{}']", bad))
-                  .find(fmt::format("t:2:26: \"{}\" is not a host (HOST[:PORT] without a scheme", bad)) == 0);
+                  .find(fmt::format("t:2:26: \"{}\" is not a host (", bad)) == 0);
     CHECK(says("http = 'http://pi.lan:80'").find("t:2:8: \"http://pi.lan:80\" is not an address") == 0);
     CHECK(says("tcp = 'pi.lan/x:80'").find("t:2:7: \"pi.lan/x:80\" is not an address") == 0);
     const auto hosts = parse_setup(

@@ -95,7 +95,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
         }
     CHECK(complaint({square}, low, 10.0) ==
           "margin_mm: 10 mm on each side leave no space in the array (use less than 10 mm)");
-    CHECK(complaint({square}, low, -1.0) == "margin_mm: -1 mm (0 mm or more)");
+    CHECK(complaint({square}, low, -1.0) == "margin_mm: -1 mm (give 0 mm or more)");
     CHECK(complaint({square}, low, not_a_number).starts_with("margin_mm: nan mm"));
     CHECK(complaint({square}, low, infinite).starts_with("margin_mm: inf mm"));
 }
@@ -181,11 +181,13 @@ TEST_CASE("an array in one row takes strokes along it")
     CHECK(distance_mm(now.position(1.0), {110, 5}) < 1e-9);
     CHECK(refusal(row, r.strokes[0], {}).empty());
     CHECK(refusal(row, r.strokes[0], strictly(algorithm_kind::continuous)).empty());
-    CHECK(complaint({along("M 0 0 V 9", 1.0)}, l).starts_with("stroke: goes across the line in which all"));
+    CHECK(complaint({along("M 0 0 V 9", 1.0)}, l)
+              .starts_with("stroke: only goes across the line in which all"));
     stroke across = along("M 3 0 V 9", 1.0);
-    CHECK(complaint({circle, across}, l).starts_with("stroke 1: goes across the line in which all"));
+    CHECK(complaint({circle, across}, l).starts_with("stroke 1: only goes across the line in which all"));
     across.name = "left";
-    CHECK(complaint({circle, across}, l).starts_with("stroke \"left\": goes across the line in which all"));
+    CHECK(complaint({circle, across}, l)
+              .starts_with("stroke \"left\": only goes across the line in which all"));
     CHECK(complaint({circle, along("M 3 0 L 3.1 9", 1.0)}, l).empty());
     CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(use less than 60 mm)") != std::string::npos);
 

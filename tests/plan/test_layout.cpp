@@ -240,7 +240,7 @@ TEST_CASE("tactors a micrometre apart beside others far away")
     CHECK(energy(d) == doctest::Approx(1.0));
     CHECK(d.size() == 3);
     CHECK_THROWS_WITH_AS(layout(make_array({{0.0, 0.0}, {2e-6, 0.0}, {0.0, 2e-6}, {1e6, 0.0}, {0.0, 1e6}})),
-                         doctest::Contains("too near"), error);
+                         doctest::Contains("too close"), error);
 }
 
 TEST_CASE("pitch is the median distance to the nearest neighbour")

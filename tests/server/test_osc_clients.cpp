@@ -179,9 +179,9 @@ TEST_CASE("numbers belong to an address with its port")
     rig.say(me, "/tactor/begin", endless(1));
     rig.say(you, "/tactor/begin", endless(1));
     rig.say(me, "/tactor/begin", endless(1));
-    CHECK(has(rig.next(me), "/tactor/error /tactor/begin number: stroke 1 goes on"));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin number: stroke 1 is still playing"));
     rig.say(me, "/tactor/play", {1_i, drawing});
-    CHECK(has(rig.next(me), "/tactor/error /tactor/play number: stroke 1 goes on"));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/play number: stroke 1 is still playing"));
     rig.say(osc_rig::at(9000, "127.0.0.2"), "/tactor/cancel", {1_i});
     CHECK(has(rig.next(osc_rig::at(9000, "127.0.0.2")), "this sender has no stroke 1"));
     rig.say(you, "/tactor/cancel", {1_i});
@@ -385,7 +385,7 @@ TEST_CASE("no time is more than a minute ahead")
 {
     osc_rig rig;
     rig.say_in(61.0, me, {rig.message("/tactor/begin", {1_i})});
-    CHECK(has(rig.next(me), "/tactor/error /tactor/begin time tag: it is 61.0 s ahead (at most 60"));
+    CHECK(has(rig.next(me), "/tactor/error /tactor/begin time tag: it is 61.0 s ahead (send it at most 60"));
     rig.io.poll();
     CHECK(rig.osc.count() == 0);
     rig.say_in(60.0, me, {rig.message("/tactor/begin", {1_i})});

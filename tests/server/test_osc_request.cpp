@@ -151,7 +151,9 @@ TEST_CASE("wrong values are refused by their names")
         {"/tactor/to",
          {"1", 20.0, 10.0},
          "number: it is not a number (send it as i, h, f or d, not as a text)"},
-        {"/tactor/beginn", {1_i}, "address: it is unknown (did you mean /tactor/begin? /tactor/ with play, "},
+        {"/tactor/beginn",
+         {1_i},
+         "address: it is unknown (did you mean /tactor/begin? use /tactor/ with play, "},
         {"/2/play", {1_i}, "did you mean /tactor/play? "},
     };
     for (const auto& c : cases)

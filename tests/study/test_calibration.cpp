@@ -492,7 +492,7 @@ TEST_CASE("a bad simulation is refused with the fault")
     has(complaint("threshold=-45,spread=-1"), "spread is -1");
     has(complaint("threshold=-45,lapse=0.6"), "lapse is 0.6");
     has(complaint("threshold=low"), "\"low\" is not a number");
-    has(complaint("threshold=-45,threshold=-46"), "said twice");
+    has(complaint("threshold=-45,threshold=-46"), "occurs twice");
     has(complaint("threshold=1,2,3"), "3 thresholds for 2 tactors");
     has(complaint("sigma=1,threshold=-45"), "\"sigma\" is unknown");
 }

@@ -244,7 +244,7 @@ TEST_CASE("faults have their line")
     form_says(item + choice + form + item + choice, 26, "\"f\" occurs twice");
     form_says(item + choice + item + choice, 26, "\"i\" occurs twice");
     form_says("[[run.item]]\nname = \"a b\"\n", 21, "name is 'a b'");
-    form_says("[[run.item]]\nname = \"after\"\nquestion = \"?\"\nkind = " + choice, 21, "there twice");
+    form_says("[[run.item]]\nname = \"after\"\nquestion = \"?\"\nkind = " + choice, 21, "occurs twice");
     form_says(item + "\"choice\"\nchoices = [\"a\"]\n", 24, "a choice has 1 text");
     form_says(item + "\"text\"\nrange = [1, 2]\n", 24, "range does not apply to a text");
     form_says(item + "\"number\"\n", 20, "no range");
@@ -289,7 +289,7 @@ TEST_CASE("faults have their line")
              bad_method{"level_dbfs = -20\nsl_db = 7",
                         "e.toml:9:", "sl_db: it cannot be combined with level_dbfs"},
              bad_method{"duration = 1\nspeed = 9", "e.toml:9:", "speed: it cannot be combined with duration"},
-             bad_method{"carrier = 100\ncarrier_hz = 100", "e.toml:9:", "says carrier twice"},
+             bad_method{"carrier = 100\ncarrier_hz = 100", "e.toml:9:", "has carrier twice"},
              bad_method{"snap = true\nnoise_seed = 2",
                         "e.toml:9:", "nothing here uses it (add waveform = \"noise:LO-HI\")"},
              bad_method{"sigma_mm = 3", "e.toml:8:", "(add compensate = \"low-speed\")"},
@@ -329,8 +329,8 @@ TEST_CASE("faults have their line")
          "e.toml:17:", "choices has 1 text (give one for each of the two answers)");
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n",
          "e.toml:17:", "choices has 3 texts");
-    says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "not defined");
-    says(head + motion + methods + run + run, "e.toml:18:", "one name");
+    says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "undefined name");
+    says(head + motion + methods + run + run, "e.toml:18:", "the same name");
     says(head + "order = \"latn\"\n" + motion + methods + run, "e.toml:3:", "did you mean 'latin'");
     says(head + motion + methods + run + "blocks = \"motion\"\n", "e.toml:17:", "did you mean 'motions'");
     says(head + motion + methods + run + "blocks = \"methods\"\n",

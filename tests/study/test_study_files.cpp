@@ -132,9 +132,9 @@ TEST_CASE("cells by name, n/a as missing, lines of any system")
     CHECK(*t.number(0, "x") == 0.5);
     CHECK(!t.number(1, "x"));
     has(caught_message([&] { t.need(1, "motion"); }), "t.tsv:3: motion is missing");
-    has(caught_message([&] { t.cell(0, "y"); }), "t.tsv:1: the column  is missingy");
+    has(caught_message([&] { t.cell(0, "y"); }), "t.tsv:1: the column y is missing");
     has(caught_message([&] { t.whole(1, "trial", 3, 9); }),
-        "t.tsv:3: trial is \"2\" (a whole number from 3 to 9)");
+        "t.tsv:3: trial is \"2\" (give a whole number from 3 to 9)");
     has(caught_message([&] { t.whole(0, "x", 0, 9); }), "x is \"0.5\"");
     has(caught_message([&] { t.number(0, "motion"); }), "t.tsv:2: motion is \"one two\"");
 }
@@ -218,12 +218,12 @@ TEST_CASE("truths in any case, whole numbers with a point")
     CHECK(t.truth(0, "a"));
     CHECK_FALSE(t.truth(1, "a"));
     CHECK(t.truth(2, "a"));
-    has(caught_message([&] { t.truth(3, "a"); }), "t.tsv:5: a is \"yes\" (true or false)");
+    has(caught_message([&] { t.truth(3, "a"); }), "t.tsv:5: a is \"yes\" (give true or false)");
     CHECK(*t.whole(0, "b", 0, 9) == 3);
     CHECK(*t.whole(0, "b", 3, 3) == 3);
     for (std::size_t row = 1; row < 4; ++row)
         has(caught_message([&] { t.whole(row, "b", 0, 4294967295U); }), "a whole number from 0");
-    has(caught_message([&] { t.whole(0, "b", 4, 9); }), "b is \"3.0\" (a whole number from 4 to 9)");
+    has(caught_message([&] { t.whole(0, "b", 4, 9); }), "b is \"3.0\" (give a whole number from 4 to 9)");
     has(caught_message([&] { t.whole(0, "b", 0, 2); }), "b is \"3.0\"");
 }
 

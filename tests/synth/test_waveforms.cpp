@@ -444,7 +444,7 @@ TEST_CASE("waves that cannot be rendered are refused with a hint")
     CHECK(refused(shape(waveform_kind::sine), {3900.0, 1.0}, "half the rate", 8000));
     CHECK(refused(shape(waveform_kind::recording), {}, "no samples"));
     CHECK(refused(recorded({0.5F}, texture_kind::cycle), {}, "1 sample"));
-    CHECK(refused(recorded({0.0F, std::nanf("")}, texture_kind::time), {}, "no number"));
+    CHECK(refused(recorded({0.0F, std::nanf("")}, texture_kind::time), {}, "not a number"));
     std::vector<float> samples(4000000, 1.0F);
     samples[0] = 0.5F;
     CHECK(refused(recorded(samples, texture_kind::time, 100.0), {}, "too long"));

@@ -133,10 +133,9 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
     if (!(std::abs(p.t_s) <= detail::longest_stroke_s))
         refuse(fmt::format("time {:g} s", p.t_s),
                fmt::format("a stroke lasts at most {:g} s", detail::longest_stroke_s));
-    for (const double v : {p.position.x_mm, p.position.y_mm}) {
+    for (const double v : {p.position.x_mm, p.position.y_mm})
         if (!(std::abs(v) <= detail::max_mm))
             refuse(fmt::format("coordinate {:g} mm", v), fmt::format("give at most {:g} mm", detail::max_mm));
-    }
     check_intensity(fmt::format("point {}", i + 1), p.intensity);
     if (i == 0 && p.t_s != 0.0)
         refuse(fmt::format("time {} s", p.t_s), "make the first time 0");

@@ -220,7 +220,7 @@ TEST_CASE("a missing permission names the group to join, and how")
     s.write("dev/snd/pcmC0D0p", ""); // a node of the group that runs this test
     const std::string group = alsa::playback_group(s.root());
     if (group == "root")
-        has(s.says("hw:0", -EPERM), "root's alone");
+        has(s.says("hw:0", -EPERM), "only root may open");
     else
         has(s.says("hw:0", -EPERM), "usermod -aG " + (group.empty() ? "audio" : group) + " $USER");
 }

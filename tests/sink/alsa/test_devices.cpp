@@ -326,7 +326,7 @@ TEST_CASE("an unsafe name chosen by others is refused with the reason, before it
     CHECK(complaint("hw:CARD=Nowhere") == "");
     CHECK(complaint("nobody-defines-this") == "");
     has(complaint("file:'|id > X',raw"),
-        "PCM 'file:'|id > X',raw': more than the name of a device: ' may not");
+        "PCM 'file:'|id > X',raw': more than the name of a device: it must not contain '");
     // It looks harmless, but ALSA defines it as a file.
     has(complaint("file:victim,raw"), "it writes a file or starts a command");
     has(complaint("tee:hw"), "it writes");

@@ -444,7 +444,7 @@ TEST_CASE("a device that changes the set values is refused")
           device_answers{.buffer_frames = 95}}) {
         const std::string said = caught_message([&] { agreed(a); });
         has(said, "asked for 8 channels at 48000 Hz in s32");
-        has(said, "it made ");
+        has(said, "it gave ");
     }
     CHECK(agreed({.buffer_frames = 96}).setup.buffer_frames == 96);
 }
