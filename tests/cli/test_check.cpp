@@ -321,8 +321,7 @@ TEST_CASE("findings have this form")
         failure("device", error(error_kind::not_available, "PCM \"x\"", "no such PCM", "try y"))};
     CHECK(check_text(all, false) ==
           "ok       array          palm-3x3: 9 tactors\n"
-          "warning  sound servers  pipewire (process 812): may use card Tactor at any\n"
-          "                        time\n"
+          "warning  sound servers  pipewire (process 812): may use card Tactor at any time\n"
           "                        -> call the card Tactor\n"
           "error    device         PCM \"x\": no such PCM\n"
           "                        -> try y\n"

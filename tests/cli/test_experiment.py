@@ -802,7 +802,7 @@ class Power(ExperimentTest):
             os.kill(os.getpid(), signal.SIGINT)
         result = self.run_tool("experiment", "park2016", "--power", "1000", "--studies", "1000000", *self.SPEC, before=pending)
         self.assertEqual((result.returncode, result.stdout), (130, ""))
-        self.assertIn("ended by a signal, before there was a result", result.stderr)
+        self.assertIn("ended by a signal before there was a result", result.stderr)
 
 
 if __name__ == "__main__":

@@ -87,7 +87,7 @@ class Codes(PersonTest):
         self.write("array.toml", ARRAY.replace("15", "14"))
         self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=["codes"])
         self.write("array.toml", '[array]\npreset = "palm-3x3"\n[output]\nchannels = 16\n')
-        self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=['"codes" is not as it was'])
+        self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=['"codes" differs from the start'])
 
     def test_without_codes_there_are_no_events(self):
         self.simulate("01")
@@ -99,7 +99,7 @@ class Codes(PersonTest):
                                ("15 }", "15 }\n[sync.codes]\nanswer = 254", 'up to number 265 (void), but 255 is the largest'),
                                ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8]', 'up to number 24 (void), but 15 is the largest (use more lines, or'),
                                ("channel = 15", 'chip = "c", offsets = [5, 6, 7, 8, 9], pulse_ms = 800',
-                                "array.toml:4:8: code: pulse_ms is 800, and the answer's number may come 7"),
+                                "array.toml:4:8: code: pulse_ms is 800, but the answer's number may come 7"),
                                ('code = { channel = 15 }', 'out = { chip = "c", offset = 5, pulse_ms = 2000 }', "[sync] out: pulse_ms is 2000"),
                                ("channel = 15", "lsl = 1", "array.toml:4:16: lsl is 1"),
                                ("channel = 15", 'chip = "c", offsets = [5, 6.7]', "array.toml:4:36: an offset is 6.7")):
@@ -175,7 +175,7 @@ class Codes(PersonTest):
         os.close(box)
         said = process.communicate("y\n" * 3 + "1\n" * 5)[1]
         self.assertEqual(process.returncode, 0, said)
-        self.assertEqual(said.count("tactor: the serial port did not take a code\n"), 4)  # of an answer
+        self.assertEqual(said.count("tactor: the serial port did not accept a code\n"), 4)  # of an answer
         self.assertEqual([e["event"] for e in self.events("marks")], ["stimulus", "answer"] * 2)
 
     def test_what_is_no_serial_port_is_refused_before_the_first_trial(self):
@@ -190,7 +190,7 @@ class Codes(PersonTest):
         self.assertEqual(t.end(), 2)
         self.assertIn("serial: /dev/tty: it is the terminal of this session", t.said())
         self.write("desk.toml", DESK + '[sync]\ncode = { serial = "/dev/ttyS0", baud = 1 }\n')
-        self.refused(2, "experiment", "short.toml", "--dry-run", says=("desk.toml:5:40: baud is 1 (one of 4800, 9600, ",))
+        self.refused(2, "experiment", "short.toml", "--dry-run", says=("desk.toml:5:40: baud is 1 (use one of 4800, 9600, ",))
         self.assertFalse((self.dir / "study").exists())
 
     def test_an_answer_is_kept_though_the_session_ends_while_its_code_is_sent(self):

@@ -85,7 +85,7 @@ TEST_CASE("cards, other PCMs and chips have this form")
 
 Sound cards
 
-  hw:CARD=DAC8x,DEV=0   <- the one that is configured
+  hw:CARD=DAC8x,DEV=0   <- the configured one
     snd_rpi_hifiberry_dac8x, HifiBerry DAC8x
     fits      palm-2x4
     channels  2, 4, 8
@@ -96,11 +96,11 @@ Sound cards
   hw:CARD=Headphones,DEV=0
     held by   pipewire (process 812), a program (process 813)
     cannot    it is busy: pipewire (process 812) plays on it (a sound server
-              has it: the udev rules keep those off the card Tactor)
+              uses it: the udev rules keep sound servers off the card Tactor)
 
 Other PCMs
 
-  Not tried, since to open them may start a card or a sound server (-D NAME
+  Not tried, because opening them may start a card or a sound server (-D NAME
   tries one):
     default
 
