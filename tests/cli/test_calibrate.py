@@ -162,7 +162,7 @@ class Simulated(CalibrateTest):
     def test_a_level_that_does_not_fit_is_warned_of_at_once_and_refused_later(self):
         self.write("weak.toml", PALM + "".join(f"[[tactor]]\ntactor = {i}\nmax_dbfs = -10\n" for i in range(9)))
         said = self.simulated("me.toml", "--array", "weak.toml", spec="threshold=-14,spread=0.5")
-        self.assertRegex(said.stderr, r"tactor 0: 7 dB above its threshold of -1\d\.\d\d dBFS are \d\.\d\d dB more")
+        self.assertRegex(said.stderr, r"tactor 0: 7 dB above its threshold of -1\d\.\d\d dBFS exceed its limit by \d\.\d\d dB")
         self.refused(2, "render", "--path", "M 0 0 L 0.001 0", "--array", "me.toml", "--sl", 7, "-o", "x.wav")
 
     def test_no_level_is_above_the_array_s_limit(self):

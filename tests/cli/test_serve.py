@@ -86,7 +86,7 @@ class Sockets(ServeTest):
         self.assertTrue(os.path.exists(first.where["socket"]))
         self.assertEqual(self.serve().terminate()[0], 0)
         self.write("s.sock", "mine")
-        self.refuses_to_start(2, says="no socket")
+        self.refuses_to_start(2, says="not a socket")
         self.assertEqual((self.dir / "s.sock").read_text(), "mine")
 
     def test_inherited_sockets_win_stay_and_are_checked_like_bound_ones(self):
@@ -126,7 +126,7 @@ class Sockets(ServeTest):
 
     def test_bad_addresses_are_refused_with_the_reason(self):
         short = {"config": self.token("fifteen letters"), "says": "15 characters (put at least 16"}
-        for args, more in ((("--tcp", "nonsense:1:2"), {"says": "no address"}), (("--tcp", "0.0.0.0:0"), {"says": "token_file"}),
+        for args, more in ((("--tcp", "nonsense:1:2"), {"says": "not an address"}), (("--tcp", "0.0.0.0:0"), {"says": "token_file"}),
                            (("--http", "0.0.0.0:0"), {"says": "token_file"}),
                            (("--tcp", "0.0.0.0:0"), short), (("--http", "0.0.0.0:0"), short), (("--socket", "x" * 200), {"says": "name"}),
                            ((), {"config": "[serve]\nhttpp = 4\n", "says": "httpp"}), ((), {"config": '[serve]\ntcp = "x"\n', "says": "serve.toml:2:"}),

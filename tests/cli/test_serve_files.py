@@ -112,7 +112,7 @@ class Import(ServeTest):
                                   ({"name": "a.csv", "text": "t_s,x_mm,y_mm\n0,0,0\n1,x,0\n"}, "text", "3:3: "),
                                   ({"name": "a.svg", "text": "<svg>\n<path d='M 0 x'/></svg>"}, "text", "2:"),
                                   ({"name": "a.json", "text": "{\n"}, "text", "2:1: "),
-                                  ({"name": "a.json", "text": "{}"}, "text", "no plan"),
+                                  ({"name": "a.json", "text": "{}"}, "text", "not a plan"),
                                   ({"name": "a.json", "text": '{"schema": "tactor-plan/1", "array": {"tactors": 7}}'}, "text", "text: algorithm: is missing"),
                                   ({"text": "hello"}, "text", "1:"), ({"text": ""}, "text", ""),
                                   ({"base64": "aGVsbG8"}, "base64", "no base64"), ({"base64": "a b="}, "base64", "no base64"),

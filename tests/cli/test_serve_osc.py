@@ -44,7 +44,7 @@ class ServeOsc(ServeTest):
         self.assertIn(["/tactor/stream", "closing"], told)
 
     def test_beyond_loopback_only_peers_are_heard(self):
-        for address, says in (("0.0.0.0:0", "osc_peers"), ("[::]:0", "osc_peers"), ("nonsense:1:2", "no address")):
+        for address, says in (("0.0.0.0:0", "osc_peers"), ("[::]:0", "osc_peers"), ("nonsense:1:2", "not an address")):
             self.refuses_to_start(2, "--osc", address, says=says)
         self.refuses_to_start(2, "--osc", "0", config='[serve]\nosc_peers = ["10.0.0.0/40"]\n', says="neither an address nor a prefix")
         own = [a for a in subprocess.run(["hostname", "-I"], capture_output=True, text=True, check=False).stdout.split() if "." in a]

@@ -167,7 +167,7 @@ class Web(ServeTest):
         c = s.client()
         c.ok("hello")
         self.assertEqual(s.peer().upgrade(), 503)
-        self.assertIn("all places are taken", s.client(tcp=True).next()["error"]["message"])
+        self.assertIn("places for clients are taken", s.client(tcp=True).next()["error"]["message"])
         c.raw(b"x" * 2000 + b"\n")
         while c.next() is not None:
             pass
