@@ -475,7 +475,7 @@ TEST_CASE("a file that another process keeps locked counts as the limit from the
     const process next("x");
     CHECK(next.book.levels() == std::vector<double>(9, 5.0));
     CHECK(next.book.doubt() ==
-          path + " is locked by another program: each tactor counts as driven for as long as it may be");
+          path + " is locked by another program: each tactor counts as driven for as long as allowed");
 }
 
 TEST_CASE("a lock that another process holds for a moment costs nothing")
