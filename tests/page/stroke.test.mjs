@@ -194,10 +194,3 @@ test("handles are so far apart, and the ends and one that is wanted have one", (
   assert.deepEqual(s.handles_apart(knots, 10, 4), [0, 4, 8]);
   assert.deepEqual(s.handles_apart(knots.slice(0, 2), 10), [0, 1]);
 });
-
-test("the distance from a path is that from its nearest piece", () => {
-  const corner = [[0, 0], [10, 0], [10, 10]];
-  for (const [place, off] of [[[4, 3], 3], [[-3, -4], 5], [[12, 5], 2], [[10, 0], 0], [[13, 14], 5], [[8, 1], 1], [[9, 4], 1]])
-    assert.ok(Math.abs(s.off_path_mm(corner, place) - off) < 1e-12, `${place}`);
-  assert.equal(s.off_path_mm([[1, 1]], [4, 5]), 5);
-});

@@ -62,15 +62,3 @@ export function envelope_picture(burst_s, attack_s, release_s, carrier_hz, kind)
   const top = Array.from({length: 121}, (_, i) => [14 + 268 * i / 120, 40 - 30 * at(i / 120)]);
   return picture(296, 80, line(wave, {stroke: "var(--ink3)", "stroke-width": 0.9}), line(top, {"stroke-width": 2}));
 }
-// Draws values over time, as a line with its area.
-export function spark(values, level = null) {
-  const most = Math.max(1e-9, ...values, level ?? 0), n = values.length;
-  if (n < 2) return picture(140, 26);
-  const points = values.map((v, i) => [140 * i / (n - 1), 24 - 22 * Math.min(1, v / most)]);
-  const area = [[0, 25], ...points, [140, 25]];
-  return make("svg", {viewBox: "0 0 140 26", preserveAspectRatio: "none", class: "spark", "aria-hidden": "true"},
-    make("path", {d: `M${area.map(p => p.map(v => v.toFixed(1)).join(" ")).join("L")}Z`, fill: "var(--felt-soft)"}),
-    line(points, {stroke: "var(--felt)", "stroke-width": 1.3, "vector-effect": "non-scaling-stroke"}),
-    level === null ? null : line([[0, 24 - 22 * level / most], [140, 24 - 22 * level / most]],
-      {stroke: "var(--ink)", "stroke-width": 1.3, "vector-effect": "non-scaling-stroke"}));
-}

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT The prediction, and faults of the take in plain words, with remedies.
-import {state, changed, on_change, current_take, current_stroke, level_dbfs, say} from "../state.js";
+import {state, changed, on_change, current_take, level_dbfs, say} from "../state.js";
 import {by_id, make, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, edit_take, fit_take, algorithm} from "../takes/takes.js";
 import {excess_db, limit_text, weaken_take} from "../service/planner.js";
-import {spark} from "./diagrams.js";
 import {path_word, lag_word, even_word, facts_text, number_text, fault_sentence} from "../words.js";
-import {duration_s, length_mm, outside_mm, off_path_mm} from "../takes/stroke.js";
+import {outside_mm} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
-import {felt_speeds} from "../time/curves.js";
 
 const OUTSIDE_MM = 0.5;
 
@@ -20,23 +18,12 @@ function show_predicted() {
   set_text("pill-text", is_known ? `${number_text(mm)} mm from the path` : "");
   by_id("predicted").replaceChildren(...!is_known
     ? [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : state.link === "lost" && current_take() ? "No connection: there is no plan." : "Draw, and the prediction shows here.")]
-    : [tile(number_text(mm), "mm", [path_word(mm / array.pitch), `, ${lag_word(lag_s)}`], spark(errors_over_time())),
-      typeof cv !== "number" ? tile("–", "", ["speed is not predicted"], spark([]))
-        : tile(number_text(cv, 2), "CV of speed", [even_word(cv)], spark(felt_speed(), mean_speed()))]);
+    : [tile(number_text(mm), "mm", [path_word(mm / array.pitch), `, ${lag_word(lag_s)}`]),
+      typeof cv !== "number" ? tile("–", "", ["speed is not predicted"])
+        : tile(number_text(cv, 2), "CV of speed", [even_word(cv)])]);
 }
-const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
-  make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")), picture);
-function errors_over_time() {
-  const take = current_take(), plan = state.plan;
-  if (!take) return [];
-  const step = Math.max(1, Math.floor(plan.felt.length / 80));
-  return plan.felt_rows.flatMap((rows, i) => {
-    const path = take.strokes[i]?.timed.map(q => [q[1], q[2]]) ?? [];
-    return path.length === 0 ? [] : rows.filter((_, k) => k % step === 0).map(f => off_path_mm(path, [f[1], f[2]]));
-  });
-}
-const felt_speed = () => felt_speeds(state.plan).flat().map(r => r[1]);
-const mean_speed = () => { const s = current_stroke(); return s ? length_mm(s.timed) / duration_s(s) : null; };
+const tile = (figure, unit, word) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
+  make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")));
 
 // Shows warnings in plain words, with remedies.
 function show_warnings() {

@@ -431,12 +431,6 @@ function segment_mm(a, b, p) {
   const part = nearest_part(a, b, p), x = between(a[0], b[0], part) - p[0], y = between(a[1], b[1], part) - p[1];
   return Math.sqrt(x * x + y * y);
 }
-// Returns the distance of a place from a path of straight pieces between places.
-export function off_path_mm(path, p) {
-  let off = segment_mm(path[0], path[0], p);
-  for (let i = 1; i < path.length; i++) off = Math.min(off, segment_mm(path[i - 1], path[i], p));
-  return off;
-}
 // Returns the place of a hull that is nearest to p.
 export const within = (edge, p) => outside_mm(edge, p) === 0 ? p : edge.map((a, i) => nearest_on(a, edge[(i + 1) % edge.length], p))
   .reduce((best, q) => distance(q, p) < distance(best, p) ? q : best);
