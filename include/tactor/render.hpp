@@ -115,6 +115,16 @@ public:
     score(const array& a, Plan p, const render_options& o = {}) : score(a, alone(std::move(p)), o)
     {
     }
+    /// Makes a score of samples of one's own. They play exactly as they are, from frame 0 on: no gain_db,
+    /// polarity or rise_s of a tactor and no phase, ramp or envelope of `o` changes them, only limits do.
+    /// Formats of fewer bits get them rounded; a negative zero becomes zero. A channel without a tactor
+    /// plays, too, up to full scale. For limits on power and drive time, the envelope of a channel is its
+    /// peak within the 10 to 20 ms before and after, or what its mean square makes of a sine. The whole
+    /// counts as one stroke. Any thread; takes as long as one look at each sample. \throws error (bad_input)
+    /// if `s` has no frame or a part of one, too many bytes, another rate or number
+    ///         of channels than `o`, samples that are not finite, or, on a tactor, a peak above o.level_dbfs
+    ///         or the tactor's max_dbfs; and if `o` has a sensation level, because samples have no carrier.
+    [[nodiscard]] static score from_samples(const array& a, own_samples s, const render_options& o = {});
     score(const score&) noexcept = default;
     score& operator=(const score&) noexcept = default;
 

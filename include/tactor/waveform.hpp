@@ -3,6 +3,7 @@
 /// Sound of a tactor: waveform, modulation, and rise and fall of a burst.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include <tactor/api.hpp>
+#include <tactor/choices.hpp>
 
 namespace tactor {
 inline namespace v0 {
@@ -96,6 +98,28 @@ struct modulation {
 /// bits.
 /// \throws error (bad_input) that names the file.
 [[nodiscard]] TACTOR_API recording load_recording(const std::filesystem::path& file);
+
+/// Most bytes of own_samples, which stay in memory while they play: 10 minutes of nine channels of floats.
+inline constexpr std::size_t most_own_bytes = std::size_t{1} << 30;
+
+/// Samples of one's own for all channels of a stream; score::from_samples() makes a score of them.
+struct own_samples {
+    std::string file = {}; ///< file of origin, for messages
+    unsigned rate = 48000; ///< Hz
+    unsigned channels = 1; ///< sample i of each frame is for channel i of the stream
+    format_kind format = format_kind::float32;
+    /// Frames one after the other, little-endian, at most most_own_bytes. Full scale is 1.0 for floats and
+    /// 2^(bits - 1) for integers.
+    std::vector<std::byte> bytes = {};
+
+    friend bool operator==(const own_samples&, const own_samples&) = default;
+};
+
+/// Reads a WAV file (RIFF, RF64 or BW64) of any number of channels, without a loss: integers of 8 to 32 bits
+/// and floats of 32 bits. Floats of 64 bits become floats of 32 bits. For a moment the file is in memory
+/// twice. Blocks on the file system.
+/// \throws error (bad_input) that names the file, also where it is cut short or longer than most_own_bytes.
+[[nodiscard]] TACTOR_API own_samples load_samples(const std::filesystem::path& file);
 
 /// Checks ranges. The constructor of a score checks values that depend on the sample rate.
 /// \throws error (bad_input) that names the field.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// WAV files as waveforms, and the words by which waveforms are named.
+// WAV files as waveforms and as samples of one's own, and the words by which waveforms are named.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,14 +8,17 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/waveform.hpp>
 
 #include "core/sha256.hpp"
 #include "core/split.hpp"
@@ -51,8 +54,8 @@ struct wav_format {
     std::uint16_t tag = 0; ///< 1 integers, 3 floats
     std::uint16_t channels = 0;
     std::uint32_t rate = 0;
-    std::uint16_t bits = 0;  ///< bits of a sample
-    std::uint16_t bytes = 0; ///< bytes of a sample with its padding
+    std::uint16_t bits = 0; ///< bits of a sample
+    std::size_t bytes = 0;  ///< bytes of a sample with its padding
 };
 
 /// Format and samples of a WAV file, whatever chunks lie between and even if the recorder did not write the
@@ -64,7 +67,7 @@ struct wav_parts {
 };
 
 [[noreturn]] void refuse_wav(const std::string& name, std::string_view why,
-                             std::string_view hint = "give a WAV file of one channel")
+                             std::string_view hint = "give a WAV file")
 {
     throw error(error_kind::bad_input, source_place{name}, why, hint);
 }
@@ -78,13 +81,13 @@ wav_format read_format(std::string_view chunk, const std::string& name)
     const auto frame_bytes = get<std::uint16_t>(chunk, 12);
     if (f.tag == extensible && chunk.size() >= 26)
         f.tag = get<std::uint16_t>(chunk, 24); // the first bytes of the sub-format are the plain tag
-    if (f.channels != 1)
-        refuse_wav(name, fmt::format("it has {} channels", f.channels),
-                   "give one, such as by: sox IN OUT remix 1");
-    f.bytes = frame_bytes == 0 ? static_cast<std::uint16_t>((f.bits + 7) / 8) : frame_bytes;
+    if (f.channels == 0 || f.rate == 0 || frame_bytes % f.channels != 0)
+        refuse_wav(name, fmt::format("its frames of {} for {} at {} Hz cannot be",
+                                     counted(frame_bytes, "byte"), counted(f.channels, "channel"), f.rate));
+    f.bytes = frame_bytes == 0 ? (f.bits + 7U) / 8U : frame_bytes / std::size_t{f.channels};
     const bool known = (f.tag == integers && f.bits >= 1 && f.bits <= 32) ||
                        (f.tag == floats && (f.bits == 32 || f.bits == 64));
-    const bool fits = f.bytes == (f.bits + 7) / 8 || (f.tag == integers && f.bytes == 4);
+    const bool fits = f.bytes == (f.bits + 7U) / 8U || (f.tag == integers && f.bytes == 4);
     if (!known || !fits)
         refuse_wav(name,
                    fmt::format("its samples are of format {} with {} in {}", f.tag, counted(f.bits, "bit"),
@@ -154,12 +157,18 @@ float decode_integer(std::string_view sample, std::size_t bytes)
     return static_cast<float>(std::bit_cast<std::int32_t>(upper)) * 0x1p-31F;
 }
 
+/// Returns true for integers in the lower three bytes of four.
+bool is_in_lower_bytes(const wav_format& f, std::string_view samples)
+{
+    return f.tag == integers && f.bytes == 4 && f.bits <= 24 && !is_in_upper_bytes(samples);
+}
+
 /// Returns the first `most` samples, integers as fractions of full scale.
 std::vector<float> decode_wav(const wav_parts& parts, std::size_t most)
 {
     const wav_format& f = parts.format;
     const std::string_view samples = parts.samples.substr(0, most * f.bytes);
-    const bool is_lower = f.tag == integers && f.bytes == 4 && f.bits <= 24 && !is_in_upper_bytes(samples);
+    const bool is_lower = is_in_lower_bytes(f, samples);
     std::vector<float> x;
     x.reserve(samples.size() / f.bytes);
     for (std::size_t at = 0; at + f.bytes <= samples.size(); at += f.bytes) {
@@ -201,12 +210,43 @@ wav_parts find_wav_parts(std::string_view file, const std::string& name)
 
 } // namespace
 
+own_samples parse_samples(std::string_view bytes, const std::string& name)
+{
+    const wav_parts parts = find_wav_parts(bytes, name);
+    const wav_format& f = parts.format;
+    const std::size_t frame_bytes = f.channels * f.bytes;
+    const std::uint64_t announced = parts.announced / frame_bytes;
+    const std::size_t frames = parts.samples.size() / frame_bytes;
+    if (frames < announced)
+        refuse_wav(name,
+                   fmt::format("it is cut short: {} of {} are there", frames, counted(announced, "frame")),
+                   "write it again");
+    own_samples s{.file = name, .rate = f.rate, .channels = f.channels};
+    const auto take = [&s](std::span<const std::byte> all) { s.bytes.assign(all.begin(), all.end()); };
+    if (f.bytes == 1 || f.bytes == 8) { // floats hold eight bits, too
+        const std::vector<float> decoded = decode_wav(parts, frames * f.channels);
+        take(std::as_bytes(std::span(decoded)));
+        return s;
+    }
+    const bool is_lower = is_in_lower_bytes(f, parts.samples);
+    s.format = f.tag == floats ? format_kind::float32
+               : f.bytes == 2  ? format_kind::s16
+               : f.bytes == 3  ? format_kind::s24_3
+               : is_lower      ? format_kind::s24_4
+                               : format_kind::s32;
+    take(std::as_bytes(std::span(parts.samples.substr(0, frames * frame_bytes))));
+    return s;
+}
+
 recording parse_recording(std::string_view bytes, const std::string& name)
 {
     waveform as_texture;
     as_texture.kind = waveform_kind::recording;
     as_texture.texture = texture_kind::time;
     const wav_parts parts = find_wav_parts(bytes, name);
+    if (parts.format.channels != 1)
+        refuse_wav(name, fmt::format("it has {} channels", parts.format.channels),
+                   "give one, such as by: sox IN OUT remix 1");
     const auto shared = std::make_shared<recording>();
     shared->file = name;
     shared->rate_hz = parts.format.rate;
@@ -246,15 +286,39 @@ waveform parse_noise(std::string_view band)
 
 } // namespace
 
-recording load_recording(const std::filesystem::path& file)
+namespace {
+
+/// Refuses a named pipe: a pipe of the shell, <(...), has its other end already; this one would be waited for
+/// in silence.
+void refuse_pipe(const std::filesystem::path& file)
 {
-    // A pipe of the shell, <(...), already has its other end; waiting for another pipe would hang without a
-    // message.
     std::error_code unknown;
     if (std::filesystem::is_fifo(file, unknown) &&
         std::filesystem::exists(std::filesystem::canonical(file, unknown)))
         throw error(error_kind::bad_input, source_place{file.string()}, "is a pipe",
                     "name a WAV file: it is read several times");
+}
+
+} // namespace
+
+own_samples load_samples(const std::filesystem::path& file)
+{
+    refuse_pipe(file);
+    constexpr std::size_t most_bytes = most_own_bytes + (std::size_t{1} << 16); // with its other chunks
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    if (!unknown && size > most_bytes)
+        throw error(error_kind::bad_input, source_place{file.string()},
+                    fmt::format("its {} MB are too many: {} MB are held in memory at most", size >> 20,
+                                most_own_bytes >> 20),
+                    "cut it into pieces, such as by: sox IN OUT trim 0 600");
+    const detail::whole_text bytes = detail::read_text_file(file, most_bytes);
+    return detail::parse_samples(bytes, file.string());
+}
+
+recording load_recording(const std::filesystem::path& file)
+{
+    refuse_pipe(file);
     const detail::whole_text bytes = detail::read_text_file(file, max_file_bytes);
     return detail::parse_recording(bytes, file.string());
 }

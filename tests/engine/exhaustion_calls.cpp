@@ -213,6 +213,11 @@ call_table sound_calls(const call_things& t)
         {"score::score", [&t, plans] { return score(t.a, plans); }},
         {"score::score", [&t] { return score(t.a, t.p); }},
         {"score::score, continuous", [&t, sine] { return score(t.a, sine); }},
+        {"score::from_samples",
+         [] {
+             const array one = make_grid("one", 1, 1, 20.0, 20.0);
+             return score::from_samples(one, {.bytes = std::vector<std::byte>(4096)});
+         }},
         {"score_builder::score_builder", [&t] { const score_builder made(t.a, {}); }},
         {"score_builder::add",
          [&t] {
@@ -286,6 +291,7 @@ call_table file_calls(const call_things& t)
         {"parse_setup", [] { return parse_setup(array_text, "a.toml"); }, ends},
         {"parse_waveform, of noise", [] { return parse_waveform("noise:50-500"); }},
         {"parse_waveform", [wave_file] { return parse_waveform(wave_file.string()); }, opens},
+        {"load_samples", [wave_file] { return load_samples(wave_file); }, opens},
         {"load_recording", [wave_file] { return load_recording(wave_file); }, opens},
         {"write_wav", [sound, &t] { write_wav(sound, format_kind::s16, t.here.path() / "x.wav"); }, opens},
     };

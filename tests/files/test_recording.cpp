@@ -132,6 +132,50 @@ TEST_CASE("a file that is not a WAV file of one channel is refused by name")
     CHECK(refused(wav(head + chunk("data", "ab")), "1 sample"));
 }
 
+TEST_CASE("a WAV file of several channels is read without a loss")
+{
+    const folder dir;
+    const auto load = [&](const std::string& text) { return load_samples(dir.write("a.wav", text)); };
+    const auto text = [](const own_samples& s) {
+        return std::string(reinterpret_cast<const char*>(s.bytes.data()), s.bytes.size());
+    };
+    const auto check = [&](const std::string& file, format_kind f, const std::string& expected_bytes) {
+        const own_samples s = load(file);
+        CHECK(s.rate == 8000);
+        CHECK(s.channels == 2);
+        CHECK(s.format == f);
+        CHECK(text(s) == expected_bytes);
+        CHECK(has(s.file, "a.wav"));
+    };
+    const std::string two = samples<std::int16_t>({16384, -8192, 0, 1});
+    check(wav(chunk("fmt ", format(1, 16, 2)) + chunk("data", two)), format_kind::s16, two);
+    const std::string five = samples<float>({0.1F, -0.25F, 1e-30F, 1.0F});
+    check(wav(chunk("fmt ", format(3, 32, 2)) + chunk("LIST", "odd") + chunk("data", five)),
+          format_kind::float32, five);
+    const std::string whole = samples<std::int32_t>({1, -1, 1 << 30, 3});
+    check(wav(chunk("fmt ", format(1, 32, 2)) + chunk("data", whole)), format_kind::s32, whole);
+    const std::string three("\1\2\x40\0\3\xE0", 6);
+    check(wav(chunk("fmt ", format(1, 24, 2)) + chunk("data", three)), format_kind::s24_3, three);
+    check(wav(chunk("fmt ", format(1, 8, 2)) + chunk("data", samples<std::uint8_t>({0, 255, 128, 129}))),
+          format_kind::float32, samples<float>({-1.0F, 0.9921875F, 0.0F, 0.0078125F}));
+    check(wav(chunk("fmt ", format(3, 64, 2)) + chunk("data", samples<double>({0.1, -0.25}))),
+          format_kind::float32, samples<float>({0.1F, -0.25F}));
+    check(long_sizes("RF64", 8, chunk("fmt ", format(1, 16, 2)) + "data" + bytes(0xFFFFFFFFU) + two),
+          format_kind::s16, two);
+    const std::string in_four = bytes(std::uint16_t{1}) + bytes(std::uint16_t{2}) +
+                                bytes(std::uint32_t{8000}) + bytes(std::uint32_t{64000}) +
+                                bytes(std::uint16_t{8}) + bytes(std::uint16_t{24});
+    const std::string lower = samples<std::int32_t>({0x123456, -5});
+    check(wav(chunk("fmt ", in_four) + chunk("data", lower)), format_kind::s24_4, lower);
+    const std::string upper = samples<std::int32_t>({0x12345600, -5 * 256});
+    check(wav(chunk("fmt ", in_four) + chunk("data", upper)), format_kind::s32, upper);
+    check(wav(chunk("fmt ", format(1, 16, 2)) + open_data(0xFFFFFFFFU, two + "odd")), format_kind::s16, two);
+    CHECK(has(caught_message([&] { load(wav(chunk("fmt ", format(1, 16, 2)) + open_data(80, two))); }),
+              "a.wav: it is cut short: 2 of 20 frames are there"));
+    CHECK(has(caught_message([&] { load(wav(chunk("fmt ", format(1, 16, 0)) + chunk("data", two))); }),
+              "0 channels"));
+}
+
 TEST_CASE("24 bits in four bytes are found at either end, however quiet")
 {
     const std::initializer_list<std::int32_t> loud{0, 4194304, -2097152, 8388607, -8388608};

@@ -237,6 +237,15 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
                                 *made.marker),
                     "choose a spare channel for it")
             .with_field("marker_channel");
+    const bool has_own = made.sounds.size() > made.plans.size();
+    for (std::size_t i = 0; has_own && i < made.list.items.size(); ++i) {
+        const synth::item& it = made.list.items[i];
+        if (it.kind == synth::item_kind::own && made.limits[it.tactor] == 0.0 && limits[it.tactor] > 0.0)
+            throw error(error_kind::bad_input, "samples",
+                        fmt::format("channel {} has a tactor of the player's array, which their own has not",
+                                    it.tactor),
+                        "make the score for the array that the player was opened with");
+    }
 }
 
 } // namespace

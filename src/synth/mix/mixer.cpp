@@ -153,8 +153,8 @@ struct channel_mixer {
                                [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
     }
 
-    // Returns true if a marker is only on channels without a tactor, which a constant would displace, and
-    // another voice only on channels with one.
+    // Returns true if a voice without a carrier, such as a marker, is only on channels without a tactor,
+    // which a constant would displace, and another voice only on channels with one.
     bool plays(const voice& v) const noexcept
     {
         bool fits = true;
@@ -401,7 +401,8 @@ void channel_mixer::mix(const voice& v, bool last, unsigned n) noexcept
 {
     const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
     const auto to = static_cast<unsigned>(std::min(v.end, position + n) - position);
-    const double* s = v.cycles_per_frame == 0.0 ? ones.data() : shaped(v, position, n, wave::sine);
+    const bool is_marker = v.cycles_per_frame == 0.0 && v.sound == nullptr;
+    const double* s = is_marker ? ones.data() : shaped(v, position, n, wave::sine);
     if (v.points != 0) {
         mix_line(v, s, n);
         return;
@@ -412,7 +413,7 @@ void channel_mixer::mix(const voice& v, bool last, unsigned n) noexcept
         strip& t = strips[d.channel];
         if (!t.sounding) {
             begin_strip(d.channel, v, from);
-            t.steady = d.slope == 0.0 && carrier.is_plain(s);
+            t.steady = d.slope == 0.0 && carrier.is_plain(s) && (v.sound == nullptr || v.sound->is_steady());
             t.reach(from, to, peak);
             if (d.slope == 0.0 && to - from == n) {
                 t.lone = s;

@@ -29,8 +29,8 @@ class mixer {
 public:
     /// Makes a mixer. `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the
     /// channel count. `capacity`: drives that may wait or sound at once. A channel whose limit is 0 has no
-    /// tactor: markers sound on it, and nothing else does. Markers sound nowhere else. `guards` limit the
-    /// power of all channels together and the time of each.
+    /// tactor: drives without a carrier sound on it, and nothing else does. They sound nowhere else. `guards`
+    /// limit the power of all channels together and the time of each.
     mixer(std::span<const double> limits, format_kind format, std::size_t capacity = 8192,
           const guard_settings& guards = {});
     ~mixer();

@@ -39,9 +39,9 @@ struct channel_line {
 /// signal at frame start + j is
 ///     amplitude(j) * w(ramp_position + j) * sin(2 pi cycles_per_frame (phase_frame + j))
 /// (1 in place of the sine where cycles_per_frame is 0: a marker, which only a channel without a tactor
-/// takes) with w the window of `window` frames that rises in `ramp` and falls in `release`. A timbre stands
-/// in for the sine; what of it goes on through the stroke, whatever the carrier's phase does, is at frame
-/// phase_origin + phase_frame + j.
+/// takes; samples of one's own there have no cycles either) with w the window of `window` frames that rises
+/// in `ramp` and falls in `release`. A timbre stands in for the sine; what of it goes on through the stroke,
+/// whatever the carrier's phase does, is at frame phase_origin + phase_frame + j.
 struct drive_event {
     std::uint64_t start = 0;         ///< frames since the start of the score (source) or of the epoch (mixer)
     std::uint64_t phase_frame = 0;   ///< carrier frame at `start`

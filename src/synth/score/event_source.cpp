@@ -8,6 +8,7 @@
 #include "core/access.hpp"
 #include "synth/mix/window.hpp"
 #include "synth/score/frames.hpp"
+#include "synth/tone/own_samples.hpp"
 
 namespace tactor::synth {
 namespace {
@@ -143,6 +144,9 @@ void expander::advance()
     case item_kind::marker:
         marker_event();
         break;
+    case item_kind::own:
+        own_event();
+        break;
     }
 }
 
@@ -225,6 +229,21 @@ void expander::marker_event() noexcept
     event_.sound = nullptr;
     event_.ramp = event_.release = 0;
     event_.drive[event_.drives++] = {score_->marker_level, score_->marker_level, item_->tactor};
+    position_ = item_->end();
+}
+
+void expander::own_event() noexcept
+{
+    if (position_ >= item_->end()) {
+        done_ = true;
+        return;
+    }
+    stretch(position_, item_->length);
+    event_.sound = score_->sounds[item_->first].get();
+    if (score_->limits[item_->tactor] == 0.0)
+        event_.cycles_per_frame = 0.0; // there is no tactor
+    const double unit = event_.sound->own->unit;
+    event_.drive[event_.drives++] = {unit, unit, item_->tactor};
     position_ = item_->end();
 }
 

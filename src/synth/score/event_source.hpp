@@ -58,6 +58,7 @@ private:
     void joined_event() noexcept;
     void continuous_event();
     void marker_event() noexcept;
+    void own_event() noexcept;
     void take_sample(std::uint64_t step);
     bool next_points();
 

@@ -241,6 +241,7 @@ sweep sweep_items(const score::impl& s, bool exact)
             break;
         }
         case item_kind::marker:
+        case item_kind::own:
             break;
         case item_kind::burst:
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
@@ -469,6 +470,7 @@ public:
                     note(m, it.end(), 1.0);
                 break;
             case item_kind::marker:
+            case item_kind::own:
                 break;
             }
         }

@@ -207,23 +207,9 @@ double hz_at(const plan& p, double t_s)
 
 /// A score that is being made.
 struct score_builder::impl {
-    impl(const array& tactors, const render_options& options) : a(tactors), o(options)
+    impl(const array& tactors, const render_options& options)
+        : a(tactors), o(options), s(synth::begin_score(a, o))
     {
-        validate(a);
-        check_options(o);
-        s->rate = o.rate;
-        s->phase = o.phase;
-        s->envelope = o.envelope;
-        s->channels = count_channels(a, o);
-        check_marker(a, o, s->channels);
-        if (o.limits)
-            s->guards = synth::make_guards(*o.limits, o.rate);
-        s->tactors = synth::tactor_levels(a, o);
-        s->unmeasured = synth::unmeasured_tactors(a, o);
-        const auto curved = [](const tactor_spec& t) { return !t.thresholds.empty(); };
-        if (o.sl_db && std::any_of(a.tactors.begin(), a.tactors.end(), curved))
-            s->measured = a.tactors;
-        s->limits = synth::channel_limits(a, s->channels);
     }
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
@@ -259,7 +245,7 @@ struct score_builder::impl {
 
     array a;
     render_options o;
-    std::shared_ptr<score::impl> s = std::make_shared<score::impl>();
+    std::shared_ptr<score::impl> s;
     detail::start_times times;
     synth::timbre_shelf shelf;
 };
@@ -297,10 +283,7 @@ score score_builder::take()
     const auto done = std::exchange(impl_, std::make_unique<impl>(impl_->a, impl_->o));
     score::impl& s = *done->s;
     const render_options& o = done->o;
-    if (o.marker_channel)
-        place_markers(s, synth::frame_at(o.marker_s, o.rate), *o.marker_channel);
-    sort_by_start(s.list.items);
-    measure(s);
+    synth::end_items(s, o);
     std::vector<double> peaks = synth::check_peaks(done->s, done->a, o);
     s.boosted = synth::boost_rises(s, done->a, peaks);
     if (s.boosted) {
@@ -397,3 +380,36 @@ double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
 
 } // namespace v0
 } // namespace tactor
+
+namespace tactor::synth {
+
+std::shared_ptr<score::impl> begin_score(const array& a, const render_options& o)
+{
+    validate(a);
+    check_options(o);
+    const auto s = std::make_shared<score::impl>();
+    s->rate = o.rate;
+    s->phase = o.phase;
+    s->envelope = o.envelope;
+    s->channels = count_channels(a, o);
+    check_marker(a, o, s->channels);
+    if (o.limits)
+        s->guards = make_guards(*o.limits, o.rate);
+    s->tactors = tactor_levels(a, o);
+    s->unmeasured = unmeasured_tactors(a, o);
+    const auto curved = [](const tactor_spec& t) { return !t.thresholds.empty(); };
+    if (o.sl_db && std::any_of(a.tactors.begin(), a.tactors.end(), curved))
+        s->measured = a.tactors;
+    s->limits = channel_limits(a, s->channels);
+    return s;
+}
+
+void end_items(score::impl& s, const render_options& o)
+{
+    if (o.marker_channel)
+        place_markers(s, frame_at(o.marker_s, o.rate), *o.marker_channel);
+    sort_by_start(s.list.items);
+    measure(s);
+}
+
+} // namespace tactor::synth

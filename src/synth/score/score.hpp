@@ -40,17 +40,18 @@ enum class item_kind : std::uint8_t {
     joined,     ///< one tactor, several bursts under one carrier
     continuous, ///< a whole continuous stroke
     marker,     ///< a stroke's beginning or a code's bit, on a channel without a tactor
+    own,        ///< a channel of one's own samples
 };
 
 /// A stretch of one carrier, in frames of the score. Ten hours have half a million of them, so it is compact.
 struct item {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
-    std::uint64_t first = 0; ///< index of its first drive (burst) or member (joined)
+    std::uint64_t first = 0; ///< index of its first drive (burst) or member (joined); of an own one, its sound
     std::uint32_t count = 0;
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
-    std::uint16_t tactor = 0; ///< joined: the tactor; marker: the channel
+    std::uint16_t tactor = 0; ///< joined: the tactor; marker and own samples: the channel
     item_kind kind = item_kind::burst;
     std::uint64_t end() const noexcept { return start + length; }
 };
@@ -78,8 +79,9 @@ namespace tactor {
 inline namespace v0 {
 
 struct score::impl {
-    std::vector<placed_plan> plans;                           ///< without bursts, which became the items
-    std::vector<std::shared_ptr<const synth::timbre>> sounds; ///< timbre of each plan; null: a sine
+    std::vector<placed_plan> plans; ///< without bursts, which became the items
+    /// Timbre of each plan (null: a sine), then of each channel of own samples.
+    std::vector<std::shared_ptr<const synth::timbre>> sounds;
     std::vector<std::uint64_t> starts;
     std::vector<std::uint64_t> ends;          ///< end of each plan
     std::vector<synth::tactor_level> tactors; ///< by index
@@ -116,6 +118,13 @@ struct score::impl {
 } // namespace tactor
 
 namespace tactor::synth {
+
+/// Begins a score without plans.
+/// \throws error (bad_input) for impossible render_options or an impossible array.
+std::shared_ptr<score::impl> begin_score(const array& a, const render_options& o);
+
+/// Adds markers, and puts all items in order.
+void end_items(score::impl& s, const render_options& o);
 
 /// Appends the items of bursts of plan number `plan`, which starts at frame `start`. Bursts that overlap on
 /// one tactor are joined; bursts that only touch are not. `bursts` may be a part of the plan's bursts, from

@@ -7,6 +7,7 @@
 
 #include "core/access.hpp"
 #include "synth/score/score.hpp"
+#include "synth/tone/own_samples.hpp"
 
 namespace tactor::synth {
 
@@ -43,9 +44,11 @@ const std::vector<double>& sounding_now::at(std::uint64_t frame)
     for (const drive_event& e : open_) {
         const double part = static_cast<double>(frame - e.start) / e.length;
         const auto add = [this](std::uint32_t channel, double a) { energy_[channel] += a * a; };
+        const bool is_own = e.sound != nullptr && !e.sound->is_steady();
+        const double envelope = is_own ? e.sound->own->envelope(frame - e.start) : 1.0;
         for (std::uint32_t i = 0; i < e.drives; ++i) {
             const channel_drive& d = e.drive[i];
-            add(d.channel, d.from + part * (d.to - d.from));
+            add(d.channel, envelope * (d.from + part * (d.to - d.from)));
         }
         if (e.points != 0)
             add(e.line.channel, amplitude_at(e.line, e.points, frame - e.start));

@@ -7,6 +7,7 @@
 
 #include "core/clones.hpp"
 #include "synth/mix/oscillator.hpp"
+#include "synth/tone/own_samples.hpp"
 
 namespace tactor::synth {
 
@@ -145,6 +146,12 @@ TACTOR_CLONES void read_cycle(const wave_samples& cycle, const double* turns, un
 
 void timbre::fill(std::int64_t first, std::int64_t origin, unsigned n, double* out, wave w) const noexcept
 {
+    if (form == form_kind::own) {
+        own->read(first, n, out);
+        if (w == wave::cosine)
+            own->complete_envelope(first, n, out);
+        return;
+    }
     if (form == form_kind::loop)
         read_loop(*samples, first, n, out);
     else

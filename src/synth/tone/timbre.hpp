@@ -30,6 +30,8 @@ struct course_part {
 /// Upper bound of `power` for any wave between -1 and 1.
 inline constexpr double most_power = 2.0;
 
+struct own_channel;
+
 /// Points of a cycle, or frames of a loop.
 using wave_samples = std::vector<float>;
 
@@ -38,9 +40,11 @@ struct timbre {
         sine,  ///< modulated, or with a varying frequency
         cycle, ///< a table of one cycle
         loop,  ///< samples at the rate of the stream
+        own,   ///< samples of one's own, as they are
     };
     form_kind form = form_kind::sine;
     std::shared_ptr<const wave_samples> samples = {};
+    std::shared_ptr<const own_channel> own = {};
     double cycles_per_frame = 0.0;        ///< cycles per frame without a course
     std::vector<course_part> course = {}; ///< in order of start, the first from 0 or before
     double power = 1.0; ///< twice the mean square at peak 1, but at least 1, the square of the peak
@@ -48,9 +52,11 @@ struct timbre {
     double am_depth = 0.0;
 
     bool is_sine() const noexcept { return form == form_kind::sine; }
+    /// Returns true if a constant amplitude makes a constant envelope.
+    bool is_steady() const noexcept { return form != form_kind::own; }
     /// Computes out[j], the sample of the stroke's frame first + j, for j < n, at most block_frames; -1 to 1,
     /// without the modulation. The carrier's phase is 0 at frame `origin`; a loop has none. With wave::cosine
-    /// it is the sample that completes the envelope: sin^2 + cos^2 = power.
+    /// it is the sample that completes the envelope: sin^2 + cos^2 = power, or what own_channel says.
     void fill(std::int64_t first, std::int64_t origin, unsigned n, double* out, wave w) const noexcept;
 };
 
