@@ -102,7 +102,7 @@ void add_channel(score::impl& s, own_channel c)
 {
     for (std::size_t i = 0; i < s.tactors.size(); ++i)
         if (s.tactors[i].channel == c.channel)
-            s.asked[i] = c.peak;
+            s.asked[i] = std::min(c.peak, s.limits[c.channel]); // which rounding may exceed
     if (c.peak == 0.0)
         return;
     synth::item it;
