@@ -11,6 +11,8 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/start_times.hpp"
+#include "core/words.hpp"
+#include "options/settle.hpp"
 #include "session/process.hpp"
 
 namespace tactor::cli {
@@ -109,6 +111,19 @@ std::optional<stroke> find_preset(const std::string& argument)
     return preset_stroke(argument); // its error lists the presets
 }
 
+bool names_samples(std::string_view argument)
+{
+    const std::string_view end = argument.substr(argument.size() - std::min<std::size_t>(argument.size(), 4));
+    return end.size() == 4 && in_small_letters(std::string(end)) == ".wav";
+}
+
+void refuse_samples(const std::string& argument)
+{
+    if (names_samples(argument))
+        throw error(error_kind::bad_input, argument, "it has samples, and there is no stroke to plan",
+                    "{command:play} and {command:render} take it");
+}
+
 std::string shown_name(const std::string& argument)
 {
     return argument == "-" ? "standard input" : argument;
@@ -154,6 +169,10 @@ piece open_piece(const settings& s, const environment& e, const layout& faces, c
         p.name = argument;
         return p;
     }
+    if (names_samples(argument)) {
+        options::refuse_for_samples(s, argument);
+        return p;
+    }
     if (s.path_data)
         p.strokes = session::read_strokes("path", *s.path_data, argument, s);
     else if (s.shape)
@@ -174,6 +193,7 @@ piece open_piece(const settings& s, const environment& e, const layout& faces, c
 piece plan_one_piece(const settings& s, const environment& e)
 {
     const layout faces(e.tactors);
+    refuse_samples(stroke_arguments(s).front());
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
     detail::start_times times;
     for_each_stroke(p, p.strokes.size(), [&](std::size_t i) {
@@ -188,6 +208,8 @@ piece plan_one_piece(const settings& s, const environment& e)
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render)
 {
+    if (names_samples(p.name))
+        return score::from_samples(e.tactors, load_samples(p.name), render);
     score_builder made(e.tactors, render);
     if (p.plans.empty())
         for_each_stroke(p, p.strokes.size(), [&](std::size_t i) {

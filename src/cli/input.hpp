@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/tactor.hpp>
@@ -24,6 +25,12 @@ std::vector<std::string> stroke_arguments(const settings& s);
 /// name that is neither.
 std::optional<stroke> find_preset(const std::string& argument);
 
+/// Returns true for a STROKE argument that is a WAV file: samples of one's own.
+bool names_samples(std::string_view argument);
+
+/// Refuses such a file where strokes are planned. \throws error (bad_input).
+void refuse_samples(const std::string& argument);
+
 /// Returns a STROKE argument as people read it: - is standard input.
 std::string shown_name(const std::string& argument);
 
@@ -35,6 +42,7 @@ std::string name_stroke(const piece& p, std::size_t i, const environment& e);
 error of_stroke(const error& x, const piece& p, std::size_t i);
 
 /// Reads one of the stroke_arguments(). A plan comes with its plans; what is a stroke is not planned yet.
+/// Samples of one's own are not read yet: their piece has no strokes.
 /// `faces` is what --fit puts strokes on. \throws error.
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
 
@@ -43,7 +51,7 @@ piece open_piece(const settings& s, const environment& e, const layout& faces, c
 piece plan_one_piece(const settings& s, const environment& e);
 
 /// Makes the score of a piece, with `render.rate` and channels settled. Takes the plans that the piece has;
-/// plans of other strokes become a part of the score one by one. \throws error.
+/// plans of other strokes become a part of the score one by one. Reads samples of one's own. \throws error.
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render);
 

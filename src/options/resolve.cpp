@@ -156,6 +156,13 @@ void refuse_planning(const option_values& w, const std::string& what)
                           "plan the stroke again with it, or leave it out");
 }
 
+void refuse_for_samples(const option_values& w, const std::string& what)
+{
+    for (const option& o : all())
+        if (((o.where & planning) != 0 || o.in == group::sound || o.name == "together") && w.gives(o))
+            throw refusal(o, fmt::format("{} has samples, which play as they are", what), "leave it out");
+}
+
 error at_default(const option_values& w, const error& e)
 {
     const option* o = find(e.field());

@@ -42,6 +42,10 @@ void resolve(option_values& w);
 /// \throws error (bad_input).
 void refuse_planning(const option_values& w, const std::string& what);
 
+/// Refuses options that apply to strokes but not to own samples.
+/// \throws error (bad_input).
+void refuse_for_samples(const option_values& w, const std::string& what);
+
 /// Adds the place in [defaults] to an error about a value from there. Returns other errors unchanged.
 error at_default(const option_values& w, const error& e);
 

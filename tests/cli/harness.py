@@ -191,7 +191,11 @@ class ToolTest(unittest.TestCase):
 
 def wav_bytes(samples, rate=8000, channels=1, bits=16, tag=1):
     """Makes a WAV file of one channel; its header says what the arguments ask for."""
-    data = b"".join(struct.pack("<h", round(32767 * s)) for s in samples)
+    return wav_file(b"".join(struct.pack("<h", round(32767 * s)) for s in samples), channels, bits, tag, rate)
+
+
+def wav_file(data, channels, bits, tag=1, rate=48000):
+    """Makes a WAV file of these bytes of samples."""
     size = bits // 8 * channels
     head = struct.pack("<HHIIHH", tag, channels, rate, rate * size, size, bits)
     chunks = b"fmt " + struct.pack("<I", len(head)) + head + b"data" + struct.pack("<I", len(data)) + data

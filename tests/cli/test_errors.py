@@ -155,7 +155,7 @@ class Files(ErrorsTest):
 
     def test_what_is_no_text_is_named(self):
         wav = wav_bytes([0.0] * 100)
-        for name, data, says in (("s.wav", wav, "is a WAV file, not text"), ("s.toml", wav, "is a WAV file"), ("s.csv", wav, "is a WAV file"), ("s.svg", wav, "is a WAV file"),
+        for name, data, says in (("s.wav", wav, "it has samples"), ("s.toml", wav, "is a WAV file, not text"), ("s.csv", wav, "is a WAV file"), ("s.svg", wav, "is a WAV file"),
                                  ("s", b"RF64" + wav[4:], "is a WAV file"), ("p.png", b"\x89PNG\r\n\x1a\n\0", "is a PNG picture"),
                                  ("p.pdf", b"%PDF-1.7\n%\xe2", "is a PDF document"), ("t.csv", b"PK\x03\x04\x14\0", "is a ZIP archive or office document"),
                                  *((name, text.encode(code), "is UTF-16") for name, text in (("s.toml", STROKE), ("s.csv", CSV), ("s.txt", CSV))

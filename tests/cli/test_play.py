@@ -2,14 +2,17 @@
 """tactor play on ALSA's null and file devices, which need no hardware and pace themselves; and drive time from run to run."""
 import datetime
 import json
+import math
 import os
+import random
 import re
 import resource
 import signal
+import struct
 import subprocess
 import time
 
-from harness import ALSA_CONFIG, FELT_CONFIG, GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
+from harness import ALSA_CONFIG, FELT_CONFIG, GRID, PATIENCE_S, TOOL, ToolTest, Wav, main, wav_file
 from serving import Server
 
 # The fade of 10 ms is in one period: it is written whole, even where the machine stands still beyond the wait for it.
@@ -27,6 +30,93 @@ class Play(ToolTest):
         start, lead = (next(i for i, v in enumerate(data) if v) // 18 for data in (raw, wav))
         heard = raw[(start - lead) * 18:]
         self.assertEqual((heard[:len(wav)], set(heard[len(wav):])), (wav, {0}))
+
+    def test_samples_of_ones_own_come_out_bit_for_bit(self):
+        rng = random.Random(4)
+        floats = b"".join(struct.pack("<f", rng.uniform(-0.25, 0.25)) for _ in range(9 * 2000))
+        # A quarter of full scale at most keeps the level of -12 dBFS.
+        files = {"float": (floats, 32, 3), **{f"s{bits}": (b"".join(rng.randrange(-2 ** (bits - 3), 2 ** (bits - 3)).to_bytes(bits // 8, "little", signed=True)
+                                                                    for _ in range(9 * 2000)), bits, 1) for bits in (16, 24, 32)}}
+        for name, (data, bits, tag) in files.items():
+            self.write("Nine.WAV", wav_file(data, 9, bits, tag))
+            self.ok("render", "Nine.WAV", "--sample-format", name, "-o", "o.wav")
+            self.assertEqual(Wav(self.dir / "o.wav").data, data, name)
+            raw = self.dir / f"{name}.raw"
+            r = self.ok("play", "Nine.WAV", "--sample-format", name, "-D", f"raw:{raw}")
+            before, heard, after = raw.read_bytes().partition(data)
+            self.assertEqual((heard == data, set(before + after)), (True, {0}), name)
+            self.assertIn("Nine.WAV: played", r.stdout)
+        # Eight bits: 128 is zero, and 160 a quarter.
+        self.write("eight.wav", wav_file(bytes([128, 160, 97] * 3), 9, 8))
+        self.ok("render", "eight.wav", "--sample-format", "s16", "-o", "o.wav")
+        self.assertEqual(Wav(self.dir / "o.wav").data, struct.pack("<hhh", 0, 8192, -7936) * 3)
+
+    def test_what_render_writes_plays_again(self):
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\nmax_dbfs = -12\n[sync]\nchannel = 2\n')
+        for name in ("float", "s16", "s24", "s32"):
+            self.ok("render", "--path", "M 0 0 L 20 0", "--array", "a.toml", "--sample-format", name, "-o", "w.wav")
+            r = self.ok("play", "w.wav", "--array", "a.toml", "--sample-format", name, "--format", "json", "-D", f"raw:{self.dir}/{name}.raw")
+            self.assertIn(Wav(self.dir / "w.wav").data, (self.dir / f"{name}.raw").read_bytes(), name)
+            counters = json.loads(r.stdout)["counters"]
+            self.assertEqual((counters["power_limited_frames"], counters["drives_cut"]), (0, 0))
+
+    def test_samples_that_do_not_fit_are_refused_with_what_to_do(self):
+        tone = [round(0.5 * 32768 * math.sin(k * math.pi / 96)) for k in range(4800)]
+
+        def written(name, channels, rate=48000, data=None):
+            data = b"".join(struct.pack("<h", v) * channels for v in tone) if data is None else data
+            return self.write(name, wav_file(data, channels, 16, rate=rate))
+
+        written("nine.wav", 9)
+        says = "channel 0 (tactor 0) peaks at -6.02 dBFS, 5.98 dB above the level of -12 dBFS (make it quieter by 5.98 dB, or use --level-dbfs -6.02)"
+        self.refused(2, "play", "nine.wav", "-D", "null", says=[says])
+        self.refused(2, "render", "nine.wav", "-o", "o.wav", says=[says])
+        self.ok("play", "nine.wav", "--level-dbfs", "-6.02", "-D", "null")
+        self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\nmax_dbfs = -20\n')
+        self.refused(2, "play", "nine.wav", "--array", "a.toml", "--level-dbfs", "0", says=["13.98 dB above its limit of -20 dBFS"])
+        written("slow.wav", 9, 44100)
+        self.refused(2, "play", "slow.wav", "--level-dbfs", "0", says=["44100 Hz, and the stream 48000 Hz (use --rate 44100, or convert it: sox IN -r 48000 OUT)"])
+        self.ok("play", "slow.wav", "--level-dbfs", "0", "--rate", "44100", "-D", "null")
+        written("two.wav", 2)
+        self.refused(2, "play", "two.wav", "--level-dbfs", "0", says=["2 channels, and the stream 9 (add silent ones: sox IN OUT remix 1 2 0 0 0 0 0 0 0)"])
+        written("ten.wav", 10)
+        self.refused(2, "play", "ten.wav", "--level-dbfs", "0", says=["10 channels, and the stream 9 (use --channels 10, or leave some out: sox IN OUT remix 1 2 3 4 5 6 7 8 9)"])
+        self.ok("play", "ten.wav", "--level-dbfs", "0", "--channels", "10", "-D", "null")
+        written("empty.wav", 9, data=b"")
+        self.refused(2, "play", "empty.wav", says=["empty.wav: there are no samples in it"])
+        self.write("cut.wav", (self.dir / "nine.wav").read_bytes()[:-1000])
+        self.refused(2, "play", "cut.wav", says=["cut.wav: it is cut short"])
+        self.write("text.wav", "x y")
+        self.refused(2, "play", "text.wav", says=["text.wav: it is no WAV file"])
+        self.refused(2, "play", "missing.wav", says=["missing.wav: No such file"])
+        self.refused(2, "play", "nine.wav", "--sl", "7", says=["nine.wav: it has no carrier"])
+        for option in (("--soa", "0.1"), ("--carrier", "100"), ("--ramp", "0.01"), ("--speed", "10"), ("--together", "sum")):
+            self.refused(2, "play", "nine.wav", *option, says=["has samples, which play as they are (leave it out)"])
+        for command in (("plan",), ("plot", "-o", "o.svg"), ("compare",)):
+            self.refused(2, *command, "nine.wav", says=["nine.wav: it has samples, and there is no stroke to plan (tactor play and tactor render take it)"])
+        with (self.dir / "huge.wav").open("wb") as f:
+            f.truncate(3 << 30)
+        self.refused(2, "play", "huge.wav", says=["huge.wav: its 3072 MB are too many: 1024 MB are held in memory at most"])
+
+    def test_samples_have_the_limits_and_the_end_of_strokes(self):
+        def tone(seconds, peak):
+            cycle = b"".join(struct.pack("<h", round(peak * 32768 * math.sin(k * math.pi / 96))) * 9 for k in range(192))
+            return wav_file(cycle * (250 * seconds), 9, 16)
+
+        self.write("tone.wav", tone(1, 0.25))
+        for options, cut, limited in (((), False, False), (("--max-drive-s", "0.3", "--drive-window-s", "1"), True, False), (("--power-dbfs", "-20"), False, True)):
+            counters = json.loads(self.ok("play", "tone.wav", "-D", "null", "--format", "json", *options).stdout)["counters"]
+            self.assertEqual((counters["drives_cut"] > 0, counters["power_limited_frames"] > 1000), (cut, limited), options)
+        self.write("long.wav", tone(60, 0.01))
+        raw = self.dir / "out.raw"
+        p = self.start_tool("play", "long.wav", "tone.wav", "-D", f"raw:{raw}", "--sample-format", "s16", "--format", "json", *WHOLE_FADE, stdout=subprocess.PIPE)
+        self.heard_for(p, raw, 18 * 4800)
+        p.send_signal(signal.SIGINT)
+        out, _ = p.communicate(timeout=PATIENCE_S)
+        self.assertEqual((p.returncode, [s["state"] for s in json.loads(out)["strokes"]]), (130, ["cancelled", "not played"]))
+        heard = memoryview(raw.read_bytes()).cast("h")
+        self.assertEqual(set(heard[-9:]), {0})
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(heard[9:], heard)), 328 * 0.0328 + 2)
 
     def test_device_and_strokes_are_named(self):
         r = self.ok("play", "park2016-1", "park2016-2", "--duration", "0.2")

@@ -45,6 +45,8 @@ class Remote(ServeTest):
                          [("park2016-1", "finished"), (str(stroke), "finished")])
         self.assertEqual(record["strokes"][1]["frames"], 9600)
         self.assertEqual((record["schema"], record["device"]["pcm"]), ("tactor-play/1", "null"))
+        self.write("nine.wav", "RIFF")
+        self.refused(2, "play", "nine.wav", "--socket", s.where["socket"], says=["nine.wav: it has samples, which a server takes from nobody"])
         self.write("meet.toml", "".join(f"[[stroke]]\nstart_s = 0.0\npath = '{path}'\nduration_s = 0.56\n" for path in ("M 0 20 H 40", "M 40 20 H 0")))
         for where in ((), ("--socket", s.where["socket"])):
             ran = self.ok("play", "meet.toml", "--format", "json", *where)

@@ -299,6 +299,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     if (e.plans.contains(argument))
         throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
                     "give the stroke: compare plans it itself");
+    refuse_samples(argument);
     const piece p = open_piece(s, e, faces, argument);
     if (!asked.picture.file.empty() && p.strokes.size() > 1)
         refuse_option("-o", fmt::format("there are {} strokes", p.strokes.size()), "a picture shows one");
