@@ -350,6 +350,31 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     return py::make_tuple(made, recipe(common) + py::make_tuple(py::tuple(py::cast(levels))));
 }
 
+// Makes a score of interleaved samples of a format, which Python's array holds.
+py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsigned channels, format_kind f,
+                         const py::dict& given, const setup* file)
+{
+    wishes w;
+    w.place = options::in_score;
+    take_options(w, given, 0, file);
+    const render_options o = settled(on.value(), w.render);
+    const py::buffer_info info = frames.request();
+    const std::span bytes(static_cast<const std::byte*>(info.ptr),
+                          static_cast<std::size_t>(info.size * info.itemsize));
+    const score made = [&] {
+        const without_lock free;
+        if (bytes.size() > most_own_bytes) // before they are copied
+            throw error(error_kind::bad_input, "samples",
+                        fmt::format("{} MB are too many: {} MB are held in memory at most",
+                                    bytes.size() >> 20, most_own_bytes >> 20),
+                        "play them in pieces");
+        own_samples s{.rate = o.rate, .channels = channels, .format = f};
+        s.bytes.assign(bytes.begin(), bytes.end());
+        return score::from_samples(on.value(), std::move(s), o);
+    }();
+    return py::make_tuple(made, recipe(o) + py::make_tuple(f, o.level_dbfs));
+}
+
 // Checks for Ctrl-C without the lock: throws an exception of Python's handler.
 void check_signals()
 {
@@ -413,6 +438,7 @@ void write(const score& s, const std::string& file, const std::string& format)
 void bind_score(py::module_& m)
 {
     m.def("make_score", &make_score);
+    m.def("make_own_score", &make_own_score);
     py::class_<score>(m, "Score")
         .def_property_readonly("frames", &score::frames)
         .def_property_readonly("channels", &score::channels)

@@ -25,7 +25,7 @@ HAS = {
     "Plan": "plan", "Player.position": "player_position", "Player.stats": "player_stats", "Point": "point",
     "Plan.percept": "predict_percept follow_percept", "Array.preset": "preset_array", "Stroke.preset": "preset_stroke", "Score.render": "renderer",
     "Error.file": "source_place", "Player.submit": "start_at start_kind", "Stroke.start": "start_anchor", "Stroke.start_from": "start_from_kind",
-    "Score.starts": "start_times_s", "Report.state": "state_kind", "Report.reason": "reason_kind", "Player.ended": "stream_end",
+    "Score.from_samples": "own_samples", "Score.starts": "start_times_s", "Report.state": "state_kind", "Report.reason": "reason_kind", "Player.ended": "stream_end",
     "Ticket.wait": "wait_kind wait_result", "Player.setup": "stream_setup", "Stroke": "stroke trajectory", "Stroke.choices": "stroke_choices",
     "Ticket.id": "stroke_id", "stroke_presets": "stroke_presets", "stroke_shapes": "stroke_shapes", "Stroke.shape": "shape_stroke",
     "Report": "stroke_report", "Ticket.__await__": "stroke_waiter", "Tactor": "tactor_spec", "Stroke.timed": "timed_point", "__version__": "version",
@@ -45,7 +45,8 @@ HAS_NOT = {
     "resolve_start_s": "Score does it for its plans",
     "parse_envelope envelope_text": "envelope and tukey_part of a Score",
     "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",
-    "least_noise_hz most_cycle_samples most_recording_samples max_pcm_channels": "bounds, which messages say",
+    "load_samples": "SciPy and others read WAV files",
+    "least_noise_hz most_cycle_samples most_recording_samples most_own_bytes max_pcm_channels": "bounds, which messages say",
     "stroke_fit stroke_sound stroke_places carrier_part carrier_point":
         "of stroke files: Stroke.load(), and the record of a plan: Plan.to_dict()",
     "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",

@@ -15,11 +15,12 @@ from tactor._array import Array
 from tactor._checks import encoded, _need, _number, _Unique, _whole
 from tactor._errors import InputError
 from tactor._plan import Plan, plan
-from tactor._score import Score
+from tactor._score import _find_frames, Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
+    from numpy.typing import NDArray as _NDArray
     from tactor._plan import _Algorithm, _Faces, _IntensityScale, _Outside, _Phantom, _Phase, _SampleFormat, _Texture, PhantomModel
     from tactor._stroke import Stroke
     from tactor._ticket import _LogKind
@@ -141,19 +142,20 @@ class Player(_Unique):
         """True once it was closed."""
         return self._get().core.closed  # type: ignore[no-any-return]
 
-    def play(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
+    def play(self, score: Score | _NDArray[_t.Any], at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
              frame: int | None = None) -> Report:
-        """Plays a score and waits until it has ended; Ctrl-C fades it out. See `submit`."""
+        """Plays a score or samples and waits until they have ended; Ctrl-C fades them out. See `submit`."""
         return self.submit(score, at, at_s=at_s, delay=delay, frame=frame).wait()
 
-    def submit(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
+    def submit(self, score: Score | _NDArray[_t.Any], at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
                frame: int | None = None) -> Ticket:
         """Plays a score without waiting for it. Several may sound at once.
 
         Parameters
         ----------
-        score : Score
-            At the stream's rate; one of fewer channels gets as many as the stream has.
+        score : Score, or ndarray of shape (frames, channels)
+            At the stream's rate; a score of plans for fewer channels gets as many as the stream has. An array has samples of one's own, as
+            `Score.from_samples` takes them, at the usual level: one at another level is made by that.
         at : str
             "now": with the next period that is written; "armed": waits for an edge at the trigger's line or for `fire`.
         at_s : float, optional
@@ -175,6 +177,8 @@ class Player(_Unique):
             When the stream has ended.
         """
         shared = self._get()
+        if hasattr(score, "__array_interface__"):
+            score = Score._make_own(self._array, _find_frames(_t.cast(_t.Any, score)), {"rate": self.rate}, self.channels)
         if not isinstance(score, Score):
             raise TypeError(f"a Score is wanted, not {type(score).__name__}")
         if not isinstance(at, str) or at not in ("now", "armed"):
@@ -188,10 +192,13 @@ class Player(_Unique):
             at_s = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:
             at_s = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
-        if self._array is not self._given and score._array == self._given:
+        if score._own is not None:
+            if self._array is not self._given and score._array == self._given:
+                score = score._moved(self._array)
+        elif self._array is not self._given and score._array == self._given:
             plans = [(start, Plan._wrap(p._core.moved(self._array._core), self._array, p._recorded)) for start, p in score._plans]
             score = Score(self._array, plans, **score._options)
-        if score.channels < self.channels and score.rate == self.rate:
+        if score._own is None and score.channels < self.channels and score.rate == self.rate:
             options: dict[str, _t.Any] = {**score._options, "channels": self.channels}
             score = Score(score._array, score._plans, **options)
         with shared.lock:

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import collections.abc as _abc
 import functools
+import hashlib
 import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _counted, _Member, _need, _number, reading, _Value, _whole
+from tactor._checks import _are_plain, _counted, _Member, _need, _number, reading, _Value, _whole
 from tactor._errors import InputError
 from tactor._plan import Plan
 
 if _t.TYPE_CHECKING:
     import numpy as _np
-    from numpy.typing import DTypeLike as _DTypeLike, NDArray as _NDArray
+    from numpy.typing import ArrayLike as _ArrayLike, DTypeLike as _DTypeLike, NDArray as _NDArray
     from tactor._plan import _Phase, _Together
     _WavFormat = _t.Literal["float", "s16", "s24", "s32"]
     _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
@@ -34,6 +35,20 @@ def _find_type(dtype: _DTypeLike) -> _np.dtype[_t.Any]:
     except TypeError:
         pass
     raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"', field="dtype")
+
+
+def _find_frames(samples: _ArrayLike) -> _NDArray[_t.Any]:
+    """Returns samples of one's own as frames of a type that can be rendered, in C's order."""
+    import numpy as np
+    raw: _t.Any = samples if isinstance(samples, np.ma.MaskedArray) else np.asarray(samples)
+    if raw.ndim == 1:
+        raw = raw[:, np.newaxis]
+    wanted = np.dtype("float32") if raw.dtype == np.float64 else raw.dtype.newbyteorder("<")
+    if raw.ndim != 2 or not raw.shape[1] or wanted.str not in _FORMATS or not _are_plain(raw):
+        raise InputError("samples", f"an array of shape {raw.shape} and type {raw.dtype} has no samples that can be played",
+                         "give one of shape (frames, channels), of float32 (full scale is 1), float64, int16 or int32", field="samples")
+    with np.errstate(over="ignore"):  # it is refused as not finite
+        return np.ascontiguousarray(raw, dtype=wanted)
 
 
 def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
@@ -69,7 +84,9 @@ class Score(_Value):
     names do not.
     """
 
-    __slots__ = ("_core", "_array", "_plans", "_options", "_recipe")
+    __slots__ = ("_core", "_array", "_plans", "_options", "_recipe", "_own")
+
+    _own: str | None  # type of samples of one's own; None: there are plans
 
     def __init__(self, array: Array, plans: _Plans, *, phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None,
                  attack: float | None = None, release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None,
@@ -106,8 +123,59 @@ class Score(_Value):
         self._array = array
         self._plans = tuple(placed(plans))
         self._options = given
+        self._own = None
         self._core, self._recipe = _tactor.make_score(
             array._core, [(start, p._core, *p._place_on(array)) for start, p in self._plans], given)
+
+    @classmethod
+    def from_samples(cls, array: Array, samples: _ArrayLike, rate: int = 48000, *, level_dbfs: float | None = None,
+                     marker_channel: int | None = None, marker_s: float | None = None) -> Score:
+        """Makes a score of samples of one's own, which play exactly as they are.
+
+        Parameters
+        ----------
+        array : Array
+        samples : array_like, shape (frames, channels)
+            Column i is for channel i of the stream; there is one for each of its channels. float32 (full scale is 1), int16 or int32;
+            float64 becomes float32. At most 1 GB.
+        rate : int
+            Hz, that of the stream; nothing is resampled.
+        level_dbfs : float
+            Highest peak that a tactor may have, below its max_dbfs; louder samples are refused, never scaled (default: as for plans). At most 0 dBFS.
+        marker_channel, marker_s
+            As for a score of plans.
+
+        Returns
+        -------
+        Score
+            Without plans. No gain_db, polarity or rise of a tactor changes it; limits do. A channel without a tactor plays, too, up to
+            full scale.
+
+        Raises
+        ------
+        InputError
+            For samples that are too loud, with the decibels, are not finite, or do not fit the array, and for a level in dB SL.
+        """
+        given = {"rate": rate, "level_dbfs": level_dbfs, "marker_channel": marker_channel, "marker_s": marker_s}
+        return cls._make_own(array, _find_frames(samples), given)
+
+    @classmethod
+    def _make_own(cls, array: Array, frames: _NDArray[_t.Any], given: dict[str, _t.Any], stream_channels: int = 0) -> Score:
+        _need(array, Array, "array")
+        made = cls.__new__(cls)
+        made._array = array
+        made._plans = ()
+        made._options = given
+        made._own = frames.dtype.str
+        channels = frames.shape[1]
+        needed = max(t.channel for t in array.tactors) + 1
+        options = {"channels": stream_channels or max(channels, needed), **given}
+        made._core, made._recipe = _tactor.make_own_score(array._core, frames, channels, _FORMATS[made._own], options, array._settings())
+        return made
+
+    def _moved(self, array: Array) -> Score:
+        """Returns the same samples of one's own for another array."""
+        return Score._make_own(array, self.render(_t.cast(str, self._own)), self._options)
 
     @property
     def array(self) -> Array:
@@ -116,7 +184,7 @@ class Score(_Value):
 
     @property
     def plans(self) -> tuple[Plan, ...]:
-        """The plans, in the order given."""
+        """The plans, in the order given; none of samples of one's own."""
         return tuple(p for _, p in self._plans)
 
     frames: _Member[int] = _Member("frames", "Length.")
@@ -239,11 +307,22 @@ class Score(_Value):
 
     def _sounds(self) -> tuple[_t.Any, ...]:
         """Returns all that decides on the samples, but for the plans' bursts and curves."""
-        return self._array.tactors, tuple(self.starts), self.frames, self._recipe
+        return self._array.tactors, tuple(self.starts), self.frames, self._recipe, self._hash_samples()
+
+    def _hash_samples(self) -> bytes | None:
+        if self._own is None:
+            return None
+        digest = hashlib.sha256()
+        for block in self.blocks(1 << 16, self._own):
+            digest.update(block)
+        return digest.digest()
 
     def __repr__(self) -> str:
-        return (f"<tactor.Score: {_counted(len(self._plans), 'plan')}, {_counted(self.channels, 'channel')}, {self.rate} Hz, "
+        held = _counted(len(self._plans), "plan") if self._own is None else "samples"
+        return (f"<tactor.Score: {held}, {_counted(self.channels, 'channel')}, {self.rate} Hz, "
                 f"{self.duration:.6g} s>")
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        if self._own is not None:
+            return Score._make_own, (self._array, self.render(self._own), self._options)
         return functools.partial(Score, **self._options), (self._array, self._plans)
