@@ -314,7 +314,7 @@ class Score(_Value):
             return None
         digest = hashlib.sha256()
         for block in self.blocks(1 << 16, self._own):
-            digest.update(block)
+            digest.update(block.tobytes())
         return digest.digest()
 
     def __repr__(self) -> str:
