@@ -12,7 +12,7 @@
 #include "cli/settings.hpp"
 #include "core/start_times.hpp"
 #include "core/words.hpp"
-#include "options/settle.hpp"
+#include "options/resolve.hpp"
 #include "session/process.hpp"
 
 namespace tactor::cli {

@@ -354,7 +354,7 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
 py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsigned channels, format_kind f,
                          const py::dict& given, const setup* file)
 {
-    wishes w;
+    option_values w;
     w.place = options::in_score;
     take_options(w, given, 0, file);
     const render_options o = settled(on.value(), w.render);
