@@ -102,7 +102,7 @@ void add_channel(score::impl& s, own_channel c)
 {
     for (std::size_t i = 0; i < s.tactors.size(); ++i)
         if (s.tactors[i].channel == c.channel)
-            s.asked[i] = std::min(c.peak, s.limits[c.channel]); // which rounding may exceed
+            s.peaks[i] = std::min(c.peak, s.limits[c.channel]); // which rounding may exceed
     if (c.peak == 0.0)
         return;
     synth::item it;
@@ -143,7 +143,7 @@ score score::from_samples(const array& a, own_samples x, const render_options& o
     s->sounds.emplace_back();
     s->starts.push_back(0);
     s->ends.push_back(s->frames);
-    s->asked.resize(s->tactors.size());
+    s->peaks.resize(s->tactors.size());
     for (own_channel& c : channels)
         add_channel(*s, std::move(c));
     synth::end_items(*s, exact);
