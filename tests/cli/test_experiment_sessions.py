@@ -142,7 +142,7 @@ class Read(SessionTest):
             self.assertIn(f"| sub-{name} | 4 / 0 / 0 | 4 / 0 / 0 | 3 / 0 / 0 |".replace("_", r"\_"), text)
         for code, n, day in (("01", 1, "03"), ("01", 2, "10"), ("02", 1, "04"), ("02", 2, "05"), ("03", 2, "30")):
             self.edit(f"study/sourcedata/sub-{code}/ses-{n}/session.json", '"date": null', f'"date": "2026-11-{day}T09:00:00.000000Z"')
-        self.assertIn("to that of the next: 1 to 7 days.", self.ok("report", "study").stdout)
+        self.assertIn("to the start of the next: 1 to 7 days.", self.ok("report", "study").stdout)
 
     def test_what_does_not_fit_the_sessions_is_refused(self):
         study = self.dir / "study"

@@ -97,7 +97,7 @@ class Tables(ExperimentTest):
         text = table.read_bytes()
         table.write_bytes(text[:-100])
         cut = text[:-100].rpartition(b"\n")[2]
-        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is incomplete (tactor experiment --resume",))
+        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is incomplete (use tactor experiment --resume",))
         said = self.simulate("01", "--resume").stderr
         for path, kept in ((table, cut), (practice, lines[-1][:40])):
             name = path.relative_to(self.dir)

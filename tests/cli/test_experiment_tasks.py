@@ -392,8 +392,8 @@ class Tasks(ExperimentTest):
             args = command.split()
             args[1] = ROOT / args[1]
             runs = json.loads(self.ok(*args, "--format", "json").stdout)["runs"]
-            stated = re.search(rf"\[{args[1].name}\].*\| (\d+) %", lines).group(1)
-            self.assertEqual([round(100 * r["power"][0]["power"]) for r in runs], [int(stated)], command)
+            stated = re.search(rf"\[{args[1].name}\].*\| ([\d, and]+) %", lines).group(1)
+            self.assertEqual([round(100 * r["power"][0]["power"]) for r in runs], [int(n) for n in re.findall(r"\d+", stated)], command)
 
 
 if __name__ == "__main__":
