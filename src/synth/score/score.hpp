@@ -47,7 +47,8 @@ enum class item_kind : std::uint8_t {
 struct item {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
-    std::uint64_t first = 0; ///< index of its first drive (burst) or member (joined); of an own one, its sound
+    std::uint64_t first =
+        0; ///< index of its first drive (burst) or member (joined); of an own one, its sound
     std::uint32_t count = 0;
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
