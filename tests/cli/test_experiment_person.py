@@ -118,17 +118,17 @@ class AtTheTerminal(PersonTest):
         asked = f"How strong\\? {possible}"
         t.answer(asked, "12,5\n")
         for typed, after in (("12,5", "0"), ("0", "-3"), ("-3", "1e400"), ("1e400", "1" * 40), ("1{16}", "0.5")):
-            t.answer(f"{typed}\\s+That is no answer: {possible}", after + "\n")
+            t.answer(f"{typed}\\s+That is not an answer: {possible}", after + "\n")
         t.answer(f"Trial 2/4: [^?]*{asked}", "12.50\n")
         t.answer(asked, "q")
         self.assertEqual(t.end(), 130, t.said())
         lines = self.ok(*self.args("--resume"), stdin="y\ny\nnan\n-1\n 1500 \n1000000000\n").stdout
-        self.assertEqual(lines.count("That is no answer: a number above 0"), 2)
+        self.assertEqual(lines.count("That is not an answer: a number above 0"), 2)
         rows = self.rows("01", "size")
         self.assertEqual([(r["response"], r["intensity_estimate"]) for r in rows], [(n, n) for n in ("0.5", "12.5", "1500", "1000000000")])
         told = json.loads((self.dir / "study/task-size_beh.json").read_text())
         self.assertEqual([told[c]["Description"] for c in ("response", "intensity_estimate")],
-                         ["The number above 0 that was given", "The number above 0 that the participant gave"])
+                         ["The number above 0 that the participant gave", "The number above 0 that the participant gave"])
         # The exponent by hand, from the table alone.
         logs = {level: [math.log(float(r["response"])) for r in rows if float(r["value"]) == level] for level in (-30, -20)}
         found = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["size"]["exponent"]["participants"]["01"]

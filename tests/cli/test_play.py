@@ -87,7 +87,7 @@ class Play(ToolTest):
         self.write("cut.wav", (self.dir / "nine.wav").read_bytes()[:-1000])
         self.refused(2, "play", "cut.wav", says=["cut.wav: it is cut short"])
         self.write("text.wav", "x y")
-        self.refused(2, "play", "text.wav", says=["text.wav: it is no WAV file"])
+        self.refused(2, "play", "text.wav", says=["text.wav: it is not a WAV file"])
         self.refused(2, "play", "missing.wav", says=["missing.wav: No such file"])
         self.refused(2, "play", "nine.wav", "--sl", "7", says=["nine.wav: it has no carrier"])
         for option in (("--soa", "0.1"), ("--carrier", "100"), ("--ramp", "0.01"), ("--speed", "10"), ("--together", "sum")):

@@ -39,7 +39,7 @@ class AtTheTerminal(Forms):
         t = Terminal(self, self.args())
         t.walk()
         t.answer("About you\\s+Four questions.\\s+Age\\? 0 to 120: ", "121\n")
-        t.answer("no answer: 0 to 120: ", "p3\x7f33\n")  # a pause comes
+        t.answer("not an answer: 0 to 120: ", "p3\x7f33\n")  # a pause comes
         t.answer("A pause", "g")
         t.answer("Hand\\? 1 left, 2 right, b Back: ", "32")
         t.answer("Remark\\? Backspace Back: ", "rvpgq é\x7fë\x1b[Dx\n")
@@ -246,7 +246,7 @@ class Tables(Forms):
         self.simulate("01", definition="short.toml")
         table = self.dir / "study/phenotype/tired.tsv"
         table.write_text("participant_id\tafter\tnow\nsub-01\tpairs\t4\n")
-        self.refused(2, "report", "study", says=('phenotype/tired.tsv:2: now is "4" (a whole number from 1 to 3)',))
+        self.refused(2, "report", "study", says=('phenotype/tired.tsv:2: now is "4" (give a whole number from 1 to 3)',))
         table.write_text("participant_id\tafter\tnow\nsub-01\tpairs\tn/a\n")
         self.ok("report", "study")
 
