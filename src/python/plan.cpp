@@ -357,7 +357,7 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
     option_values w;
     w.place = options::in_score;
     take_options(w, given, 0, file);
-    const render_options o = settled(on.value(), w.render);
+    const render_options o = with_channels(on.value(), w.render);
     const py::buffer_info info = frames.request();
     const std::span bytes(static_cast<const std::byte*>(info.ptr),
                           static_cast<std::size_t>(info.size * info.itemsize));

@@ -42,7 +42,7 @@ class Tactor(Hands):
         p.mouse("mousePressed", *place)
         number = self.next_stroke(watcher, "started")
         # It alone, at the level; longer than a tap, and than the service waits for a sign of life.
-        level, *others = p.until("tactor.state.dbfs[4] > -21 && [tactor.state.dbfs[4], ...tactor.state.dbfs.filter((v, i) => v !== null && i !== 4)]")
+        level, *others = p.until("tactor.state.dbfs[4] !== null && tactor.state.dbfs[4] > -21 && [tactor.state.dbfs[4], ...tactor.state.dbfs.filter((v, i) => v !== null && i !== 4)]")
         self.assertLessEqual(level, -19.9)
         self.assertEqual(others, [])
         self.assertTrue(self.sounds_on(s, number, 1.5))
