@@ -432,7 +432,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     duration : float
         Duration of each stroke (default: the file's or preset's). 0.001 to 86400 s.
     speed : float
-        Speed of each stroke, in place of its duration (default 60 where nothing gives one). 0.001 to 100000 mm/s.
+        Speed of each stroke, instead of its duration (default 60 if neither is set). 0.001 to 100000 mm/s.
     outside : str
         Refuse paths that leave the array, or move them to its edge (default error). One of "error", "clamp".
     fit : bool
@@ -456,7 +456,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     intercept : float
         Intercept of the timing law (default 0.0473). 0.001 to 10 s.
     timing : str
-        Keep the SOA, or fit it so that the bursts end with the path (default fixed). One of "fixed", "fit".
+        Keep the SOA, or shorten it so that the bursts end with the path (default fixed). One of "fixed", "fit".
     min_duration : float
         timing fit: shortest burst (default 0.02). 0.0001 to 10 s.
     snap : bool
@@ -493,15 +493,15 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     attack : float
         Time in which each burst rises (default: ramp). 0 to 10 s.
     release : float
-        Time in which each burst falls (default: the time in which it rises). 0 to 10 s.
+        Time in which each burst falls (default: that of its rise). 0 to 10 s.
     tukey_part : float
         envelope tukey: part of the burst in which it rises and falls (default 0.5). 0 to 1.
     level_dbfs : float
         Peak of the carrier at intensity 1 (default -12). -200 to 0 dBFS.
     sl : float
-        Level above each tactor's threshold, in place of dBFS. -60 to 100 dB SL.
+        Level above each tactor's threshold, instead of dBFS. -60 to 100 dB SL.
     together : str
-        Strokes that meet on a tactor: weaken all so that none is above the level, or let them add up (default weaken). One of "weaken", "sum".
+        Strokes that overlap on a tactor: weaken all to stay within the level, or let them add up (default weaken). One of "weaken", "sum".
     intensity_scale : str
         Scale of intensities: amplitude (default), dB of sl, or felt strength. One of "linear", "sl", "stevens".
     stevens_exponent : float

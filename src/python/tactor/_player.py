@@ -75,17 +75,17 @@ class Player(_Unique):
         channels : int
             Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
         no_gpio : bool
-            Leave the lines of [amplifier] and [sync] alone.
+            Do not use the lines of [amplifier] and [sync].
         power_dbfs : float
             Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
-            Longest drive of one tactor without a rest (default 5). 0.1 to 3600 s.
+            Longest time that one tactor vibrates without a rest (default 5). 0.1 to 3600 s.
         drive_window_s : float
-            Time of which a tactor may be driven for max_drive_s in the long run (default 10). 0.1 to 3600 s.
+            Period in which a tactor may vibrate for max_drive_s in the long run (default 10). 0.1 to 3600 s.
         latency : float
             Length of the device's buffer (periods x period). 0.0001 to 10 s.
         period_frames : int
-            Frames in a period, in place of latency_ms (default: the configuration's, else 96). 1 to 1048576 frames.
+            Frames in a period, instead of latency_ms (default: the configuration's, else 96). 1 to 1048576 frames.
         periods : int
             Periods in the buffer (default: the configuration's, else 3). 2 to 1024 periods.
         require_realtime : bool
@@ -334,8 +334,8 @@ def play(device: str, array: Array, stroke: Stroke, **options: _t.Any) -> Report
         An ALSA name, as `Player` takes it.
     array : Array
     stroke : Stroke
-    **options
-        Those of `plan`: level_dbfs=-40, phantom="barycentric", ...
+    options
+        Keywords of `plan`: level_dbfs=-40, phantom="barycentric", ...
 
     Returns
     -------

@@ -111,9 +111,9 @@ class Score(_Value):
         power_dbfs : float
             Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
-            Longest drive of one tactor without a rest (default 5). 0.1 to 3600 s.
+            Longest time that one tactor vibrates without a rest (default 5). 0.1 to 3600 s.
         drive_window_s : float
-            Time of which a tactor may be driven for max_drive_s in the long run (default 10). 0.1 to 3600 s.
+            Period in which a tactor may vibrate for max_drive_s in the long run (default 10). 0.1 to 3600 s.
 
         Without any limit on power and drive time the piece is as it was designed: a player has its own.
         """

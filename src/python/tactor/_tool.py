@@ -97,9 +97,9 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     overlap, compensate, sigma_mm, sigma_v_mm_s, carrier, sl, intensity_scale, stevens_exponent
         As in `plan`.
     observer : str
-        Model that predicts what is felt (default centroid). One of "centroid", "low-speed".
+        Model that predicts what people feel (default centroid). One of "centroid", "low-speed".
     spread : int
-        Show what this many people would feel, drawn at random. 2 to 100000.
+        Also predict for this many people, drawn at random. 2 to 100000.
     spread_seed : int
         spread: seed of the draw (default 1). 0 to 4294967295.
     spread_sigma : float
