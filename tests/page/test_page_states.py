@@ -326,6 +326,7 @@ class Everywhere(StudioTest):
         self.assertEqual(p.value("[...document.querySelectorAll('#p-more button')].map(b => b.textContent)"),
                          ["Open", "Share", "Place on the body", "Gallery", "Tour", "Scrub is felt", "Show all of it",
                           "Light or dark", "Keys and help"])
+        p.value("document.querySelector('#help').scrollIntoView()")  # the menu is higher than the window
         p.click("#help")
         p.until("document.querySelector('#p-keys').matches(':popover-open') && !document.querySelector('#p-more').matches(':popover-open')")
 
