@@ -284,12 +284,8 @@ waveform parse_noise(std::string_view band)
     return w;
 }
 
-} // namespace
-
-namespace {
-
-/// Refuses a named pipe: a pipe of the shell, <(...), has its other end already; this one would be waited for
-/// in silence.
+/// Refuses a named pipe. A pipe of the shell, <(...), already has its other end; waiting for another pipe
+/// would hang without a message.
 void refuse_pipe(const std::filesystem::path& file)
 {
     std::error_code unknown;

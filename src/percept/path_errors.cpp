@@ -8,16 +8,14 @@
 #include <utility>
 
 #include "percept/observer.hpp"
+#include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
 namespace {
 
 double square_to_piece(point p, point a, point b) noexcept
 {
-    const point ab = b - a;
-    const double length = dot(ab, ab);
-    const double u = length > 0.0 ? std::clamp(dot(p - a, ab) / length, 0.0, 1.0) : 0.0;
-    const point off = p - (a + u * ab);
+    const point off = p - nearest_on_segment(a, b, p);
     return dot(off, off);
 }
 

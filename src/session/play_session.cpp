@@ -114,15 +114,24 @@ std::optional<stroke_report> play_session::submit(const score& s, start_at start
         playing_ = *std::exchange(followed_by_, {});
         return {};
     }
-    try {
-        playing_ = p.submit(s, options_.arm ? start_at::trigger() : start);
-    } catch (const error&) {
-        const auto end = p.ended();
-        if (!end)
-            throw;
-        return stroke_report{.state = state_kind::interrupted, .reason = end->reason, .why = end->why};
+    if (const auto id = hand_over(s, options_.arm ? start_at::trigger() : start)) {
+        playing_ = *id;
+        return {};
     }
-    return {};
+    const stream_end end = *p.ended();
+    return stroke_report{.state = state_kind::interrupted, .reason = end.reason, .why = end.why};
+}
+
+std::optional<stroke_id> play_session::hand_over(const score& s, start_at start)
+{
+    player& p = *stream_.current();
+    try {
+        return p.submit(s, start);
+    } catch (const error&) {
+        if (!p.ended())
+            throw;
+        return {};
+    }
 }
 
 void play_session::follow_with(const score* s, std::uint64_t frames) noexcept
@@ -133,11 +142,9 @@ void play_session::follow_with(const score* s, std::uint64_t frames) noexcept
 
 void play_session::submit_follower()
 {
-    player& p = *stream_.current();
-    const auto first = follower_ != nullptr ? p.first_frame(playing_) : std::nullopt;
-    if (!first || p.ended())
-        return;
-    followed_by_ = p.submit(*std::exchange(follower_, nullptr), start_at::frame(*first + follows_after_));
+    if (const auto first = follower_ != nullptr ? stream_.current()->first_frame(playing_) : std::nullopt)
+        followed_by_ =
+            hand_over(*std::exchange(follower_, nullptr), start_at::frame(*first + follows_after_));
 }
 
 live_stroke play_session::begin(const live_options& o)

@@ -106,6 +106,8 @@ private:
     /// Logs the failure of opening the device, if any.
     /// \throws error (bad_input) if it can never be opened.
     void check_failure();
+    /// Submits a score. Returns nothing if the stream has ended. \throws error.
+    std::optional<stroke_id> hand_over(const score& s, start_at start);
     /// Hands the following score to the stream, if the first frame of this stroke is known.
     void submit_follower();
 

@@ -90,7 +90,7 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
     if (has_outputs)
         check(c->pulse_s, shortest_s, "the answer's number", c->where, "code: ");
     constexpr double bits = 10.0; // of a byte, with start and stop
-    if (has_outputs && !c->serial.empty() && c->pulse_s < bits / c->baud)
+    if (c != nullptr && !c->serial.empty() && c->pulse_s < bits / c->baud)
         throw error(error_kind::bad_input, c->where,
                     fmt::format("code: pulse_ms is {:.4g}, but a byte takes {:.4g} ms at {} baud",
                                 c->pulse_s * 1e3, bits / c->baud * 1e3, c->baud),

@@ -66,8 +66,8 @@ void end_stretch(std::vector<stretch_sums>& sums, std::size_t frames, std::vecto
     }
 }
 
-/// Settles what follows from the peak and the stretches.
-void settle(own_channel& c)
+/// Computes the unit, the envelope and the power from the peak and the stretches.
+void complete(own_channel& c)
 {
     int exponent = 0;
     if (c.peak > 0.0)
@@ -169,7 +169,7 @@ std::vector<own_channel> read_channels(const std::shared_ptr<const own_samples>&
         }
         end_stretch(sums, done, channels);
     });
-    std::for_each(channels.begin(), channels.end(), settle);
+    std::for_each(channels.begin(), channels.end(), complete);
     return channels;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What lasts while a pointer or a key holds something, and ends with it.
+// Holds: actions that last while a pointer or a key holds an element, and end with it.
 import {listen} from "../../../net/page/dom.js";
 import {on_lost} from "./connection.js";
 

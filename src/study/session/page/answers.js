@@ -60,7 +60,7 @@ function make_entry(entry, words, answer) {
     place.setAttribute("aria-invalid", place.value !== "" && !fits);
     confirm.disabled = place.disabled || !fits;
   };
-  // Where people write a comma, the keyboard of numbers has no point.
+  // The keyboard of numbers has no point in locales that write a comma.
   const keyboard = !longest ? "numeric" : (0.5).toLocaleString().includes(".") ? "decimal" : "text";
   const place = most ? make("textarea", {rows: 5, maxlength: most, "aria-labelledby": "question"})
     : make("input", {inputmode: keyboard, autocomplete: "off", "aria-labelledby": "question range", oninput: look,
