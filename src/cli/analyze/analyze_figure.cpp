@@ -15,6 +15,7 @@
 
 #include "core/words.hpp"
 #include "options/option.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -312,7 +313,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
     for (const study::run_analysis& r : a.runs) {
         if (r.n == 0)
             continue;
-        if (!find_task(r.run.task).measures)
+        if (!find_task(r.run.task).about().measures)
             f.bars.push_back(make_panel(r, kind));
         else if (!r.run.vary.empty())
             add_curves(f, r);

@@ -18,6 +18,7 @@
 #include "cli/say.hpp"
 #include "core/words.hpp"
 #include "study/analysis/analysis.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -409,7 +410,7 @@ struct trial_column {
 
 bool is_measured(const study::run_outline& r) noexcept
 {
-    return find_task(r.task).measures;
+    return find_task(r.task).about().measures;
 }
 
 bool has_values(const study::run_outline& r) noexcept

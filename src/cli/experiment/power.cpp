@@ -35,6 +35,7 @@
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -58,7 +59,7 @@ std::vector<std::size_t> participants_in(std::string_view text)
 
 std::string comparison_text(const study::run_outline& r)
 {
-    if (find_task(r.task).measures) {
+    if (find_task(r.task).about().measures) {
         const auto against = study::measured_against(r);
         return against ? fmt::format("{}, {} against {}", study::list_measures(r, {}).front().first,
                                      r.task == study::task_kind::same_different ? "likelihood ratio" : "t",

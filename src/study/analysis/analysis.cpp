@@ -13,6 +13,7 @@
 
 #include "core/words.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -178,7 +179,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     run_analysis r;
     r.run = d.experiment.runs[which];
     r.function = kind;
-    const bool measures = find_task(r.run.task).measures;
+    const bool measures = find_task(r.run.task).about().measures;
     std::vector<cell_values> all;
     std::vector<person_trials> people;
     std::vector<std::string> groups;
@@ -402,7 +403,7 @@ std::vector<std::pair<const char*, const effect*>> list_group_effects(const run_
     if (!r.groups_compared)
         return {};
     const mixed_anova& m = *r.groups_compared;
-    if (find_task(r.run.task).measures)
+    if (find_task(r.run.task).about().measures)
         return {{"group", &m.group}};
     const bool has_rows = count_rows(r.run) > 1;
     const bool has_motions = r.run.motions.size() > 1;

@@ -20,6 +20,7 @@
 #include "core/words.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -135,7 +136,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
 std::string task_text(const run_definition& r, const experiment_definition& d, bool simulated)
 {
     ordered j{{"TaskName", r.outline.name}};
-    const task_row& task = find_task(r.outline.task);
+    const task::facts& task = find_task(r.outline.task).about();
     j["TaskDescription"] = (simulated ? std::string(simulated_note) + " " : "") + std::string(task.trial);
     j["Instructions"] = r.outline.question;
     if (!r.outline.labels.empty())

@@ -18,6 +18,7 @@
 #include "files/json/json_value.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -208,7 +209,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.response_time_s = t.number(row, "response_time");
     if (r.response_time_s.value_or(0.0) < 0.0)
         t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 or more seconds");
-    if (find_task(run.task).measures) {
+    if (find_task(run.task).about().measures) {
         read_measure(r, t, row, run);
         return r;
     }

@@ -32,69 +32,8 @@ namespace tactor::study {
 
 enum class task_kind { choose, rate, identify, detect, same_different, estimate, constant, adaptive };
 
-/// A task as definitions and descriptions have it.
-struct task_row {
-    std::string_view name;
-    std::string_view trial;    ///< kind of a trial
-    std::string_view response; ///< meaning of its response; {} is the range of ratings
-    /// Usual questions about similarity, uniformity, another attribute; empty: none.
-    std::array<std::string_view, 3> questions;
-    bool measures = false; ///< a psychometric function, d' or an exponent is estimated from its trials
-    bool varies = false;   ///< a value changes from trial to trial; detect may do without
-};
-
-/// Rows in the order of task_kind.
-inline constexpr std::array<task_row, 8> tasks{{
-    {"choose",
-     "Two stimuli, one after the other; the participant chooses one",
-     "Which of the two stimuli was chosen, 1 or 2",
-     {"Which of the two was more like the target?", "Which of the two was more even?"}},
-    {"rate",
-     "One stimulus, which the participant rates",
-     "The rating, {}",
-     {"How much was it like the target?", "How even was it?"}},
-    {"identify",
-     "One stimulus; the participant names its motion",
-     "The motion that the participant named",
-     {"Which movement was it?", "Which movement was it?", "Which movement was it?"}},
-    {"detect",
-     "One stimulus or none",
-     "Whether a stimulus was felt: 1 yes, 2 no",
-     {"Did you feel it?", "Did you feel it?", "Did you feel it?"},
-     true},
-    {"same-different",
-     "Two stimuli, one after the other",
-     "Whether the stimuli were 1 the same or 2 different",
-     {"Were both the same?", "Were both the same?", "Were both the same?"},
-     true},
-    {"estimate",
-     "One stimulus, or a standard and then a stimulus, which the participant gives a number",
-     "The number above 0 that the participant gave",
-     {},
-     true,
-     true},
-    {"constant",
-     "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
-     "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
-     {},
-     true,
-     true},
-    {"adaptive",
-     "One stimulus to judge, or a standard and a comparison to choose from; the previous answers choose the "
-     "values",
-     "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
-     {},
-     true,
-     true},
-}};
-constexpr const task_row& find_task(task_kind t) noexcept
-{
-    return tasks[static_cast<std::size_t>(t)];
-}
-constexpr std::string_view to_string(task_kind t) noexcept
-{
-    return find_task(t).name;
-}
+/// Returns the name of a task.
+std::string_view to_string(task_kind t) noexcept;
 
 struct run_outline {
     std::string name;

@@ -22,6 +22,7 @@
 #include "options/option.hpp"
 #include "options/resolve.hpp"
 #include "study/experiment/variation.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -409,8 +410,8 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
                                other.outline.name, o.name),
                    "make their letters and digits differ");
     std::vector<std::string_view> names;
-    for (const task_row& row : tasks)
-        names.push_back(row.name);
+    for (const task* one : list_tasks())
+        names.push_back(one->name());
     const std::string task = t.need(t.choice("task", names), "task");
     o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
     o.scale = read_scale(t, o.visual).value_or(o.scale);
@@ -421,7 +422,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     read_variation(t, r);
     const std::string attribute = t.text("attribute").value_or("");
     const std::size_t kind = attribute == "similarity" ? 0 : attribute == "uniformity" ? 1 : 2;
-    o.question = t.text("question").value_or(std::string(find_task(o.task).questions[kind]));
+    o.question = t.text("question").value_or(std::string(find_task(o.task).about().questions[kind]));
     o.labels = t.texts("labels", most_texts);
     o.choices = t.texts("choices", most_texts);
     o.trials = read_trials(t, o);

@@ -20,6 +20,7 @@
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -122,7 +123,7 @@ struct compared_person {
 
 compared_person compare_trials(const run_outline& run, const std::vector<trial>& trials)
 {
-    if (!find_task(run.task).measures) {
+    if (!find_task(run.task).about().measures) {
         const auto cells = compute_cells(run, trials);
         return {cells ? compared_value(run, *cells) : std::nullopt};
     }
@@ -154,7 +155,8 @@ void count_study(power_at& at, const std::vector<compared_person>& people, const
         at.untested += difference ? 0 : 1;
         return;
     }
-    const double against = find_task(run.task).measures ? measured_against(run).value_or(0.0) : chance(run);
+    const double against =
+        find_task(run.task).about().measures ? measured_against(run).value_or(0.0) : chance(run);
     const t_test t = quick_test_mean(there, against, rounding_in(run));
     if (!t.p)
         ++at.untested;
@@ -230,7 +232,7 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
             targets_.push_back(target_path(d.motions[m].drawn));
         return;
     }
-    if (find_task(r.outline.task).measures)
+    if (find_task(r.outline.task).about().measures)
         return;
     if (r.simulate_as.empty())
         throw error(error_kind::bad_input, r.where,
@@ -310,7 +312,7 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
     a.response_time_ms = soonest_ms + r.below(range_ms);
     const auto noise = [&] { return simulation_.sigma * r.normal(); };
     const auto utility = [&](std::size_t method) { return -std::log(cost(t.motion, method)) + noise(); };
-    if (find_task(run_.outline.task).measures) {
+    if (find_task(run_.outline.task).about().measures) {
         a.response = measure(t, r);
     } else if (run_.outline.task == task_kind::choose) {
         const double first = utility(t.method_1);
@@ -351,8 +353,8 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
             people[run].push_back(prepare_people(held, run, most, r.seed));
         all.push_back({run, {}});
         const run_outline& o = d.runs[run].outline;
-        if (find_task(o.task).measures ? measured_against(o).has_value()
-                                       : o.task != task_kind::rate || o.methods.size() > 1)
+        if (find_task(o.task).about().measures ? measured_against(o).has_value()
+                                               : o.task != task_kind::rate || o.methods.size() > 1)
             for (const std::size_t n : r.participants)
                 all[run].at.push_back({n});
     }

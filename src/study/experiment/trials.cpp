@@ -22,6 +22,7 @@
 #include "study/experiment/trial_order.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/random/random.hpp"
+#include "study/tasks/task.hpp"
 #include "synth/score/joined.hpp"
 
 namespace tactor::study {
@@ -167,7 +168,7 @@ std::vector<planned_trial> list_cells(const run_definition& r)
 // cells of one motion stand together.
 std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
 {
-    if (find_task(run.outline.task).measures)
+    if (find_task(run.outline.task).about().measures)
         return draw_measured(run, n, r);
     const std::vector<planned_trial> cells = list_cells(run);
     const std::size_t whole = n - n % cells.size();

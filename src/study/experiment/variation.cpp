@@ -16,6 +16,7 @@
 #include "core/words.hpp"
 #include "options/option.hpp"
 #include "options/resolve.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -184,7 +185,7 @@ void read_variation(const toml_table& t, run_definition& r)
         t.fail("catch", "catch only applies to runs that detect", "leave it out, or set task = \"detect\"");
     r.catch_share = t.number("catch", {0.0, 0.9}).value_or(0.0);
     o.catches = r.catch_share > 0.0;
-    const bool varies = find_task(o.task).varies || (o.task == task_kind::detect && t.has("vary"));
+    const bool varies = find_task(o.task).about().varies || (o.task == task_kind::detect && t.has("vary"));
     for (const char* key : {"vary", "values", "standard", "trials_per_value"})
         if (t.has(key) && (!varies || (std::string_view(key) == "standard" && o.task == task_kind::detect)))
             t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, to_string(o.task)),

@@ -21,6 +21,7 @@
 #include "study/experiment/trials.hpp"
 #include "study/report/facts.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -417,7 +418,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["worths"] = has_run(has_worths);
-    all["has_cells"] = has_run([](const run_outline& r) { return !find_task(r.task).measures; });
+    all["has_cells"] = has_run([](const run_outline& r) { return !find_task(r.task).about().measures; });
     all["has_comparisons"] = has_run(
         [](const run_outline& r) { return r.task == task_kind::constant || r.task == task_kind::adaptive; });
     all["has_thresholds"] =

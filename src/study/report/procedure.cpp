@@ -11,6 +11,7 @@
 #include "core/words.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/report/facts.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -36,7 +37,7 @@ std::string stream_text(const session_facts& s, const std::string& key)
 // Describes a task that measures, with the values.
 std::string describe_measure(const run_outline& r)
 {
-    std::string text = fmt::format("{} ({})", find_task(r.task).trial, join(r.methods));
+    std::string text = fmt::format("{} ({})", find_task(r.task).about().trial, join(r.methods));
     if (!r.vary.empty())
         text += fmt::format(
             "; {} {} {}", r.vary, r.task == task_kind::adaptive ? "chosen by the answers from" : "of",
@@ -151,7 +152,8 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
         {"task", to_string(o.task)},
         {"asked", describe_task(o)},
         {"motions", join(o.motions)},
-        {"attribute", attribute == not_recorded && find_task(o.task).measures ? json(false) : attribute},
+        {"attribute",
+         attribute == not_recorded && find_task(o.task).about().measures ? json(false) : attribute},
         {"question", fact([](auto& r) { return r.outline.question; })},
         {"animation", join_texts(f,
                                  [run](const session_facts& s) {
