@@ -22,10 +22,10 @@
 
 #include "rounds.hpp"
 #include "study/analysis/measures.hpp"
-#include "study/experiment/adaptive.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/signal_detection.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/adaptive.hpp"
 
 namespace tactor::study::test_observers {
 namespace {

@@ -519,8 +519,8 @@ TEST_CASE("an identification names the nearest target: the right one without noi
     unsigned right = 0;
     for (std::size_t m = 0; m < 3; ++m)
         for (unsigned i = 1; i <= 100; ++i) {
-            CHECK(sharp.answer({m, 0}, i, 1, false).response == m);
-            right += dull.answer({m, 0}, i, 1, false).response == m ? 1 : 0;
+            CHECK(sharp.answer({m, 0}, i, 1, false).response == m + 1);
+            right += dull.answer({m, 0}, i, 1, false).response == m + 1 ? 1 : 0;
         }
     CHECK(right > 50);
     CHECK(right < 250);

@@ -372,7 +372,7 @@ TEST_CASE("answers without keys have numbers: their places from 1, on a line fro
     for (const bool visual : {false, true}) {
         page_dialogue d(json::object());
         static_cast<void>(d.hear(1, hello, 0));
-        const page_screen s{.name = "question", .choices = std::vector<std::string>(101), .visual = visual};
+        const page_screen s{.name = "question", .choices = std::vector<std::string>(101), .is_line = visual};
         CHECK(only(d.show(s, 0), 1).contains("visual") == visual);
         CHECK_FALSE(d.press('1', 0).answer);
         CHECK_FALSE(d.hear(1, answer(1, 102), 0).answer);

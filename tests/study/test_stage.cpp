@@ -768,7 +768,7 @@ TEST_CASE("a trial that became void does not move its track, and its answer coun
         const study::planned_trial t = next(trial, attempt);
         study::trial_row row = study::planned_row(c.p, t, {trial, attempt});
         // The value under test, not its standard, was the stronger one.
-        study::set_response(row, c.p, r, row.method_1 == "a" ? 1 : 2, 0.5);
+        study::set_response(row, r, row.method_1 == "a" ? 1 : 2, 0.5);
         row.is_void = is_void;
         table.add(row, 0, rate);
         return *study::find_value(c.p.definition, t);

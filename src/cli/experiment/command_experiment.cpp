@@ -36,10 +36,11 @@ constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends
 void check_keys(const study::prepared_experiment& p)
 {
     for (const study::run_definition& r : p.definition.runs)
-        if (r.outline.task == study::task_kind::identify && study::choices_in(r) > study::most_keys)
+        if (const auto answers = study::find_answers(p.definition, r);
+            answers.shows_motions && answers.labels.size() > study::most_keys)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
-                                    r.outline.name, study::choices_in(r), study::most_keys),
+                                    r.outline.name, answers.labels.size(), study::most_keys),
                         "name fewer in motions = [...]");
 }
 

@@ -26,6 +26,7 @@
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -44,8 +45,8 @@ std::map<std::optional<double>, std::size_t> count_values(const study::prepared_
 {
     std::map<std::optional<double>, std::size_t> counts;
     const study::run_outline& r = p.definition.runs[s.run].outline;
-    if (!r.vary.empty() && r.task != study::task_kind::adaptive)
-        for (const study::planned_trial& t : s.trials)
+    for (const study::planned_trial& t : s.trials)
+        if (!r.vary.empty() && t.track == 0)
             ++counts[find_planned_value(p, t)];
     return counts;
 }
@@ -79,9 +80,7 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
     j["question"] = r.outline.question;
     j["animation"] = r.animation;
     j["min_response_s"] = r.min_response_s;
-    j["scale"] = nullptr;
-    if (r.outline.task == study::task_kind::rate)
-        j["scale"] = r.outline.visual ? json("vas") : json(r.outline.scale);
+    j["scale"] = find_task(r.outline.task).scale(r.outline);
     j["break_s"] = r.break_s;
     j["duration_s"] = t.total_s;
     j["waits"] = t.waits;

@@ -19,6 +19,7 @@
 #include "study/data/text_table.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
 
 namespace tactor::study {
 namespace {
@@ -122,86 +123,6 @@ std::vector<std::string> select(const std::vector<std::string>& known, const sel
     return selected;
 }
 
-std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
-                       const std::vector<std::string>& known)
-{
-    const std::string_view name = t.need(row, column);
-    const auto at = std::find(known.begin(), known.end(), name);
-    if (at == known.end())
-        t.refuse(row, fmt::format("{} \"{}\" is not in the run", column, name),
-                 fmt::format("one of {}", fmt::join(known, ", ")));
-    return static_cast<std::size_t>(at - known.begin());
-}
-
-// Reads an answer that stands in two columns, each by `read`.
-template <class Read>
-auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)
-{
-    const auto response = read("response");
-    const auto own = read(column);
-    if (!response && !own)
-        t.refuse(row, fmt::format("the {} is missing", column), "a trial that counts needs one");
-    if (response && own && *response != *own)
-        t.refuse(row, fmt::format("response is {}, but {} is {}", *response, column, *own),
-                 "make them equal");
-    return own ? *own : *response;
-}
-
-// Reads a value that the run has. Other programs round it: R to 15 digits.
-double read_value(const text_table& t, std::size_t row, const run_outline& run)
-{
-    const auto value = t.number(row, "value");
-    if (!value)
-        t.refuse(row, "the value is missing", "give the value of the comparison");
-    const auto is_same = [&value](double one) {
-        return std::abs(one - *value) <= 1e-12 * std::max(1.0, std::abs(one));
-    };
-    if (std::ranges::none_of(run.values, is_same))
-        t.refuse(row, fmt::format("value {} is not in the run", t.need(row, "value")),
-                 fmt::format("one of {}", fmt::join(run.values, ", ")));
-    return *value;
-}
-
-// Reads the answer 1 or 2.
-unsigned read_one_of_two(const text_table& t, std::size_t row)
-{
-    const auto response = t.whole(row, "response", 1, 2);
-    if (!response)
-        t.refuse(row, "the response is missing", "a trial that counts needs one");
-    return *response;
-}
-
-// Reads a trial of a task that measures; sets the method that the definition has.
-void read_measure(trial& r, const text_table& t, std::size_t row, const run_outline& run)
-{
-    const bool standard_first = run.standard && t.need(row, "method_1") == standard_name;
-    r.signal = !run.catches || t.need(row, "method_1") != catch_name;
-    if (r.signal)
-        r.method_1 = find_place(t, row, standard_first ? "method_2" : "method_1", run.methods);
-    if (run.task == task_kind::same_different) {
-        r.method_2 = find_place(t, row, "method_2", run.methods);
-        r.signal = r.method_1 != r.method_2;
-    } else if (run.standard && !standard_first && t.need(row, "method_2") != standard_name) {
-        t.refuse(row, "no stimulus is the standard", "each trial needs one");
-    }
-    if (!run.vary.empty() && r.signal)
-        r.value = read_value(t, row, run);
-    else if (!run.vary.empty() && t.cell(row, "value"))
-        t.refuse(row, "a trial without a stimulus has a value", "n/a");
-    if (run.task == task_kind::estimate) {
-        r.estimate = read_twice(t, row, "intensity_estimate", [&](std::string_view column) {
-            const auto number = t.number(row, column); // R writes 100000 as 1e+05
-            if (number && !(*number >= least_estimate && *number <= most_estimate))
-                t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),
-                         "a number above 0, from 1e-9 to 1e9");
-            return number;
-        });
-        return;
-    }
-    r.response = read_one_of_two(t, row);
-    r.positive = is_positive(run, t.need(row, "method_1"), r.response);
-}
-
 trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
 {
     trial r;
@@ -209,23 +130,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.response_time_s = t.number(row, "response_time");
     if (r.response_time_s.value_or(0.0) < 0.0)
         t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 or more seconds");
-    if (find_task(run.task).about().measures) {
-        read_measure(r, t, row, run);
-        return r;
-    }
-    r.method_1 = find_place(t, row, "method_1", run.methods);
-    if (run.task == task_kind::rate) {
-        r.response = read_twice(t, row, "rating", [&](std::string_view column) {
-            return t.whole(row, column, run.lowest_rating(), run.scale);
-        });
-    } else if (run.task == task_kind::identify) {
-        r.response = static_cast<unsigned>(find_place(t, row, "response", run.motions));
-    } else {
-        r.method_2 = find_place(t, row, "method_2", run.methods);
-        if (r.method_1 == r.method_2)
-            t.refuse(row, "both stimuli have the same method", "choose compares two");
-        r.response = read_one_of_two(t, row);
-    }
+    find_task(run.task).read_row(r, t, row, run);
     return r;
 }
 
@@ -467,13 +372,6 @@ std::optional<double> read_estimate(std::string_view text) noexcept
         return {};
     const auto number = detail::number_in<double>(text);
     return number >= least_estimate && number <= most_estimate ? number : std::nullopt;
-}
-
-bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept
-{
-    if (run.task == task_kind::detect)
-        return response == 1;
-    return (response == 2) == (!run.standard || method_1 == standard_name);
 }
 
 bool is_cut_in_plan(const text_table& t)

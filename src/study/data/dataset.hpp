@@ -57,12 +57,6 @@ struct run_outline {
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
 
-/// Tests whether a trial of the run has two stimuli.
-inline bool has_pairs(const run_outline& run) noexcept
-{
-    return run.task == task_kind::choose || run.task == task_kind::same_different || run.standard;
-}
-
 // Bounds of the numbers that a participant may give in a run that estimates, and their greatest length as
 // typed.
 inline constexpr double least_estimate = 1e-9;
@@ -176,8 +170,7 @@ enum class column_use {
     nobody,   ///< none: tables of older versions do not have it
     some,     ///< none: only studies in which it is not n/a have it
     values,   ///< the analysis of runs that vary a value; only these have it
-    tracks,   ///< sessions of adaptive runs; only these have it
-    numbers,  ///< the analysis of runs that estimate; only these have it
+    own,      ///< runs of its task, which alone have it
 };
 
 struct trial_column {
@@ -197,7 +190,7 @@ struct trial_column {
 extern const std::array<trial_column, 23> trial_columns;
 
 /// Returns true if tables of the run have the column, or may.
-bool has_column(const run_outline& run, column_use use) noexcept;
+bool has_column(const run_outline& run, const trial_column& c);
 
 /// Returns the cells of a row, in the order of a new table of these runs; none that is n/a in a column of
 /// some studies.
@@ -205,10 +198,6 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
 
 /// Reads all columns of all lines. \throws error (bad_input) with file and line.
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run);
-
-/// Returns true for an answer 1 or 2 of a task that measures which its analysis counts: felt; different; the
-/// comparison, or without a standard the second word. `method_1` is that of the first stimulus.
-bool is_positive(const run_outline& run, std::string_view method_1, unsigned response) noexcept;
 
 /// Tests whether a crash cut the table's last line within its last cell, a plan.
 bool is_cut_in_plan(const text_table& t);

@@ -90,7 +90,7 @@ private:
         key(of, "methods", before.methods, now.methods);
         key(of, "trials", before.trials, now.trials);
         key(of, "vary", before.vary, now.vary);
-        key(of, now.task == task_kind::adaptive ? "range" : "values", before.values, now.values);
+        key(of, "values", before.values, now.values);
         key(of, "standard", before.standard, now.standard);
         key(of, "catch", before.catches, now.catches);
     }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "study/data/text_table.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -125,9 +126,9 @@ const std::array<trial_column, 23> trial_columns{{
     {"rating", "The rating; n/a in other tasks", "", &trial_row::rating},
     {"value", "Value that the run varies, for the comparison; n/a in a trial without a stimulus", "",
      &trial_row::value, column_use::values},
-    {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::tracks, 1},
+    {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::own, 1},
     {"intensity_estimate", "The number above 0 that the participant gave", "", &trial_row::intensity_estimate,
-     column_use::numbers},
+     column_use::own},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void, column_use::analysis},
     {"xruns", "Gaps in the sound while the stimuli played, as the device reports them", "",
@@ -139,18 +140,11 @@ const std::array<trial_column, 23> trial_columns{{
     {"plan_2", "SHA-256 of the second stimulus' plan", "", &trial_row::plan_2},
 }};
 
-bool has_column(const run_outline& run, column_use use) noexcept
+bool has_column(const run_outline& run, const trial_column& c)
 {
-    switch (use) {
-    case column_use::values:
-        return !run.vary.empty();
-    case column_use::tracks:
-        return run.task == task_kind::adaptive;
-    case column_use::numbers:
-        return run.task == task_kind::estimate;
-    default:
-        return true;
-    }
+    return c.use == column_use::values ? !run.vary.empty()
+           : c.use == column_use::own  ? find_task(run.task).about().column == c.name
+                                       : true;
 }
 
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs)
@@ -158,10 +152,10 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
     named_cells cells;
     for (const trial_column& c : trial_columns) {
         std::string text = std::visit([&](auto member) { return written(r.*member); }, c.member);
-        if (c.use == column_use::numbers && r.intensity_estimate)
+        if (c.name == "intensity_estimate" && r.intensity_estimate)
             text = r.response; // the same number, whose digits are no microseconds
         if (c.use == column_use::some ? text != "n/a" : std::ranges::any_of(runs, [&](auto* run) {
-                return has_column(*run, c.use);
+                return has_column(*run, c);
             }))
             cells.emplace_back(c.name, std::move(text));
     }
@@ -171,7 +165,7 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
 {
     for (const trial_column& c : trial_columns)
-        if (c.use != column_use::nobody && c.use != column_use::some && has_column(run, c.use))
+        if (c.use != column_use::nobody && c.use != column_use::some && has_column(run, c))
             t.need_column(c.name);
     std::vector<trial_row> all(t.rows());
     for (const trial_column& c : trial_columns)

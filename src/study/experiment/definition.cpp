@@ -21,6 +21,7 @@
 #include "files/toml_reader.hpp"
 #include "options/option.hpp"
 #include "options/resolve.hpp"
+#include "study/experiment/trials.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/tasks/task.hpp"
 
@@ -143,8 +144,6 @@ std::string write_choice(const options::option& o, std::string_view value)
     const char* quote = o.what == options::kind::flag ? "" : "\"";
     return fmt::format("the method's {}, {}{}{},", options::dashed(o), quote, value, quote);
 }
-
-constexpr unsigned most_trials = 10000;
 
 // Returns the places in `all` that a table names, in the order of `all`; every place if it names none.
 template <class T>
@@ -357,38 +356,12 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     return {name_in(t, "name"), std::move(w), std::move(drawn), t.where(), std::move(keys)};
 }
 
-// Refuses a run with too few motions or methods for its task.
+// Refuses a run, or a group's part of it, without motions or methods, or with too few for its task.
 void check_cells(const toml_table& t, const run_outline& o)
 {
     if (o.motions.empty() || o.methods.empty())
         t.fail(fmt::format("{} has no motion or no method", o.name), "leave it out of runs, or name more");
-    if (o.task == task_kind::choose && o.methods.size() < 2)
-        t.fail(fmt::format("{} has one method to choose from", o.name), "name two or more in methods");
-    if (o.task == task_kind::identify && o.motions.size() < 2)
-        t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
-    if (o.task == task_kind::same_different && o.methods.size() != 2)
-        t.fail(fmt::format("{} has {}", o.name, counted(o.methods.size(), "method")),
-               "use two, which are the same or differ");
-    for (const auto& [used, name] :
-         {std::pair(o.standard.has_value(), standard_name), {o.catches, catch_name}})
-        if (used && std::ranges::count(o.methods, name) != 0)
-            t.fail(fmt::format("a method of {} is called \"{}\"", o.name, name),
-                   "use another name: in the tables it means a stimulus without a method");
-}
-
-// Reads the number of trials, or that of each value.
-unsigned read_trials(const toml_table& t, const run_outline& o)
-{
-    const auto each = t.whole("trials_per_value", 1, most_trials);
-    if (!each)
-        return t.whole("trials", 1, most_trials).value_or(0);
-    const std::size_t all = *each * o.values.size() * o.motions.size() * o.methods.size();
-    if (t.has("trials") || o.task == task_kind::adaptive || o.catches || all > most_trials)
-        t.fail("trials_per_value", fmt::format("trials_per_value makes {} trials", all),
-               t.has("trials") || all > most_trials
-                   ? fmt::format("use trials instead, at most {}", most_trials)
-                   : "use trials instead");
-    return static_cast<unsigned>(all);
+    find_task(o.task).check(t, o);
 }
 
 constexpr std::size_t most_texts = 1000; // a definition that is held has stricter bounds
@@ -414,65 +387,55 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
         names.push_back(one->name());
     const std::string task = t.need(t.choice("task", names), "task");
     o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
-    o.scale = read_scale(t, o.visual).value_or(o.scale);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     o.motions = names_at(r.motions, d.motions);
     o.methods = names_at(r.methods, d.methods);
-    read_variation(t, r);
+    o.labels = t.texts("labels", most_texts);
+    o.choices = t.texts("choices", most_texts);
+    find_task(o.task).read_outline(t, r);
     const std::string attribute = t.text("attribute").value_or("");
     const std::size_t kind = attribute == "similarity" ? 0 : attribute == "uniformity" ? 1 : 2;
     o.question = t.text("question").value_or(std::string(find_task(o.task).about().questions[kind]));
-    o.labels = t.texts("labels", most_texts);
-    o.choices = t.texts("choices", most_texts);
-    o.trials = read_trials(t, o);
     check_cells(t, o);
     return r;
 }
 
-// Reads the words of both answers, or returns the usual ones.
-std::vector<std::string> read_choices(const toml_table& t, const run_outline& o, const page_words& page)
+// Refuses keys that no task has, and those of other tasks.
+void check_keys(const toml_table& t, const task& own)
 {
-    if (t.has("choices") &&
-        (o.task == task_kind::rate || o.task == task_kind::identify || o.task == task_kind::estimate))
-        t.fail("choices", fmt::format("choices does not apply to runs that {}", to_string(o.task)),
-               "leave it out");
-    if (t.has("choices") && o.choices.size() != 2)
-        t.fail("choices", fmt::format("choices has {}", counted(o.choices.size(), "text")),
-               "give one for each of the two answers");
-    if (!t.has("choices") && (o.task == task_kind::constant || o.task == task_kind::adaptive) && !o.standard)
-        t.fail("vary", "a run without a standard needs two words",
-               "add choices = [\"one\", \"two\"], or standard");
-    if (!t.has("choices") && o.task == task_kind::detect)
-        return {page["yes"], page["no"]};
-    if (!t.has("choices") && o.task == task_kind::same_different)
-        return {page["same"], page["different"]};
-    return o.choices;
+    std::vector<std::string_view> known{"name",   "task",         "attribute",   "question",      "animation",
+                                        "trials", "practice",     "break_s",     "motions",       "methods",
+                                        "blocks", "max_in_a_row", "simulate_as", "min_response_s"};
+    std::map<std::string_view, std::vector<std::string>> users;
+    for (const task* one : list_tasks())
+        for (const std::string_view key : one->about().keys)
+            users[key].push_back(fmt::format("\"{}\"", one->name()));
+    for (const auto& [key, tasks] : users)
+        known.push_back(key);
+    t.only(known);
+    for (const auto& [key, tasks] : users)
+        if (t.has(key) && std::ranges::count(own.about().keys, key) == 0)
+            t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, own.name()),
+                   fmt::format("leave it out, or use task = {}", fmt::join(tasks, " or ")));
 }
 
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
                                    std::vector<method_definition>& variants)
 {
-    t.only({"name",           "task",      "attribute", "question",    "animation",
-            "trials",         "practice",  "scale",     "labels",      "choices",
-            "break_s",        "motions",   "methods",   "blocks",      "simulate_as",
-            "min_response_s", "vary",      "values",    "standard",    "trials_per_value",
-            "catch",          "procedure", "start",     "steps",       "range",
-            "tracks",         "slope",     "lapse",     "max_in_a_row"});
     run_definition r = read_run_outline(t, d);
+    const task& own = find_task(r.outline.task);
+    check_keys(t, own);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
         if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))
             t.fail(fmt::format("the names of the runs \"{}\" and \"{}\" differ only in capitals",
                                other.outline.name, r.outline.name),
                    "use another name: on some disks their files would be the same");
-    for (const char* key : {"scale", "labels"})
-        if (r.outline.task != task_kind::rate && t.has(key))
-            t.fail(key, fmt::format("{} only applies to runs that rate", key),
-                   "leave it out, or set task = \"rate\"");
     make_variants(t, r, d.methods, variants);
-    if (t.has("attribute") || r.outline.task == task_kind::choose || r.outline.task == task_kind::rate)
+    if (t.has("attribute"))
         r.attribute = name_in(t, "attribute");
+    own.read(t, r);
     const bool is_known = r.attribute == "similarity" || r.attribute == "uniformity";
     r.simulate_as =
         t.choice("simulate_as", {"similarity", "uniformity"}).value_or(is_known ? r.attribute : "");
@@ -482,26 +445,16 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     r.animation = t.boolean("animation").value_or(false);
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");
-    r.practice = t.whole("practice", 0, most_trials).value_or(0);
+    r.practice = t.whole("practice", 0, 10000).value_or(0);
     r.max_in_a_row =
         t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // 1: catch trials have no order
-    const std::vector<std::string>& labels = r.outline.labels;
-    if (r.outline.visual && labels.size() != 2)
-        t.fail(t.has("labels") ? "labels" : "scale",
-               fmt::format("labels has {} for a visual analogue scale", counted(labels.size(), "text")),
-               "give one for each end");
-    if (!labels.empty() && labels.size() != 2 && labels.size() != r.outline.scale)
-        t.fail(
-            "labels",
-            fmt::format("labels has {} for a scale of {}", counted(labels.size(), "text"), r.outline.scale),
-            "give one for each end, or one for each step");
-    r.choices = read_choices(t, r.outline, d.page);
+    if (t.has("choices") && r.outline.choices.size() != 2)
+        t.fail("choices", fmt::format("choices has {}", counted(r.outline.choices.size(), "text")),
+               "give one for each of the two answers");
+    r.choices = t.has("choices") ? r.outline.choices : own.usual_choices(d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
-    if (r.blocks == "methods" &&
-        (r.outline.task == task_kind::choose || r.outline.task == task_kind::same_different))
-        t.fail("blocks", fmt::format("{} has two methods in each trial", r.outline.name),
-               "use blocks = \"motions\", or leave it out");
+    r.pairs = std::ranges::any_of(own.list_cells(r), [](const auto& c) { return c.method_2.has_value(); });
     return r;
 }
 

@@ -91,6 +91,7 @@ struct run_definition {
     std::vector<std::size_t> methods = {};
     std::map<std::size_t, method_variants> variants = {}; ///< by method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
+    bool pairs = false;                                   ///< a trial has two stimuli
     adaptive_options adaptive = {};
     unsigned max_in_a_row = 3; ///< trials of one motion, where a block has several
     std::string blocks = {}; ///< methods or motions: the trials of each stand together; empty: all are mixed

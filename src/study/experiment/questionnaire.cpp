@@ -51,15 +51,15 @@ void read_range(const toml_table& t, questionnaire_item& item)
 void read_steps(const toml_table& t, questionnaire_item& item)
 {
     item.labels = t.texts("labels", most_steps);
-    item.greatest = read_scale(t, item.visual).value_or(static_cast<unsigned>(item.labels.size()));
-    if (item.visual)
+    item.greatest = read_scale(t, item.is_line).value_or(static_cast<unsigned>(item.labels.size()));
+    if (item.is_line)
         item.lowest = 0;
     const std::size_t labels = item.labels.size();
-    const bool fits = item.visual ? labels == 2 : labels == 0 || labels == 2 || labels == item.greatest;
+    const bool fits = item.is_line ? labels == 2 : labels == 0 || labels == 2 || labels == item.greatest;
     if (item.greatest < 2 || !fits)
         t.fail(t.has("labels") ? "labels" : "kind", fmt::format("a scale has {}", counted(labels, "label")),
-               item.visual ? "give one for each end"
-                           : "give one for each step, or scale with one for each end or none");
+               item.is_line ? "give one for each end"
+                            : "give one for each step, or scale with one for each end or none");
 }
 
 questionnaire_item read_item(const toml_table& t)

@@ -34,7 +34,7 @@ struct questionnaire_item {
     std::vector<std::string> labels = {}; ///< choice: of each; scale: of each step, of both ends, or none
     unsigned lowest = 1;                  ///< not of a text
     unsigned greatest = 1;
-    bool visual = false; ///< scale: places on a line, without numbers
+    bool is_line = false; ///< scale: places on a line, without numbers
 
     friend bool operator==(const questionnaire_item&, const questionnaire_item&) = default;
 };

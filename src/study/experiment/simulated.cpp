@@ -16,7 +16,6 @@
 #include "core/split.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/analysis/measures.hpp"
-#include "study/experiment/adaptive.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
@@ -40,14 +39,6 @@ T simulation_value(std::string_view key, std::string_view text, T low, T high)
     if (!v || !(*v >= low && *v <= high))
         refuse_simulation(fmt::format("{} is \"{}\", not {} to {}", key, text, low, high));
     return *v;
-}
-
-double mean_distance(const std::vector<point>& a, const std::vector<point>& b)
-{
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += std::hypot(b[i].x_mm - a[i].x_mm, b[i].y_mm - a[i].y_mm);
-    return sum / static_cast<double>(a.size());
 }
 
 // A participant's trials of a run: as planned, and as the analysis has them.
@@ -80,8 +71,6 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
                 one.method_2 = place_in(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
             if (d.methods[t.method_1].name == standard_name)
                 one.method_1 = one.method_2;
-            one.signal = r.outline.task == task_kind::same_different ? t.method_1 != t.method_2
-                                                                     : !d.methods[t.method_1].silent;
             p.trials.push_back(one);
         }
         all.push_back(std::move(p));
@@ -93,25 +82,20 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
 void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
                 const run_definition& r)
 {
-    adaptive_tracks tracks(r);
+    const task& own = find_task(r.outline.task);
+    const auto values = own.choose_values(r);
     for (std::size_t i = 0; i < p.trials.size(); ++i) {
         planned_trial& t = p.planned[i];
-        if (t.track > 0)
-            set_value(t, r, tracks.next(t.track));
+        values->choose(t);
         simulated_answer a;
         unsigned attempt = 0;
         do
             a = who.answer(t, p.trials[i].place, ++attempt, false);
         while (a.is_void);
         p.trials[i].value = find_value(d, t).value_or(0.0);
-        const auto answer = static_cast<unsigned>(a.response);
-        p.trials[i].positive = is_positive(r.outline, d.methods[t.method_1].name, answer);
-        if (t.track > 0)
-            tracks.answer(t.track, p.trials[i].positive);
-        p.trials[i].response = r.outline.task == task_kind::identify
-                                   ? static_cast<unsigned>(place_in(r.motions, answer))
-                                   : answer;
-        p.trials[i].estimate = a.response;
+        const std::string& method_1 = d.methods[t.method_1].name;
+        own.score(p.trials[i], r.outline, method_1, a.response);
+        values->take(t.track, method_1, static_cast<unsigned>(a.response));
     }
 }
 
@@ -164,6 +148,21 @@ void count_study(power_at& at, const std::vector<compared_person>& people, const
         ++at.significant;
         at.for_last += *t.t > 0.0 ? 1 : 0;
     }
+}
+
+// Returns the predicted error of a stimulus, or how uneven it is.
+double find_cost(const experiment_definition& d, const run_definition& r, const stimulus_set& stimuli,
+                 std::size_t motion, std::size_t method)
+{
+    const percept_summary& felt = stimuli.at(motion, method).felt;
+    const std::optional<double> c = r.simulate_as == "uniformity" ? felt.speed_cv : felt.rms_error_mm;
+    if (!c)
+        throw error(error_kind::bad_input, d.motions[motion].where,
+                    fmt::format("simulate: the prediction for motion \"{}\" with method \"{}\" {}",
+                                d.motions[motion].name, d.methods[method].name,
+                                r.simulate_as == "uniformity" ? "does not move" : "is silent"),
+                    "people can judge it; the simulated observer cannot");
+    return std::max(*c, least_cost);
 }
 
 } // namespace
@@ -222,83 +221,17 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
                                        const run_definition& r, const stimulus_set& stimuli,
                                        std::string_view code)
     : simulation_(s),
-      definition_(d),
-      run_(r),
-      stimuli_(stimuli),
-      seed_(fmt::format("{}/{}", session_seed(s.seed, d, code), r.outline.name))
+      task_(find_task(r.outline.task)),
+      seed_(fmt::format("{}/{}", session_seed(s.seed, d, code), r.outline.name)),
+      run_{simulation_, d, r,
+           [&d, &r, &stimuli](std::size_t motion, std::size_t method) {
+               return find_cost(d, r, stimuli, motion, method);
+           },
+           [&stimuli](std::size_t motion, std::size_t method) -> const std::vector<point>& {
+               return stimuli.at(motion, method).felt_path;
+           }}
 {
-    if (r.outline.task == task_kind::identify) {
-        for (const std::size_t m : r.motions)
-            targets_.push_back(target_path(d.motions[m].drawn));
-        return;
-    }
-    if (find_task(r.outline.task).about().measures)
-        return;
-    if (r.simulate_as.empty())
-        throw error(error_kind::bad_input, r.where,
-                    fmt::format("simulate: the observer cannot judge \"{}\"", r.attribute),
-                    "add simulate_as = \"similarity\" or \"uniformity\"");
-    double sum = 0.0;
-    for (const std::size_t motion : r.motions)
-        for (const std::size_t method : r.methods)
-            sum -= std::log(cost(motion, method));
-    mean_ = sum / static_cast<double>(r.motions.size() * r.methods.size());
-}
-
-double simulated_observer::cost(std::size_t motion, std::size_t method) const
-{
-    const percept_summary& felt = stimuli_.at(motion, method).felt;
-    const std::optional<double> c = run_.simulate_as == "uniformity" ? felt.speed_cv : felt.rms_error_mm;
-    if (!c)
-        throw error(error_kind::bad_input, definition_.motions[motion].where,
-                    fmt::format("simulate: the prediction for motion \"{}\" with method \"{}\" {}",
-                                definition_.motions[motion].name, definition_.methods[method].name,
-                                run_.simulate_as == "uniformity" ? "does not move" : "is silent"),
-                    "people can judge it; the simulated observer cannot");
-    return std::max(*c, least_cost);
-}
-
-bool simulated_observer::feels_more(double value, random_numbers& r) const
-{
-    const run_outline& o = run_.outline;
-    const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
-    const double pse = simulation_.pse.value_or(o.standard.value_or(0.5 * (least + greatest)));
-    const double jnd = simulation_.jnd.value_or(0.1 * (greatest - least));
-    return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
-}
-
-double simulated_observer::measure(const planned_trial& t, random_numbers& r) const
-{
-    const run_outline& o = run_.outline;
-    const std::optional<double> value = find_value(definition_, t);
-    if (o.task == task_kind::estimate) {
-        constexpr double modulus = 100.0; // of the standard, or of the middle value
-        const double middle = o.standard.value_or(o.values[o.values.size() / 2]);
-        const double ratio = size_ratio(o, *value, middle);
-        const double number =
-            modulus * std::pow(ratio, simulation_.exponent) * std::exp(simulation_.sigma * r.normal());
-        const auto rounded = detail::number_in<double>(fmt::format("{:.3g}", number));
-        return std::clamp(rounded.value_or(number), least_estimate, most_estimate);
-    }
-    if (simulation_.lapse > 0.0 && r.unit() < simulation_.lapse)
-        return 1 + r.below(2);
-    if (o.task == task_kind::same_different) {
-        // Differs if what is felt is further apart than this, in units of d'.
-        constexpr double criterion = std::numbers::sqrt2;
-        const double apart = t.method_1 != *t.method_2 ? simulation_.dprime : 0.0;
-        return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;
-    }
-    if (o.task == task_kind::detect) {
-        if (definition_.methods[t.method_1].silent && !o.vary.empty())
-            return 2;
-        if (value)
-            return feels_more(*value, r) ? 1 : 2;
-        const double felt = definition_.methods[t.method_1].silent ? 0.0 : simulation_.dprime;
-        return felt + r.normal() > 0.5 * simulation_.dprime ? 1 : 2;
-    }
-    const bool more = feels_more(*value, r);
-    const bool standard_first = definition_.methods[t.method_1].name == standard_name;
-    return more == (!t.method_2 || standard_first) ? 2 : 1;
+    task_.prepare(run_);
 }
 
 simulated_answer simulated_observer::answer(const planned_trial& t, unsigned trial, unsigned attempt,
@@ -310,30 +243,7 @@ simulated_answer simulated_observer::answer(const planned_trial& t, unsigned tri
     constexpr unsigned soonest_ms = 400;
     constexpr unsigned range_ms = 1200;
     a.response_time_ms = soonest_ms + r.below(range_ms);
-    const auto noise = [&] { return simulation_.sigma * r.normal(); };
-    const auto utility = [&](std::size_t method) { return -std::log(cost(t.motion, method)) + noise(); };
-    if (find_task(run_.outline.task).about().measures) {
-        a.response = measure(t, r);
-    } else if (run_.outline.task == task_kind::choose) {
-        const double first = utility(t.method_1);
-        a.response = first >= utility(t.method_2.value()) ? 1 : 2;
-    } else if (run_.outline.task == task_kind::rate) {
-        const double lowest = run_.outline.lowest_rating();
-        const double highest = run_.outline.scale;
-        const double rating = std::round((highest + lowest) / 2.0 + utility(t.method_1) - mean_);
-        a.response = std::clamp(rating, lowest, highest);
-    } else { // identify
-        std::vector<point> felt = stimuli_.at(t.motion, t.method_1).felt_path;
-        for (point& p : felt) {
-            p.x_mm += noise();
-            p.y_mm += noise();
-        }
-        std::vector<double> distances;
-        for (const std::vector<point>& target : targets_)
-            distances.push_back(mean_distance(target, felt));
-        const auto nearest = std::ranges::min_element(distances) - distances.begin();
-        a.response = static_cast<double>(run_.motions[static_cast<std::size_t>(nearest)]);
-    }
+    a.response = task_.simulate(run_, t, r);
     return a;
 }
 

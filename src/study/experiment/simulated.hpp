@@ -16,6 +16,7 @@
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 
@@ -39,7 +40,7 @@ std::string to_text(const simulation& s);
 
 struct simulated_answer {
     bool is_void = false;
-    double response = 0.0;         ///< as a person's; identify: a place in the definition's motions
+    double response = 0.0;         ///< as task::simulate() returns it
     unsigned response_time_ms = 0; ///< drawn to fill the column: no model of people
 };
 
@@ -47,6 +48,8 @@ struct simulated_answer {
 /// session that goes on is the one that was broken off.
 class simulated_observer {
 public:
+    simulated_observer(const simulated_observer&) = delete;
+    simulated_observer& operator=(const simulated_observer&) = delete;
     /// \throws error (bad_input) if a stimulus is predicted not to be felt, or not to move.
     simulated_observer(const simulation& s, const experiment_definition& d, const run_definition& r,
                        const stimulus_set& stimuli, std::string_view code);
@@ -55,18 +58,10 @@ public:
     simulated_answer answer(const planned_trial& t, unsigned trial, unsigned attempt, bool practice) const;
 
 private:
-    double cost(std::size_t motion, std::size_t method) const;
-    /// Answers a task that measures.
-    double measure(const planned_trial& t, random_numbers& r) const;
-    bool feels_more(double value, random_numbers& r) const;
-
     simulation simulation_;
-    const experiment_definition& definition_;
-    const run_definition& run_;
-    const stimulus_set& stimuli_;
+    const task& task_;
     std::string seed_;
-    double mean_ = 0.0;                            ///< of -ln cost, over the cells
-    std::vector<std::vector<point>> targets_ = {}; ///< identify
+    simulated_run run_;
 };
 
 struct power_request {

@@ -22,179 +22,12 @@
 #include "study/experiment/trial_order.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/random/random.hpp"
+#include "study/tasks/draw.hpp"
 #include "study/tasks/task.hpp"
 #include "synth/score/joined.hpp"
 
 namespace tactor::study {
 namespace {
-
-// Lists the conditions of a motion: each method, or each pair of methods in one order. The pairs are a cyclic
-// design: of the first n pairs, and of the next n, each of the n methods comes first once.
-std::vector<planned_trial> list_conditions(task_kind task, std::size_t motion,
-                                           const std::vector<std::size_t>& methods)
-{
-    const std::size_t n = methods.size();
-    std::vector<planned_trial> all;
-    if (task != task_kind::choose)
-        for (const std::size_t method : methods)
-            all.push_back({motion, method});
-    else
-        for (std::size_t i = 0; i < n * (n - 1) / 2; ++i)
-            all.push_back({motion, methods[i % n], methods[(i % n + i / n + 1) % n]});
-    return all;
-}
-
-// Exchanges the methods of a pair if `swapped`.
-planned_trial with_order(planned_trial t, bool swapped)
-{
-    if (t.method_2 && swapped)
-        std::swap(t.method_1, *t.method_2);
-    return t;
-}
-
-// Adds a trial of a task that measures: the comparison alone, or with the standard. Only estimates have the
-// standard always first.
-void add_comparison(std::vector<planned_trial>& cells, const run_definition& r, planned_trial t,
-                    const method_variants& v)
-{
-    if (v.standard && r.outline.task != task_kind::estimate) {
-        t.method_2 = v.standard;
-        cells.push_back(t);
-    }
-    if (v.standard) {
-        t.method_2 = t.method_1;
-        t.method_1 = *v.standard;
-    }
-    cells.push_back(t);
-}
-
-// Lists the cells of a task that measures: each motion by each method, and by each value or track.
-std::vector<planned_trial> list_measured_cells(const run_definition& r)
-{
-    std::vector<planned_trial> cells;
-    unsigned track = 0;
-    for (const std::size_t motion : r.motions) {
-        if (r.outline.task == task_kind::same_different) {
-            for (const std::size_t first : r.methods)
-                for (const std::size_t second : r.methods)
-                    cells.push_back({motion, first, second});
-            continue;
-        }
-        for (const std::size_t method : r.methods) {
-            const method_variants& v = r.variants.at(method);
-            if (r.outline.task == task_kind::adaptive)
-                for (const std::size_t start : r.adaptive.start)
-                    add_comparison(cells, r, {motion, v.values[start], {}, 0.0, ++track}, v);
-            else if (v.values.empty())
-                cells.push_back({motion, method});
-            else
-                for (const std::size_t value : v.values)
-                    add_comparison(cells, r, {motion, value}, v);
-        }
-    }
-    return cells;
-}
-
-std::size_t count_catches(const run_definition& r, std::size_t trials)
-{
-    return static_cast<std::size_t>(std::llround(r.catch_share * static_cast<double>(trials)));
-}
-
-void add_catches(std::vector<planned_trial>& all, const run_definition& r, std::size_t n)
-{
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t method = r.methods[i / r.motions.size() % r.methods.size()];
-        all.push_back({r.motions[i % r.motions.size()], *r.variants.at(method).silent});
-    }
-}
-
-// Draws n trials of a task that measures: each cell equally often, and of the rest different cells. With
-// catch trials, these are a part of the n.
-std::vector<planned_trial> draw_measured(const run_definition& r, std::size_t n, random_numbers& numbers)
-{
-    std::vector<planned_trial> cells = list_measured_cells(r);
-    const std::size_t catches = count_catches(r, n);
-    std::vector<planned_trial> all;
-    for (std::size_t i = 0; i < n - catches; ++i) {
-        if (i == n - catches - (n - catches) % cells.size())
-            shuffle(std::span(cells), numbers);
-        all.push_back(cells[i % cells.size()]);
-    }
-    add_catches(all, r, catches);
-    return all;
-}
-
-// Draws the trials of such a run again, fewer than there are cells, so that the motions take turns, and those
-// of each method, too.
-std::vector<planned_trial> draw_by_turns(const experiment_definition& d, const run_definition& r,
-                                         random_numbers& numbers)
-{
-    std::vector<planned_trial> cells = list_measured_cells(r);
-    shuffle(std::span(cells), numbers);
-    // The turn of a cell: the number of earlier cells with its motion and method, then of those with its
-    // motion that have the same number.
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> cells_before;
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> turns_before;
-    std::multimap<std::pair<std::size_t, std::size_t>, planned_trial> turns;
-    for (const planned_trial& t : cells) {
-        const std::size_t method = d.methods[t.method_1].made_of.value_or(t.method_1);
-        const std::size_t turn = cells_before[{t.motion, method}]++;
-        turns.emplace(std::pair(turn, turns_before[{t.motion, turn}]++), t);
-    }
-    const std::size_t catches = count_catches(r, r.outline.trials);
-    std::vector<planned_trial> all;
-    for (const auto& [turn, t] : turns)
-        if (all.size() < r.outline.trials - catches)
-            all.push_back(t);
-    add_catches(all, r, catches);
-    return all;
-}
-
-// Lists the cells of a run: each motion by each method, or by each pair in each order.
-std::vector<planned_trial> list_cells(const run_definition& r)
-{
-    std::vector<planned_trial> cells;
-    for (const std::size_t motion : r.motions)
-        for (const planned_trial& t : list_conditions(r.outline.task, motion, r.methods)) {
-            cells.push_back(t);
-            if (t.method_2)
-                cells.push_back(with_order(t, true));
-        }
-    return cells;
-}
-
-// Draws n trials: each cell equally often, and of the rest, which are different cells, each motion, each
-// method or pair, each of them in a motion, and each order of a pair equally often as far as n allows. The
-// cells of one motion stand together.
-std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
-{
-    if (find_task(run.outline.task).about().measures)
-        return draw_measured(run, n, r);
-    const std::vector<planned_trial> cells = list_cells(run);
-    const std::size_t whole = n - n % cells.size();
-    std::vector<planned_trial> all;
-    for (std::size_t i = 0; i < whole; ++i)
-        all.push_back(cells[i % cells.size()]);
-    if (whole == n)
-        return all;
-    std::vector<std::size_t> motions = run.motions;
-    std::vector<std::size_t> methods = run.methods;
-    shuffle(std::span(motions), r);
-    shuffle(std::span(methods), r);
-    // Each motion meets each condition once: both lists go on by one at a time, and the conditions by one
-    // more before the same meet again. Then the same with each pair in its other order.
-    const std::vector<planned_trial> conditions = list_conditions(run.outline.task, 0, methods);
-    const std::size_t kinds = conditions.size();
-    const std::size_t half = motions.size() * kinds;
-    for (std::size_t i = 0; whole + i < n; ++i) {
-        const std::size_t at = i % half;
-        planned_trial t = with_order(conditions[(at + at / std::lcm(motions.size(), kinds)) % kinds],
-                                     (at / kinds + i / half) % 2 == 1);
-        t.motion = motions[at % motions.size()];
-        all.push_back(t);
-    }
-    return all;
-}
 
 // Draws the pause before each trial, in whole milliseconds; draws nothing if it is always the same.
 void draw_rests(std::vector<planned_trial>& trials, const rest_range& range, random_numbers& r)
@@ -321,25 +154,6 @@ stroke find_target(const motion_definition& motion, const method_definition& met
 
 } // namespace
 
-void set_value(planned_trial& t, const run_definition& r, std::size_t place)
-{
-    for (const auto& [method, v] : r.variants) {
-        if (std::ranges::count(v.values, t.method_1) != 0)
-            t.method_1 = v.values[place];
-        else if (t.method_2 && std::ranges::count(v.values, *t.method_2) != 0)
-            t.method_2 = v.values[place];
-        else
-            continue;
-        return;
-    }
-}
-
-std::optional<double> find_value(const experiment_definition& d, const planned_trial& t)
-{
-    const bool standard_first = t.method_2 && d.methods[t.method_1].name == standard_name;
-    return d.methods[standard_first ? *t.method_2 : t.method_1].value;
-}
-
 std::uint64_t default_seed(std::string_view code)
 {
     const detail::sha256_digest d = detail::sha256(code);
@@ -401,10 +215,10 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     random_numbers numbers(fmt::format("{}/{}", session_seed(seed, d, code), r.outline.name));
     run_sequence s{run};
     const bool mixes_motions = r.motions.size() > 1 && r.blocks != "motions";
-    auto blocks = part_blocks(d, r, draw_balanced(r, r.outline.trials, numbers));
+    auto blocks = part_blocks(d, r, find_task(r.outline.task).draw(r, r.outline.trials, numbers));
     if (mixes_motions &&
         !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
-        blocks = part_blocks(d, r, draw_by_turns(d, r, numbers));
+        blocks = part_blocks(d, r, draw_by_turns(d, r, find_task(r.outline.task).list_cells(r), numbers));
     // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
     const std::size_t runs = square_rows(d.order, d.runs.size());
@@ -416,7 +230,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
             shuffle(std::span(blocks[i]), numbers);
         s.trials.insert(s.trials.end(), blocks[i].begin(), blocks[i].end());
     }
-    s.practice = draw_balanced(r, r.practice, numbers);
+    s.practice = find_task(r.outline.task).draw(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
     draw_rests(s.practice, d.rest, numbers);
     draw_rests(s.trials, d.rest, numbers);
@@ -559,14 +373,6 @@ bool session_flow::void_last()
         place_ = place::trials;
     }
     return true;
-}
-
-std::vector<point> target_path(const stroke& s)
-{
-    std::vector<point> parts;
-    for (std::size_t i = 0; i <= path_parts; ++i)
-        parts.push_back(s.motion.position(s.motion.duration_s() * static_cast<double>(i) / path_parts));
-    return parts;
 }
 
 stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const render_options& o)

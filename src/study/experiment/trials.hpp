@@ -238,9 +238,6 @@ struct stimulus {
 /// Number of equal parts in which movements are compared.
 inline constexpr std::size_t path_parts = 100;
 
-/// Returns the target's places at 0, 1, ... path_parts parts of its time.
-std::vector<point> target_path(const stroke& s);
-
 class stimulus_set {
 public:
     /// Plans, predicts and checks all stimuli; keeps each warning of the planner once, and warns of methods

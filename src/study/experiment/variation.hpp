@@ -4,6 +4,9 @@
 /// method of its own, so that all stimuli are planned and checked before the session.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include <tactor/stroke.hpp>
@@ -13,9 +16,17 @@
 
 namespace tactor::study {
 
-/// Reads `vary`, its values and the standard into the run's outline, and the procedure of an adaptive run.
-/// \throws error (bad_input) with line and column.
-void read_variation(const detail::toml_table& t, run_definition& r);
+/// Number of values of a run, at most.
+inline constexpr std::size_t most_values = 401;
+
+/// A number that a run may vary.
+struct varied {
+    detail::bounds allowed;
+    bool on_db_axis = false; ///< a level in dB
+};
+
+/// Returns an option with a number that a method may have, or a parameter of a stroke; nothing for others.
+std::optional<varied> find_varied(std::string_view name);
 
 /// Adds the methods that the run plays in place of its own, one for each value, to `more`, whose first will
 /// be number `from` of the definition. \throws error (bad_input): an option refuses a value.

@@ -390,7 +390,11 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["notes"] = list_notes(f);
     const auto has_run = [&d](const auto& what) { return std::ranges::any_of(d.experiment.runs, what); };
     all["gap"] =
-        has_run(has_pairs)
+        std::ranges::any_of(f.sessions,
+                            [](const session_facts& s) {
+                                return s.design &&
+                                       std::ranges::any_of(s.design->runs, &run_definition::pairs);
+                            })
             ? json(definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; }))
             : json(false);
     all["rest"] = definition([](const experiment_definition& e) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +13,7 @@
 
 #include "core/words.hpp"
 #include "study/data/dataset.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -49,44 +52,33 @@ const std::array<event_row, code_events>& list_events()
     return rows;
 }
 
-// Returns true if a run has so few answers that each has a number. Estimates and lines have any number.
-bool has_answer_numbers(const run_outline& r)
+// Returns the intervals in which an event may come.
+std::vector<unsigned> list_intervals(const experiment_definition& d, const run_definition& r, code_event e)
 {
-    return r.task != task_kind::estimate && !r.visual;
-}
-
-// Lists the answers of a run as its table has them.
-std::vector<std::string> list_answers(const run_definition& r)
-{
-    const run_outline& o = r.outline;
-    if (o.task == task_kind::identify)
-        return o.motions;
-    std::vector<std::string> all;
-    const unsigned most = !has_answer_numbers(o) ? 1 : o.task == task_kind::rate ? o.scale : 2;
-    for (unsigned i = 1; i <= most; ++i)
-        all.push_back(fmt::format("{}", i));
-    return all;
-}
-
-// Returns the intervals in which a stimulus may come.
-std::vector<unsigned> list_intervals(const run_definition& r, code_event e)
-{
-    if (!has_pairs(r.outline))
-        return {1};
-    if (r.outline.task == task_kind::estimate) // the standard is always first
-        return {e == code_event::standard ? 1U : 2U};
-    return {1, 2};
+    const auto cells = find_task(r.outline.task).list_cells(r);
+    std::vector<unsigned> all;
+    for (const unsigned interval : {1U, 2U})
+        if (std::ranges::any_of(cells, [&](const planned_trial& t) {
+                const std::optional<std::size_t> played = interval == 1 ? t.method_1 : t.method_2;
+                return played && find_event(d.methods[*played]) == e;
+            }))
+            all.push_back(interval);
+    return all.empty() ? std::vector{1U} : all;
 }
 
 // Lists the events of a run, in order.
-std::vector<coded_event> list_events_in(const run_definition& r)
+std::vector<coded_event> list_events_in(const experiment_definition& d, const run_definition& r)
 {
+    const std::map<code_event, std::vector<unsigned>> intervals{
+        {code_event::stimulus, list_intervals(d, r, code_event::stimulus)},
+        {code_event::standard, list_intervals(d, r, code_event::standard)},
+        {code_event::silent, list_intervals(d, r, code_event::silent)}};
     std::vector<coded_event> all;
     for (const std::size_t motion : r.motions)
         for (const std::size_t method : r.methods) {
             const method_variants& v = r.variants.at(method);
             const auto add = [&](code_event e, std::size_t played) {
-                for (const unsigned interval : list_intervals(r, e))
+                for (const unsigned interval : intervals.at(e))
                     all.push_back({e, &r, motion, played, interval});
             };
             for (const std::size_t value : v.values)
@@ -119,6 +111,7 @@ code_event find_event(const method_definition& m) noexcept
 std::string code_numbers::describe(const experiment_definition& d, const coded_event& e) const
 {
     const run_outline& r = e.run->outline;
+    const task& own = find_task(r.task);
     const method_definition& m = d.methods[e.method];
     const bool is_stimulus = e.event != code_event::answer && e.event != code_event::made_void;
     std::vector<std::string> parts{std::string(to_string(e.event))};
@@ -131,11 +124,10 @@ std::string code_numbers::describe(const experiment_definition& d, const coded_e
             parts.push_back(fmt::format("method \"{}\"", d.methods[m.made_of.value_or(e.method)].name));
         else if (part == "value" && is_stimulus && m.value)
             parts.push_back(fmt::format("{} {}", r.vary, plain_number(*m.value)));
-        else if (part == "interval" && is_stimulus && has_pairs(r))
+        else if (part == "interval" && is_stimulus && e.run->pairs)
             parts.push_back(fmt::format("interval {}", e.interval));
-        else if (part == "answer" && e.event == code_event::answer && has_answer_numbers(r))
-            parts.push_back(r.task == task_kind::identify ? fmt::format("answer \"{}\"", e.response)
-                                                          : fmt::format("answer {}", e.response));
+        else if (part == "answer" && e.event == code_event::answer && !own.list_responses(r).empty())
+            parts.push_back(own.name_response(e.response));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -156,8 +148,10 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
             meanings_[next++].push_back(text);
         };
         for (const run_definition& r : whole.runs) {
-            const std::vector<std::string> answers = list_answers(r);
-            for (const coded_event& e : list_events_in(r)) {
+            std::vector<std::string> answers = find_task(r.outline.task).list_responses(r.outline);
+            if (answers.empty())
+                answers.emplace_back(); // one number for all
+            for (const coded_event& e : list_events_in(whole, r)) {
                 add(e);
                 for (const std::string& answer : answers)
                     add({code_event::answer, &r, e.motion, e.method, 1, answer});

@@ -28,9 +28,9 @@
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
-#include "study/experiment/adaptive.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/session/sync_codes.hpp"
+#include "study/tasks/task.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
@@ -193,11 +193,11 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     return doubts;
 }
 
-// Takes the answer of a line of an adaptive run.
-void take_line(adaptive_tracks& tracks, const run_outline& run, const trial_row& row)
+// Takes the answer of a line.
+void take_line(value_chooser& values, const trial_row& row)
 {
     if (!row.is_void && row.track)
-        tracks.answer(*row.track, is_positive(run, row.method_1, row.response == "2" ? 2 : 1));
+        values.take(*row.track, row.method_1, row.response == "2" ? 2 : 1);
 }
 
 using json = nlohmann::ordered_json;
@@ -470,16 +470,9 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     return row;
 }
 
-void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, double response,
-                  double time_s)
+void set_response(trial_row& row, const run_definition& r, double response, double time_s)
 {
-    const bool named = r.outline.task == task_kind::identify;
-    const auto answer = static_cast<unsigned>(response);
-    row.response = named ? p.definition.motions.at(answer).name : fmt::format("{}", response);
-    if (r.outline.task == task_kind::rate)
-        row.rating = answer;
-    if (r.outline.task == task_kind::estimate)
-        row.intensity_estimate = response;
+    find_task(r.outline.task).take(row, r, response);
     row.response_time_s = time_s;
     row.early = time_s < r.min_response_s;
 }
@@ -487,7 +480,7 @@ void set_response(trial_row& row, const prepared_experiment& p, const run_defini
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
 {
     const run_definition& r = p.definition.runs[s.run];
-    adaptive_tracks tracks(r);
+    const auto values = find_task(r.outline.task).choose_values(r);
     run_queue queue(s.trials.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const trial_row& row = rows[i];
@@ -495,8 +488,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
         if (same) {
             const pending_trial next = queue.next();
             planned_trial t = s.trials[next.trial - 1];
-            if (t.track > 0)
-                set_value(t, r, tracks.next(t.track));
+            values->choose(t);
             const trial_row planned = planned_row(p, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
                    row.plan_1 == planned.plan_1 && row.plan_2 == planned.plan_2;
@@ -506,7 +498,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
                         fmt::format("trial {}, attempt {} does not belong there", row.trial, row.attempt),
                         "the table was changed, or belongs to another session");
         queue.take(row.is_void);
-        take_line(tracks, r.outline, row);
+        take_line(*values, row);
     }
     return queue;
 }
@@ -551,11 +543,11 @@ planned_trial find_trial(const prepared_experiment& p, const session_step& s, co
     if (t.track == 0)
         return t;
     const run_definition& r = p.run_at(s.run);
-    adaptive_tracks tracks(r);
+    const auto values = find_task(r.outline.task).choose_values(r);
     for (const trial_row& row : store.rows(r))
         if (row.track == t.track)
-            take_line(tracks, r.outline, row);
-    set_value(t, r, tracks.next(t.track));
+            take_line(*values, row);
+    values->choose(t);
     return t;
 }
 

@@ -107,8 +107,7 @@ nlohmann::ordered_json stimulus_facts(const prepared_experiment& p);
 trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which);
 
 /// Writes an answer, and the time until it came, into the columns of the response.
-void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, double response,
-                  double time_s);
+void set_response(trial_row& row, const run_definition& r, double response, double time_s);
 
 /// Returns the rest of a run after the lines that are there. \throws error (bad_input) for lines that are not
 /// of this session.

@@ -79,7 +79,7 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["question"] = screen_.question;
     if (!screen_.choices.empty())
         j["choices"] = screen_.choices;
-    if (screen_.visual)
+    if (screen_.is_line)
         j["visual"] = true;
     if (screen_.entry == entry_kind::text)
         j["entry"] = {{"most", most_text_characters}};
@@ -129,7 +129,7 @@ page_dialogue::heard page_dialogue::take(std::size_t choice)
 {
     open_ = false;
     return {.answer = choice < screen_.keys.size() ? screen_.keys[choice] : '\0',
-            .number = static_cast<unsigned>(choice) + (screen_.visual ? 0U : 1U)};
+            .number = static_cast<unsigned>(choice) + (screen_.is_line ? 0U : 1U)};
 }
 
 page_dialogue::heard page_dialogue::go_back()

@@ -57,7 +57,7 @@ struct page_screen {
     std::string question = {};
     std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
     std::string keys = {};                 ///< a key for each choice, or none
-    bool visual = false;                 ///< the choices are places on a line, from 0 on, and have no numbers
+    bool is_line = false;                ///< the choices are places on a line, from 0 on, and have no numbers
     entry_kind entry = entry_kind::none; ///< in place of choices
     unsigned lowest = 1;                 ///< of a number that is entered
     unsigned greatest = 1;
@@ -91,7 +91,8 @@ public:
         bool understood = true; ///< else the visitor is to be sent away
         std::vector<message> replies = {};
         std::optional<char> answer = {}; ///< its key, or 0; each question has one at most
-        unsigned number = 0; ///< of the answer: its place from 1, or from 0 if visual; or the one entered
+        unsigned number =
+            0; ///< of the answer: its place from 1, or from 0 if they are on a line; or the one entered
         std::optional<std::string> text = {}; ///< that was entered, tidy; an estimate
     };
     /// Takes a message. A page that says {"hello":true} is the participant's from then on;

@@ -32,11 +32,9 @@ constexpr std::int64_t second_press_ns = 300'000'000;
 // Name, in messages, of the person who ends a session with q.
 constexpr std::string_view experimenter = "the experimenter (q)";
 
-// Tests whether an answer names one of two stimuli.
-bool asks_which(const run_definition& r)
+bool names_stimuli(const experiment_definition& d, const run_definition& r)
 {
-    const task_kind task = r.outline.task;
-    return task == task_kind::choose || (r.outline.standard && task != task_kind::estimate);
+    return find_answers(d, r).names_stimuli;
 }
 
 page_screen idle_screen(const prepared_experiment& p, std::string_view key)
@@ -75,8 +73,8 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 {
     const run_definition& r = p.run_at(s.run);
     page_screen shown = idle_screen(p, "stimulus");
-    shown.stimuli = has_pairs(r.outline) ? 2 : 0;
-    if (asks_which(r))
+    shown.stimuli = r.pairs ? 2 : 0;
+    if (names_stimuli(p.definition, r))
         shown.names = r.choices;
     shown.playing = playing;
     shown.where = find_progress(p, s);
@@ -195,7 +193,7 @@ void person_session::introduce(const session_step& s)
     tables_.emplace(store_, r);
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
-                                    r.outline.question, choices_text(p_.definition, r)));
+                                    r.outline.question, find_answers(p_.definition, r).possible));
     on_page({.name = "introduce",
              .question = r.outline.question,
              .choices = {w["begin"]},
@@ -407,7 +405,7 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
         for (; shown < changes.size() && frame >= changes[shown].first; ++shown) {
             const unsigned playing = changes[shown].second;
             on_page(stimulus_screen(p_, s, playing));
-            if (playing > 0 && asks_which(r) && !r.choices.empty())
+            if (playing > 0 && names_stimuli(p_.definition, r) && !r.choices.empty())
                 session::show(fmt::format("{}... ", r.choices[playing - 1]));
         }
     };
@@ -472,11 +470,7 @@ void person_session::trial(const session_step& s)
         if (!a) {
             flaw = "the experimenter repeated it";
         } else {
-            const bool named = r.outline.task == task_kind::identify;
-            set_response(row, p_, r,
-                         named ? static_cast<double>(r.motions[static_cast<std::size_t>(a->number) - 1])
-                               : a->number,
-                         std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
+            set_response(row, r, a->number, std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
             codes_.send(code_event::answer, s, t, row.response);
         }
     }

@@ -18,14 +18,6 @@ std::string number_keys(std::size_t answers)
     return answers <= most_keys ? std::string("123456789").substr(0, answers) : "";
 }
 
-// Lists the texts of the answers, empty if a number is enough.
-std::vector<std::string> label_choices(const run_definition& r)
-{
-    return r.outline.task == task_kind::identify ? r.outline.motions
-           : !r.choices.empty()                  ? r.choices
-                                                 : spread_labels(r.outline.labels, choices_in(r));
-}
-
 // Returns the possible answers for a terminal: "1 none, 2 slight", "1 (never) to 7 (always)", "0 to 120".
 std::string answers_text(const questionnaire_item& item, const page_words& w)
 {
@@ -49,29 +41,9 @@ bool question::is_typed() const noexcept
     return is_text() || is_estimate() || screen.lowest == 0 || screen.greatest > most_keys;
 }
 
-unsigned choices_in(const run_definition& r)
+trial_answers find_answers(const experiment_definition& d, const run_definition& r)
 {
-    return r.outline.task == task_kind::rate       ? r.outline.scale - r.outline.lowest_rating() + 1
-           : r.outline.task == task_kind::identify ? static_cast<unsigned>(r.motions.size())
-                                                   : 2;
-}
-
-std::string choices_text(const experiment_definition& d, const run_definition& r)
-{
-    if (r.outline.task == task_kind::estimate)
-        return d.page["any_number"];
-    const std::string between = d.page[r.outline.task == task_kind::rate ? "to" : "or"];
-    const bool named = r.outline.task == task_kind::identify;
-    const std::vector<std::string> labels = label_choices(r);
-    const bool each = named || r.outline.labels.size() == labels.size();
-    std::string text;
-    for (std::size_t i = 0; i < labels.size(); i += each ? 1 : labels.size() - 1) {
-        text += i == 0 ? "" : each ? ", " : fmt::format(" {} ", between);
-        text += fmt::format("{}", i + r.outline.lowest_rating());
-        if (!labels[i].empty())
-            text += fmt::format(fmt::runtime(named ? " {}" : " ({})"), labels[i]);
-    }
-    return text;
+    return find_task(r.outline.task).ask(r, d.page);
 }
 
 page_progress find_progress(const prepared_experiment& p, const session_step& s)
@@ -96,21 +68,22 @@ std::vector<point> sample_way(const stroke& target, const array& a, double parts
 question ask_about_trial(const prepared_experiment& p, const session_step& s)
 {
     const run_definition& r = p.run_at(s.run);
+    trial_answers a = find_answers(p.definition, r);
     page_screen shown{.name = "question", .question = r.outline.question, .where = find_progress(p, s)};
-    if (r.outline.task == task_kind::estimate) {
+    if (a.is_estimate) {
         shown.entry = entry_kind::estimate;
-        return {std::move(shown), choices_text(p.definition, r)};
+        return {std::move(shown), std::move(a.possible)};
     }
-    shown.lowest = r.outline.lowest_rating();
-    shown.greatest = shown.lowest + choices_in(r) - 1;
-    shown.choices = label_choices(r);
+    shown.lowest = a.lowest;
+    shown.greatest = a.lowest + static_cast<unsigned>(a.labels.size()) - 1;
+    shown.choices = std::move(a.labels);
     shown.keys = number_keys(shown.choices.size());
-    shown.visual = r.outline.visual;
-    if (r.outline.task == task_kind::identify)
+    shown.is_line = a.is_line;
+    if (a.shows_motions)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(
                 sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
-    return {std::move(shown), choices_text(p.definition, r)};
+    return {std::move(shown), std::move(a.possible)};
 }
 
 question ask_about_item(const questionnaire& q, std::size_t item, const page_words& w, bool back,
@@ -120,7 +93,7 @@ question ask_about_item(const questionnaire& q, std::size_t item, const page_wor
     page_screen shown{.name = "questionnaire",
                       .question = i.question,
                       .choices = label_answers(i),
-                      .visual = i.visual,
+                      .is_line = i.is_line,
                       .entry = i.kind == item_kind::number ? entry_kind::number
                                : i.kind == item_kind::text ? entry_kind::text
                                                            : entry_kind::none,

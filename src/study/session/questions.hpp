@@ -15,6 +15,7 @@
 #include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/session/participant_page.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 
@@ -29,12 +30,8 @@ struct question {
     bool is_typed() const noexcept;
 };
 
-/// Returns how many answers there are in a run that does not estimate.
-unsigned choices_in(const run_definition& r);
-
-/// Returns the possible answers in a run: "1 or 2", "1 (the first) or 2 (the second)", "1 (not at all) to 5
-/// (exactly)", "1 east, 2 west".
-std::string choices_text(const experiment_definition& d, const run_definition& r);
+/// Returns the answers to the question of a run.
+trial_answers find_answers(const experiment_definition& d, const run_definition& r);
 
 /// Returns the place of a step in the session.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);

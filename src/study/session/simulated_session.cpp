@@ -131,7 +131,7 @@ private:
         row.is_void = a.is_void;
         row.xruns = a.is_void ? 1 : 0;
         if (!a.is_void)
-            set_response(row, p_, r, a.response, a.response_time_ms * 1e-3);
+            set_response(row, r, a.response, a.response_time_ms * 1e-3);
         return row;
     }
 

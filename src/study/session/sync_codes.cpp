@@ -67,7 +67,7 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
         return;
     const sync_settings& sync = *e.config.sync;
     const code_settings* const c = find_codes(e);
-    const bool are_pairs = std::ranges::any_of(d.runs, [](const auto& r) { return has_pairs(r.outline); });
+    const bool are_pairs = std::ranges::any_of(d.runs, [](const auto& r) { return r.pairs; });
     const std::uint64_t lead = c != nullptr ? code_frames(*c, rate) : 0;
     if (are_pairs && d.gap_s * rate < static_cast<double>(lead))
         throw error(error_kind::bad_input, c->where,

@@ -1,29 +1,234 @@
 // SPDX-License-Identifier: MIT
-#include "study/tasks/task.hpp"
+#include "study/tasks/adaptive.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "study/experiment/variation.hpp"
+#include "study/statistics/psychometric_fit.hpp"
+#include "study/tasks/comparison.hpp"
 
 namespace tactor::study {
 namespace {
 
-class adaptive final : public task {
+using detail::toml_table;
+
+constexpr unsigned most_tracks = 8;
+constexpr double range_steps = 40.0; ///< in its range
+
+std::vector<double> read_numbers(const toml_table& t, std::string_view key, const detail::bounds& b)
+{
+    static_cast<void>(t.list(key, "numbers"));
+    return read_one_or_more(t, key, b);
+}
+
+// Reads two ends, between which `count` numbers come, or a list of other length.
+std::vector<double> read_prior(const toml_table& t, std::string_view key, const detail::bounds& b,
+                               std::vector<double> usual, std::size_t count, bool by_ratio)
+{
+    std::vector<double> all = t.has(key) ? read_one_or_more(t, key, b) : std::move(usual);
+    if (all.empty())
+        t.fail(key, fmt::format("{} is empty", key), "give numbers in brackets");
+    if (all.size() != 2)
+        return all;
+    const double low = all[0];
+    const double high = all[1];
+    all.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        const double part = static_cast<double>(i) / static_cast<double>(count - 1);
+        all.push_back(by_ratio ? low * std::pow(high / low, part) : low + (high - low) * part);
+    }
+    return all;
+}
+
+// Returns a number without the last digits, which a sum of steps leaves.
+double tidy(double v)
+{
+    constexpr double digits = 1e9;
+    return std::round(v * digits) / digits;
+}
+
+std::size_t find_nearest(const std::vector<double>& values, double v)
+{
+    const auto at = std::ranges::min_element(values, {}, [v](double one) { return std::abs(one - v); });
+    return static_cast<std::size_t>(at - values.begin());
+}
+
+// Sets the steps of a staircase, as multiples of the least.
+void set_steps(const toml_table& t, adaptive_options& a, const std::vector<double>& steps, double step)
+{
+    if (steps.empty())
+        a.steps = {4, 2, 1};
+    for (const double s : steps) {
+        a.steps.push_back(static_cast<std::size_t>(std::llround(s / step)));
+        if (std::abs(static_cast<double>(a.steps.back()) * step - s) > 1e-6 * step)
+            t.fail("steps", fmt::format("{} is not a multiple of the smallest step, {}", s, step),
+                   "give multiples, such as [4, 2, 1]");
+    }
+}
+
+// Reads the procedure of an adaptive run. Its values are a grid over the range.
+void read_procedure(const toml_table& t, run_definition& r, const detail::bounds& b)
+{
+    constexpr std::array<std::string_view, 4> names{"quest", "1up1down", "1up2down", "1up3down"};
+    run_outline& o = r.outline;
+    adaptive_options& a = r.adaptive;
+    const std::string name = t.need(t.choice("procedure", {names.begin(), names.end()}), "procedure");
+    a.down = static_cast<unsigned>(std::ranges::find(names, name) - names.begin());
+    for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
+        if (t.has(key) && of_quest != (a.down == 0))
+            t.fail(key, fmt::format("{} does not apply to procedure \"{}\"", key, name), "leave it out");
+    const std::vector<double> range = read_numbers(t, "range", b);
+    if (range.size() != 2 || !(range[0] < range[1]))
+        t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
+               "add range = [LEAST, GREATEST]");
+    const double width = range[1] - range[0];
+    const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
+    const double step = !steps.empty() ? *std::ranges::min_element(steps)
+                        : o.on_db_axis ? 1.0
+                                       : width / range_steps;
+    const auto count = static_cast<std::size_t>(std::floor(width / step + 1e-6)) + 1;
+    if (count > most_values)
+        t.fail(t.has("steps") ? "steps" : "range", fmt::format("the range has {} steps", count),
+               fmt::format("use at most {}", most_values));
+    for (std::size_t i = 0; i < count; ++i)
+        o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
+    set_steps(t, a, steps, step);
+    // A staircase that needs several answers for a step stays on one side of the pse: the fit would place it
+    // there, and find a jnd that is too small.
+    const bool one_sided = a.down > 1;
+    a.tracks = t.whole("tracks", 1, most_tracks).value_or(one_sided ? 2 : 1);
+    if (one_sided && a.tracks % 2 != 0)
+        t.fail("tracks",
+               fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
+                           counted(a.tracks, "track"), name),
+               "use an even number: every second track is mirrored");
+    const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
+    if (start.size() > 1 && start.size() != a.tracks)
+        t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
+    for (unsigned i = 0; i < a.tracks; ++i) // from both ends in turn
+        a.start.push_back(find_nearest(o.values, start.empty()       ? range[i % 2 == 0 ? 1 : 0]
+                                                 : start.size() == 1 ? start[0]
+                                                                     : start[i]));
+    a.slopes =
+        read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / range_steps, width / 2.0}, 5, true);
+    a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
+}
+
+class chooser final : public value_chooser {
+public:
+    explicit chooser(const run_definition& r) : run_(r), tracks_(r) {}
+
+    void choose(planned_trial& t) override
+    {
+        if (t.track > 0)
+            set_value(t, run_, tracks_.next(t.track));
+    }
+    void take(unsigned track, std::string_view method_1, unsigned response) override
+    {
+        tracks_.answer(track, is_more(run_.outline, method_1, response));
+    }
+
+private:
+    const run_definition& run_;
+    adaptive_tracks tracks_;
+};
+
+class adaptive final : public comparison_task {
 public:
     adaptive()
-        : task({"adaptive",
-                "One stimulus to judge, or a standard and a comparison to choose from; the previous answers "
-                "choose the values",
-                "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
-                {},
-                true,
-                true})
+        : comparison_task({.name = "adaptive",
+                           .trial =
+                               "One stimulus to judge, or a standard and a comparison to choose from; the "
+                               "previous answers choose the values",
+                           .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
+                           .keys = {"choices", "vary", "standard", "procedure", "start", "steps", "range",
+                                    "tracks", "slope", "lapse"},
+                           .column = "track",
+                           .measures = true,
+                           .varies = true})
     {
+    }
+
+    void read_outline(const toml_table& t, run_definition& r) const override
+    {
+        read_procedure(t, r, read_vary(t, r.outline));
+        read_trials(t, r.outline);
+    }
+    void read(const toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
+
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    {
+        std::vector<planned_trial> cells;
+        unsigned track = 0;
+        for (const std::size_t motion : r.motions)
+            for (const std::size_t method : r.methods) {
+                const method_variants& v = r.variants.at(method);
+                for (const std::size_t start : r.adaptive.start)
+                    add_comparison(cells, {motion, v.values[start], {}, 0.0, ++track}, v, false);
+            }
+        return cells;
+    }
+    std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
+    {
+        return std::make_unique<chooser>(r);
     }
 };
 
 } // namespace
 
-const task& adaptive_task() noexcept
+const task& adaptive_task()
 {
     static const adaptive one;
     return one;
+}
+
+void value_staircase::answer(bool positive)
+{
+    const bool counts = positive != mirrored_;
+    in_row_ = counts ? in_row_ + 1 : 0;
+    if (counts && in_row_ < needed_)
+        return;
+    in_row_ = 0;
+    const bool up = !positive;
+    reversals_ += up_ && *up_ != up ? 1 : 0;
+    up_ = up;
+    const std::size_t step = steps_[std::min(reversals_ / 2, steps_.size() - 1)];
+    at_ = up ? std::min(at_ + step, top_) : at_ - std::min(at_, step);
+}
+
+adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
+{
+    if (const auto there = tracks_.find(track); there != tracks_.end())
+        return there->second;
+    const auto insert = [&](procedure p) -> procedure& {
+        return tracks_.emplace(track, std::move(p)).first->second;
+    };
+    const adaptive_options& a = run_.adaptive;
+    const std::vector<double>& values = run_.outline.values;
+    const unsigned of_condition = (track - 1) % a.tracks;
+    if (a.down > 0)
+        return insert(value_staircase(a.down, of_condition % 2 == 1, a.steps, a.start[of_condition],
+                                      values.size() - 1));
+    const quest_grid grid{values, values, {}, a.slopes, a.lapses};
+    return insert(quest(
+        grid, [](double x, const psychometric& p) { return chance(x, p, two_answers(sigmoid::normal)); }));
+}
+
+std::size_t adaptive_tracks::next(unsigned track)
+{
+    return std::visit([](const auto& p) { return p.place(); }, find(track));
+}
+
+void adaptive_tracks::answer(unsigned track, bool positive)
+{
+    std::visit([positive](auto& p) { p.answer(positive); }, find(track));
 }
 
 } // namespace tactor::study

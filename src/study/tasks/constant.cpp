@@ -1,25 +1,38 @@
 // SPDX-License-Identifier: MIT
-#include "study/tasks/task.hpp"
+#include "study/tasks/comparison.hpp"
 
 namespace tactor::study {
 namespace {
 
-class constant final : public task {
+class constant final : public comparison_task {
 public:
     constant()
-        : task({"constant",
-                "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
-                "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
-                {},
-                true,
-                true})
+        : comparison_task(
+              {.name = "constant",
+               .trial = "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
+               .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
+               .keys = {"choices", "vary", "values", "standard", "trials_per_value"},
+               .measures = true,
+               .varies = true})
     {
+    }
+
+    void read_outline(const detail::toml_table& t, run_definition& r) const override
+    {
+        read_values(t, r.outline, read_vary(t, r.outline));
+        read_trials(t, r.outline);
+    }
+    void read(const detail::toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
+
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    {
+        return list_value_cells(r, false);
     }
 };
 
 } // namespace
 
-const task& constant_task() noexcept
+const task& constant_task()
 {
     static const constant one;
     return one;

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/split.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/data/text_table.hpp"
+#include "study/experiment/simulated.hpp"
 #include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
 
 namespace tactor::study {
 namespace {
@@ -7,19 +17,74 @@ namespace {
 class estimate final : public task {
 public:
     estimate()
-        : task({"estimate",
-                "One stimulus, or a standard and then a stimulus, which the participant gives a number",
-                "The number above 0 that the participant gave",
-                {},
-                true,
-                true})
+        : task({.name = "estimate",
+                .trial =
+                    "One stimulus, or a standard and then a stimulus, which the participant gives a number",
+                .response = "The number above 0 that the participant gave",
+                .keys = {"vary", "values", "standard", "trials_per_value"},
+                .column = "intensity_estimate",
+                .measures = true,
+                .varies = true})
     {
+    }
+
+    void read_outline(const detail::toml_table& t, run_definition& r) const override
+    {
+        run_outline& o = r.outline;
+        read_values(t, o, read_vary(t, o));
+        if (!o.on_db_axis && o.values.front() <= 0.0)
+            t.fail("values", "an exponent needs values above 0", "leave the others out");
+        read_trials(t, o);
+    }
+
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    {
+        return list_value_cells(r, true);
+    }
+
+    trial_answers ask(const run_definition&, const page_words& w) const override
+    {
+        return {.possible = w["any_number"], .is_estimate = true};
+    }
+    void take(trial_row& row, const run_definition& r, double answer) const override
+    {
+        task::take(row, r, answer);
+        row.intensity_estimate = answer;
+    }
+    std::vector<std::string> list_responses(const run_outline&) const override { return {}; }
+
+    void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
+    {
+        read_comparison(r, t, row, o);
+        r.estimate = read_twice(t, row, about().column, [&](std::string_view column) {
+            const auto number = t.number(row, column); // R writes 100000 as 1e+05
+            if (number && !(*number >= least_estimate && *number <= most_estimate))
+                t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),
+                         "a number above 0, from 1e-9 to 1e9");
+            return number;
+        });
+    }
+    void score(trial& r, const run_outline&, std::string_view, double answer) const override
+    {
+        r.estimate = answer;
+    }
+
+    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    {
+        constexpr double modulus = 100.0; // of the standard, or of the middle value
+        const run_outline& o = who.run.outline;
+        const double middle = o.standard.value_or(o.values[o.values.size() / 2]);
+        const double ratio = size_ratio(o, find_value(who.definition, t).value(), middle);
+        const double number =
+            modulus * std::pow(ratio, who.truth.exponent) * std::exp(who.truth.sigma * r.normal());
+        const auto rounded = detail::number_in<double>(fmt::format("{:.3g}", number));
+        return std::clamp(rounded.value_or(number), least_estimate, most_estimate);
     }
 };
 
 } // namespace
 
-const task& estimate_task() noexcept
+const task& estimate_task()
 {
     static const estimate one;
     return one;

@@ -1,16 +1,69 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Tasks of a study. Each is one file in this folder with one object, which says all that is special about
-/// its runs; list_tasks() has them. Objects without state, for any thread.
+/// Tasks of a study. Each is a file in this folder with one object, which says all that is special about its
+/// runs; list_tasks() has them. Objects without state, for any thread.
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
+#include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <tactor/path.hpp>
+
+#include "files/toml_reader.hpp"
 #include "study/data/dataset.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/experiment/trials.hpp"
+#include "study/random/random.hpp"
 
 namespace tactor::study {
+
+struct simulation;
+
+/// Answers that a participant may give in a trial.
+struct trial_answers {
+    unsigned lowest = 1;                  ///< of the numbers of the answers
+    std::vector<std::string> labels = {}; ///< of each answer; empty where its number is enough
+    std::string possible = {};            ///< all of them for a terminal: "1 or 2"
+    bool is_line = false;                 ///< they are places on a line, without numbers
+    bool is_estimate = false;             ///< a number above 0, in place of all this
+    bool names_stimuli = false;           ///< they name the stimuli of the trial
+    bool shows_motions = false;           ///< they are the run's motions, which a page draws
+};
+
+/// Chooses values by the answers so far. This one chooses none: the trials have theirs.
+class value_chooser {
+public:
+    virtual ~value_chooser() = default;
+    /// Gives a trial its value.
+    virtual void choose(planned_trial&) {}
+    /// Takes the answer to a trial of a track. `method_1`: name of the first stimulus' method.
+    virtual void take(unsigned track, std::string_view method_1, unsigned response)
+    {
+        static_cast<void>(track);
+        static_cast<void>(method_1);
+        static_cast<void>(response);
+    }
+};
+
+/// What a simulated observer of a run knows.
+struct simulated_run {
+    const simulation& truth;
+    const experiment_definition& definition;
+    const run_definition& run;
+    /// Returns the predicted error of a stimulus, or how uneven it is. \throws error: it is not felt.
+    std::function<double(std::size_t motion, std::size_t method)> cost;
+    std::function<const std::vector<point>&(std::size_t motion, std::size_t method)> felt_path;
+    double mean_utility = 0.0;                    ///< rate: mean of -ln cost over the stimuli
+    std::vector<std::vector<point>> targets = {}; ///< identify: by motion
+};
 
 class task {
 public:
@@ -21,6 +74,8 @@ public:
         std::string_view response; ///< meaning of its response; {} is the range of ratings
         /// Usual questions about similarity, uniformity, another attribute; empty: none.
         std::array<std::string_view, 3> questions = {};
+        std::vector<std::string_view> keys = {}; ///< of [[run]], which only some tasks have
+        std::string_view column = {};            ///< of its tables alone; empty: none
         bool measures = false; ///< a psychometric function, d' or an exponent is estimated from its trials
         bool varies = false;   ///< a value changes from trial to trial; detect may do without
     };
@@ -32,8 +87,47 @@ public:
     std::string_view name() const noexcept { return facts_.name; }
     const facts& about() const noexcept { return facts_; }
 
+    /// Reads of [[run]] what the analysis needs, after motions, methods, labels and choices.
+    /// \throws error (bad_input) with line and column, as the next two do.
+    virtual void read_outline(const detail::toml_table& t, run_definition& r) const;
+    /// Refuses a run, or a group's part of it, with too few motions or methods. `t`: the table to blame.
+    virtual void check(const detail::toml_table& t, const run_outline& o) const;
+    /// Reads what only a session needs.
+    virtual void read(const detail::toml_table& t, run_definition& r) const;
+    /// Returns the words of both answers that a definition need not give; usually none.
+    virtual std::vector<std::string> usual_choices(const page_words& w) const;
+    /// Returns the range of ratings as --dry-run has it; null without one.
+    virtual nlohmann::ordered_json scale(const run_outline& o) const;
+
+    /// Lists the cells of a run: trials that differ in stimuli or their order.
+    virtual std::vector<planned_trial> list_cells(const run_definition& r) const = 0;
+    /// Draws n trials: each cell equally often as far as n allows, in no order.
+    virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
+                                            random_numbers& numbers) const;
+    virtual std::unique_ptr<value_chooser> choose_values(const run_definition& r) const;
+
+    /// Returns the answers to ask for. Usually two.
+    virtual trial_answers ask(const run_definition& r, const page_words& w) const;
+    /// Sets the cells of an answer in the row of its trial.
+    virtual void take(trial_row& row, const run_definition& r, double answer) const;
+    /// Lists the responses of its tables that get a number each in [sync.codes]; empty: all have one number.
+    virtual std::vector<std::string> list_responses(const run_outline& o) const;
+    /// Names a response in the meaning of a code.
+    virtual std::string name_response(std::string_view response) const;
+
+    /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.
+    virtual void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const = 0;
+    /// Sets what an answer says. `method_1`: name of the first stimulus' method in the table.
+    virtual void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const;
+
+    /// Prepares an observer. \throws error (bad_input) for a run that it cannot judge.
+    virtual void prepare(simulated_run& who) const;
+    /// Answers a trial as a person would: 1 or 2, the rating, the place of a motion in the run from 1, an
+    /// estimate.
+    virtual double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const = 0;
+
 protected:
-    explicit task(const facts& f) noexcept : facts_(f) {}
+    explicit task(facts f) : facts_(std::move(f)) {}
 
 private:
     facts facts_;
@@ -43,5 +137,10 @@ private:
 std::span<const task* const> list_tasks() noexcept;
 
 const task& find_task(task_kind t) noexcept;
+
+/// Lists answers from `lowest` on for a terminal: "1 (not at all) to 5 (exactly)", "1 yes, 2 no" if `named`;
+/// only the ends where `each` is false. `between`: the word between two.
+std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,
+                             std::string_view between);
 
 } // namespace tactor::study

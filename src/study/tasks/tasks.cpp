@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: MIT
-// The list of tasks: a new one adds its file and a line here.
+// The list of tasks, to which a new one adds a line, and what most of them have in common.
 #include <array>
 #include <cstddef>
+#include <utility>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "study/tasks/draw.hpp"
 #include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
 
 namespace tactor::study {
 
-const task& choose_task() noexcept;
-const task& rate_task() noexcept;
-const task& identify_task() noexcept;
-const task& detect_task() noexcept;
-const task& same_different_task() noexcept;
-const task& estimate_task() noexcept;
-const task& constant_task() noexcept;
-const task& adaptive_task() noexcept;
+const task& choose_task();
+const task& rate_task();
+const task& identify_task();
+const task& detect_task();
+const task& same_different_task();
+const task& estimate_task();
+const task& constant_task();
+const task& adaptive_task();
 
 std::span<const task* const> list_tasks() noexcept
 {
@@ -31,6 +37,83 @@ const task& find_task(task_kind t) noexcept
 std::string_view to_string(task_kind t) noexcept
 {
     return find_task(t).name();
+}
+
+void task::read_outline(const detail::toml_table& t, run_definition& r) const
+{
+    read_trials(t, r.outline);
+}
+
+void task::check(const detail::toml_table&, const run_outline&) const
+{
+}
+
+void task::read(const detail::toml_table&, run_definition&) const
+{
+}
+
+std::vector<std::string> task::usual_choices(const page_words&) const
+{
+    return {};
+}
+
+nlohmann::ordered_json task::scale(const run_outline&) const
+{
+    return nullptr;
+}
+
+std::vector<planned_trial> task::draw(const run_definition& r, std::size_t n, random_numbers& numbers) const
+{
+    return draw_cells(r, list_cells(r), n, numbers);
+}
+
+std::unique_ptr<value_chooser> task::choose_values(const run_definition&) const
+{
+    return std::make_unique<value_chooser>();
+}
+
+trial_answers task::ask(const run_definition& r, const page_words& w) const
+{
+    trial_answers a{.labels = r.choices.empty() ? std::vector<std::string>(2) : r.choices};
+    a.possible = describe_answers(a.labels, 1, false, false, w["or"]);
+    return a;
+}
+
+void task::take(trial_row& row, const run_definition&, double answer) const
+{
+    row.response = fmt::format("{}", answer);
+}
+
+std::vector<std::string> task::list_responses(const run_outline&) const
+{
+    return {"1", "2"};
+}
+
+std::string task::name_response(std::string_view response) const
+{
+    return fmt::format("answer {}", response);
+}
+
+void task::score(trial& r, const run_outline&, std::string_view, double answer) const
+{
+    r.response = static_cast<unsigned>(answer);
+}
+
+void task::prepare(simulated_run&) const
+{
+}
+
+std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,
+                             std::string_view between)
+{
+    std::string text;
+    for (std::size_t i = 0; i < labels.size(); i += each ? 1 : labels.size() - 1) {
+        text += i == 0 ? "" : each ? ", " : fmt::format(" {} ", between);
+        text += fmt::format("{}", i + lowest);
+        if (!labels[i].empty())
+            text += fmt::format(fmt::runtime(named ? " {}" : " ({})"), labels[i]);
+    }
+    return text;
 }
 
 } // namespace tactor::study

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A task whose answers say which of two is more: the comparison or the standard, or without a standard the
+/// second or the first word.
+#pragma once
+
+#include <utility>
+
+#include "study/data/text_table.hpp"
+#include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
+
+namespace tactor::study {
+
+class comparison_task : public task {
+public:
+    using task::task;
+
+    trial_answers ask(const run_definition& r, const page_words& w) const override
+    {
+        trial_answers a = task::ask(r, w);
+        a.names_stimuli = r.outline.standard.has_value();
+        return a;
+    }
+
+    void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
+    {
+        read_comparison(r, t, row, o);
+        score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
+    }
+    void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const override
+    {
+        task::score(r, o, method_1, answer);
+        r.positive = is_more(o, method_1, r.response);
+    }
+
+    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    {
+        return simulate_comparison(who, t, r);
+    }
+};
+
+} // namespace tactor::study

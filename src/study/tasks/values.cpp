@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "study/tasks/values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/error.hpp>
+
+#include "study/data/text_table.hpp"
+#include "study/experiment/simulated.hpp"
+#include "study/experiment/variation.hpp"
+#include "study/statistics/psychometric_fit.hpp"
+
+namespace tactor::study {
+namespace {
+
+using detail::toml_table;
+
+constexpr unsigned most_trials = 10000;
+
+} // namespace
+
+void read_trials(const toml_table& t, run_outline& o)
+{
+    o.trials = t.whole("trials", 1, most_trials).value_or(0);
+    const auto each = t.whole("trials_per_value", 1, most_trials);
+    if (!each)
+        return;
+    const std::size_t all = *each * o.values.size() * o.motions.size() * o.methods.size();
+    if (t.has("trials") || all == 0 || o.catches || all > most_trials)
+        t.fail("trials_per_value", fmt::format("trials_per_value makes {} trials", all),
+               t.has("trials") || all > most_trials
+                   ? fmt::format("use trials instead, at most {}", most_trials)
+                   : "use trials instead");
+    o.trials = static_cast<unsigned>(all);
+}
+
+detail::bounds read_vary(const toml_table& t, run_outline& o)
+{
+    o.vary = t.need(t.text("vary"), "vary");
+    const std::optional<varied> v = find_varied(o.vary);
+    if (!v)
+        t.fail("vary", fmt::format("\"{}\" is not a number that a run can vary", o.vary),
+               "use an option of [[method]] such as level_dbfs, speed_mm_s or soa_s, or x_mm, y_mm, "
+               "length_mm or rotate_deg of the stroke");
+    o.on_db_axis = v->on_db_axis;
+    o.standard = t.number("standard", v->allowed);
+    if (o.standard)
+        refuse_method_name(t, o, standard_name);
+    return v->allowed;
+}
+
+std::vector<double> read_one_or_more(const toml_table& t, std::string_view key, const detail::bounds& b)
+{
+    std::vector<double> all;
+    if (const toml::node* n = t.node(key); n != nullptr && !n->is_array())
+        all.push_back(*t.number(key, b));
+    else if (const toml::array* list = t.list(key, "numbers"))
+        for (const toml::node& one : *list)
+            all.push_back(t.to_number(one, key, b));
+    return all;
+}
+
+void read_values(const toml_table& t, run_outline& o, const detail::bounds& b)
+{
+    static_cast<void>(t.list("values", "numbers"));
+    o.values = read_one_or_more(t, "values", b);
+    if (o.values.size() < 2 || o.values.size() > most_values)
+        t.fail(t.has("values") ? "values" : "vary", fmt::format("there are {} values", o.values.size()),
+               fmt::format("give 2 to {}: values = [..]", most_values));
+    std::ranges::sort(o.values);
+    if (std::ranges::adjacent_find(o.values) != o.values.end())
+        t.fail("values", "a value occurs twice", "leave one of them out");
+}
+
+void refuse_method_blocks(const toml_table& t, const run_outline& o)
+{
+    if (t.text("blocks") == "methods")
+        t.fail("blocks", fmt::format("{} has two methods in each trial", o.name),
+               "use blocks = \"motions\", or leave it out");
+}
+
+void refuse_method_name(const toml_table& t, const run_outline& o, std::string_view name)
+{
+    if (std::ranges::count(o.methods, name) != 0)
+        t.fail(fmt::format("a method of {} is called \"{}\"", o.name, name),
+               "use another name: in the tables it means a stimulus without a method");
+}
+
+void need_words(const toml_table& t, const run_outline& o)
+{
+    if (!t.has("choices") && !o.standard)
+        t.fail("vary", "a run without a standard needs two words",
+               "add choices = [\"one\", \"two\"], or standard");
+}
+
+void add_comparison(std::vector<planned_trial>& cells, planned_trial t, const method_variants& v,
+                    bool standard_first)
+{
+    if (v.standard && !standard_first) {
+        t.method_2 = v.standard;
+        cells.push_back(t);
+    }
+    if (v.standard) {
+        t.method_2 = t.method_1;
+        t.method_1 = *v.standard;
+    }
+    cells.push_back(t);
+}
+
+std::vector<planned_trial> list_value_cells(const run_definition& r, bool standard_first)
+{
+    std::vector<planned_trial> cells;
+    for (const std::size_t motion : r.motions)
+        for (const std::size_t method : r.methods) {
+            const method_variants& v = r.variants.at(method);
+            if (v.values.empty())
+                cells.push_back({motion, method});
+            for (const std::size_t value : v.values)
+                add_comparison(cells, {motion, value}, v, standard_first);
+        }
+    return cells;
+}
+
+std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
+                       const std::vector<std::string>& known)
+{
+    const std::string_view name = t.need(row, column);
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end())
+        t.refuse(row, fmt::format("{} \"{}\" is not in the run", column, name),
+                 fmt::format("one of {}", fmt::join(known, ", ")));
+    return static_cast<std::size_t>(at - known.begin());
+}
+
+unsigned read_one_of_two(const text_table& t, std::size_t row)
+{
+    const auto response = t.whole(row, "response", 1, 2);
+    if (!response)
+        t.refuse(row, "the response is missing", "a trial that counts needs one");
+    return *response;
+}
+
+namespace {
+
+// Reads a value that the run has. Other programs round it: R to 15 digits.
+double read_value(const text_table& t, std::size_t row, const run_outline& o)
+{
+    const auto value = t.number(row, "value");
+    if (!value)
+        t.refuse(row, "the value is missing", "give the value of the comparison");
+    const auto is_same = [&value](double one) {
+        return std::abs(one - *value) <= 1e-12 * std::max(1.0, std::abs(one));
+    };
+    if (std::ranges::none_of(o.values, is_same))
+        t.refuse(row, fmt::format("value {} is not in the run", t.need(row, "value")),
+                 fmt::format("one of {}", fmt::join(o.values, ", ")));
+    return *value;
+}
+
+} // namespace
+
+void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o)
+{
+    const bool standard_first = o.standard && t.need(row, "method_1") == standard_name;
+    if (o.standard && !standard_first && t.need(row, "method_2") != standard_name)
+        t.refuse(row, "no stimulus is the standard", "each trial needs one");
+    r.method_1 = find_place(t, row, standard_first ? "method_2" : "method_1", o.methods);
+    r.value = read_value(t, row, o);
+}
+
+bool is_more(const run_outline& o, std::string_view method_1, unsigned response) noexcept
+{
+    return (response == 2) == (!o.standard || method_1 == standard_name);
+}
+
+bool feels_more(const simulated_run& who, double value, random_numbers& r)
+{
+    const run_outline& o = who.run.outline;
+    const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
+    const double pse = who.truth.pse.value_or(o.standard.value_or(0.5 * (least + greatest)));
+    const double jnd = who.truth.jnd.value_or(0.1 * (greatest - least));
+    return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
+}
+
+bool lapses(const simulated_run& who, random_numbers& r, double& answer)
+{
+    if (!(who.truth.lapse > 0.0) || r.unit() >= who.truth.lapse)
+        return false;
+    answer = 1 + r.below(2);
+    return true;
+}
+
+double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r)
+{
+    if (double key = 0.0; lapses(who, r, key))
+        return key;
+    const bool more = feels_more(who, find_value(who.definition, t).value(), r);
+    const bool standard_first = who.definition.methods[t.method_1].name == standard_name;
+    return more == (!t.method_2 || standard_first) ? 2 : 1;
+}
+
+void prepare_judge(simulated_run& who)
+{
+    const run_definition& r = who.run;
+    if (r.simulate_as.empty())
+        throw error(error_kind::bad_input, r.where,
+                    fmt::format("simulate: the observer cannot judge \"{}\"", r.attribute),
+                    "add simulate_as = \"similarity\" or \"uniformity\"");
+    double sum = 0.0;
+    for (const std::size_t motion : r.motions)
+        for (const std::size_t method : r.methods)
+            sum -= std::log(who.cost(motion, method));
+    who.mean_utility = sum / static_cast<double>(r.motions.size() * r.methods.size());
+}
+
+double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r)
+{
+    return -std::log(who.cost(motion, method)) + who.truth.sigma * r.normal();
+}
+
+} // namespace tactor::study

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Parts of tasks whose runs vary a value, or have two answers.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "files/toml_reader.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/experiment/trials.hpp"
+#include "study/random/random.hpp"
+#include "study/tasks/task.hpp"
+
+namespace tactor::study {
+
+// Keys of [[run]]. All throw error (bad_input) with line and column.
+
+/// Reads `trials`, or `trials_per_value` where the run has values.
+void read_trials(const detail::toml_table& t, run_outline& o);
+/// Reads `vary` and the standard. Returns the bounds of the values.
+detail::bounds read_vary(const detail::toml_table& t, run_outline& o);
+/// Reads `values`.
+void read_values(const detail::toml_table& t, run_outline& o, const detail::bounds& b);
+/// Reads numbers, or one of them.
+std::vector<double> read_one_or_more(const detail::toml_table& t, std::string_view key,
+                                     const detail::bounds& b);
+/// Refuses blocks by methods in a run with two methods in a trial.
+void refuse_method_blocks(const detail::toml_table& t, const run_outline& o);
+/// Refuses a method of a run whose name has another meaning in its tables.
+void refuse_method_name(const detail::toml_table& t, const run_outline& o, std::string_view name);
+/// Refuses a run that has neither the words of both answers nor a standard.
+void need_words(const detail::toml_table& t, const run_outline& o);
+
+/// Lists each motion by each method and each value. With a standard both orders, or the standard first.
+std::vector<planned_trial> list_value_cells(const run_definition& r, bool standard_first);
+/// Adds a trial with a comparison alone, or with the standard before and after it.
+void add_comparison(std::vector<planned_trial>& cells, planned_trial t, const method_variants& v,
+                    bool standard_first);
+
+// Rows of tables. All throw error (bad_input) with file and line.
+
+/// Returns the place of a cell's name in a list.
+std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
+                       const std::vector<std::string>& known);
+/// Reads the answer 1 or 2.
+unsigned read_one_of_two(const text_table& t, std::size_t row);
+/// Reads methods and value of a trial with a value, and perhaps a standard.
+void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o);
+/// Reads an answer that stands in two columns, each by `read`.
+template <class Read>
+auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)
+{
+    const auto response = read("response");
+    const auto own = read(column);
+    if (!response && !own)
+        t.refuse(row, fmt::format("the {} is missing", column), "a trial that counts needs one");
+    if (response && own && *response != *own)
+        t.refuse(row, fmt::format("response is {}, but {} is {}", *response, column, *own),
+                 "make them equal");
+    return own ? *own : *response;
+}
+
+/// Returns true if the comparison was chosen; without a standard, the second word.
+bool is_more(const run_outline& o, std::string_view method_1, unsigned response) noexcept;
+
+// Simulated observers.
+
+/// Returns true with the chance of the true psychometric function at a value.
+bool feels_more(const simulated_run& who, double value, random_numbers& r);
+/// Returns true in the share of trials in which an observer presses either key; `answer` is the key then.
+bool lapses(const simulated_run& who, random_numbers& r, double& answer);
+/// Answers a trial with a comparison by is_more().
+double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
+/// Refuses a run whose attribute an observer cannot judge; else finds the mean of its judgements.
+void prepare_judge(simulated_run& who);
+/// Returns a judgement of a stimulus: -ln of its cost, and noise.
+double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r);
+
+} // namespace tactor::study
