@@ -119,7 +119,7 @@ std::string line_text(const std::string& offset, const gpio_line_info& l, std::s
                        l.consumer.empty() ? "free" : fmt::format("held by {}", l.consumer));
 }
 
-// Lines that differ in nothing but their number share a row.
+// Returns a table of lines. Neighbours that differ only in their number share a row.
 std::string lines_text(const std::vector<gpio_line_info>& lines)
 {
     std::size_t width = 4;
@@ -156,12 +156,12 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
     return s;
 }
 
-// Off: where no player and no holder is left to switch the amplifier off.
+// The command off: no player and no holder is left to switch the amplifier off.
 
 using namespace std::chrono_literals;
 
-// The holder of a player that was just killed has the line for 0.2 s more, at most a second where it may not
-// run in real time.
+// The holder of a player that was just killed keeps the line for 0.2 s, and for up to a second without
+// real-time priority.
 constexpr auto longest_wait = 2s;
 
 gpio_line_place wait_until_free(const gpio_line_name& line)
@@ -175,7 +175,7 @@ gpio_line_place wait_until_free(const gpio_line_name& line)
     return p;
 }
 
-// The files that could have said it.
+// Names the files in which [amplifier] could be.
 std::string searched(const environment& e)
 {
     const bool own_file = !e.array_file.empty() && e.array_file != e.config_name;
@@ -192,7 +192,7 @@ void switch_off(settings& s)
                     "add its line there, see tactor.toml(5), or name another file with --array");
     const amplifier_settings& a = *e.config.amplifier;
     const gpio_line_place p = wait_until_free(a.line);
-    // Requested as off, so it goes there at once; asked once more for what the driver says.
+    // Opening requests the line as off. set() asks once more, to learn if the driver refuses.
     if (!open_output(a.line, a.active_low)->set(false))
         throw error(error_kind::not_available, "amplifier",
                     fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),

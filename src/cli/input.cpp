@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Fits the strokes that a file fits: the margin is the file's, not an option.
+// Fits the strokes for which their file sets `fit`. An error about the margin names the key of the file,
+// because no option sets it.
 void fit_by_file(const std::string& file, piece& p, const layout& faces)
 {
     try {
@@ -32,13 +33,13 @@ void fit_by_file(const std::string& file, piece& p, const layout& faces)
     }
 }
 
-// --path and --shape NAME stand for a STROKE.
+// Returns true for an option in place of a STROKE: --path, or --shape NAME.
 bool is_option(const std::string& argument)
 {
     return argument.starts_with("--");
 }
 
-// Returns the name of an argument's only stroke where the file gives none.
+// Returns the name of an argument's only stroke if the file gives none.
 std::string default_name(const std::string& argument)
 {
     if (is_option(argument))
@@ -47,8 +48,8 @@ std::string default_name(const std::string& argument)
     return file ? fs::path(argument).stem().string() : shown_name(argument);
 }
 
-// Returns an error about what the stroke itself sets with the place in its file, or as one about the stroke:
-// no option and no value of [defaults] is at fault.
+// Rewords an error about a value that the stroke itself sets, because no option and no value of [defaults] is
+// at fault. It names the place in the stroke's file, or else the stroke.
 error about_own(const error& x, const stroke& s)
 {
     const bool has_carrier = s.sound.carrier_hz || !s.sound.carrier_profile.empty();
@@ -63,7 +64,7 @@ error about_own(const error& x, const stroke& s)
     return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;
 }
 
-// Calls f(i) for each i below `count`. Its errors are about stroke i.
+// Calls f(i) for each i below `count`. Errors of f(i) name stroke i.
 template <class F>
 void for_each_stroke(const piece& p, std::size_t count, F f)
 {
@@ -150,7 +151,8 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
     const bool is_file = !is_option(p.name) && !session::is_preset(stroke_presets(), p.name);
     if (own.place().line != 0 || (is_alone && !(is_about_stroke && is_file)))
         return own;
-    // The planner knows the stroke's name at most: before it go the file, and the number among several.
+    // The planner knows only the name of the stroke: put the file before it, and the number if there are
+    // several.
     std::string from = shown_name(p.name);
     if (!is_alone)
         from += fmt::format(": stroke {}", i + 1) + (name.empty() ? "" : fmt::format(" \"{}\"", name));

@@ -17,41 +17,40 @@ namespace tactor::cli {
 
 using session::piece;
 
-/// Returns the STROKE arguments, or the option that stands for them. \throws error unless there is one of
-/// them.
+/// Returns the STROKE arguments, or the option in place of them. \throws error if there are none, or both.
 std::vector<std::string> stroke_arguments(const settings& s);
 
 /// Returns the preset that a STROKE argument names; nothing if it is a file. \throws error (bad_input) for a
 /// name that is neither.
 std::optional<stroke> find_preset(const std::string& argument);
 
-/// Returns true for a STROKE argument that is a WAV file: samples of one's own.
+/// Returns true for a STROKE argument that is a WAV file, which has samples and no stroke.
 bool names_samples(std::string_view argument);
 
-/// Refuses such a file where strokes are planned. \throws error (bad_input).
+/// Refuses a WAV file, for commands that plan strokes. \throws error (bad_input).
 void refuse_samples(const std::string& argument);
 
-/// Returns a STROKE argument as people read it: - is standard input.
+/// Returns a STROKE argument as people read it: "standard input" for -.
 std::string shown_name(const std::string& argument);
 
-/// Returns the name of the piece's stroke i as every command prints it: the STROKE argument, followed by the
-/// stroke's own name where it has one; of a plan, the name of the stroke that was planned.
+/// Returns the name of stroke i of a piece, as every command prints it: the STROKE argument, then the
+/// stroke's own name if it has one. For a plan, this is the name of the stroke that was planned.
 std::string name_stroke(const piece& p, std::size_t i, const environment& e);
 
-/// Returns an error about the piece's stroke i, if it has that, with its file and its number among several.
+/// Adds the file to an error about stroke i of a piece, and the number of the stroke if there are several.
+/// Returns the error as it is if the piece has no stroke i.
 error of_stroke(const error& x, const piece& p, std::size_t i);
 
-/// Reads one of the stroke_arguments(). A plan comes with its plans; what is a stroke is not planned yet.
-/// Samples of one's own are not read yet: their piece has no strokes.
-/// `faces` is what --fit puts strokes on. \throws error.
+/// Reads one of the stroke_arguments(). The piece has plans only if the argument is a plan. For a WAV file it
+/// has no strokes, and the samples are not read yet. --fit fits strokes to `faces`. \throws error.
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
 
-/// Reads and plans where only one STROKE is taken. \throws error, also for a stroke that does not begin in
-/// the piece.
+/// Reads and plans the STROKE of a command that takes only one. \throws error, also for a stroke that does
+/// not begin in the piece.
 piece plan_one_piece(const settings& s, const environment& e);
 
-/// Makes the score of a piece, with `render.rate` and channels settled. Takes the plans that the piece has;
-/// plans of other strokes become a part of the score one by one. Reads samples of one's own. \throws error.
+/// Makes the score of a piece. `render.rate` and the channels are settled. Uses up the plans of the piece, or
+/// plans its strokes and adds them to the score one by one. Reads the samples of a WAV file. \throws error.
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render);
 

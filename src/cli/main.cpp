@@ -64,7 +64,6 @@ std::string version_text()
     return fmt::format("tactor {}\n{}", version(), build_facts());
 }
 
-// Returns the command of that name; null if there is none.
 const command* find_command(std::string_view name)
 {
     const auto c =
@@ -72,7 +71,7 @@ const command* find_command(std::string_view name)
     return c == commands.end() ? nullptr : &*c;
 }
 
-// Returns the command that runs: the first that the words name; null if there is none.
+// Returns the command that runs, which is the first that the words name, or null.
 const command* find_command(const std::vector<std::string>& words)
 {
     for (const std::string& w : words)
@@ -81,7 +80,7 @@ const command* find_command(const std::vector<std::string>& words)
     return nullptr;
 }
 
-// `tactor help plan` is `tactor plan --help`, for whoever has no manual pages.
+// Returns the arguments. Turns `tactor help plan` into `tactor plan --help`, for people without manual pages.
 std::vector<std::string> arguments(int argc, char** argv)
 {
     std::vector<std::string> all(argv + 1, argv + argc);
@@ -91,12 +90,12 @@ std::vector<std::string> arguments(int argc, char** argv)
         all.erase(all.begin());
     if (all.size() == 1 && find_command(all.front()) == nullptr)
         return {"help", all.front()};
-    if (all.empty() || find_command(all.front()) != nullptr) // another is complained of
+    if (all.empty() || find_command(all.front()) != nullptr) // other words lead to an error
         all.emplace_back("--help");
     return all;
 }
 
-// Returns the slip that the words show, or else the error that they led to.
+// Returns the error for a slip in the words, if there is one, else `e`.
 error explain(const error& e, const std::vector<std::string>& words)
 {
     if (e.kind() != error_kind::bad_input)
@@ -107,7 +106,6 @@ error explain(const error& e, const std::vector<std::string>& words)
     return find_slip(words, names).value_or(e);
 }
 
-// Shows the options of a command.
 template <class F>
 void show_options(const CLI::App& app, const command& c, F show)
 {
@@ -118,15 +116,14 @@ void show_options(const CLI::App& app, const command& c, F show)
     }
 }
 
-// Prints a word that fits where it begins as `typed`. Each line for a shell has a word, a tab and a
-// description.
+// Prints a word if it begins as `typed`. A line for a shell has a word, a tab and a description.
 void offer(const std::string& typed, const std::string& word, const std::string& description)
 {
     if (word.starts_with(typed))
         fmt::print("{}{}{}\n", word, description.empty() ? "" : "\t", description);
 }
 
-// Cards by the names that survive a reboot. Nothing is opened: whoever presses Tab does not want that.
+// Returns the cards by names that survive a reboot. Opens no device, because somebody only pressed Tab.
 std::vector<std::string> pcm_names()
 {
     std::vector<std::string> names{"null"};
@@ -140,8 +137,8 @@ std::vector<std::string> pcm_names()
     return names;
 }
 
-// The type of an option, or the name of an argument, says its values: "a|b|c", "a,b,c" for a list, or what
-// they stand for in capitals.
+// Offers the values of an option or argument. Its type lists them, "a|b|c" or "a,b,c", or names their kind in
+// capitals.
 void offer_values(const std::string& type, const std::string& typed, const std::string& before)
 {
     const auto offer_all = [&](const auto& values) {
@@ -176,7 +173,7 @@ void offer_options(const CLI::App& command, const std::string& typed)
     }
 }
 
-// Returns the option with that name where it takes a value, else null.
+// Returns the option with that name if it takes a value, else null.
 const CLI::Option* find_option(const CLI::App& command, const std::string& name)
 {
     const CLI::Option* o = name.starts_with('-') ? command.get_option_no_throw(name) : nullptr;
@@ -200,8 +197,8 @@ void complete_command_line(const CLI::App& command, const std::vector<std::strin
             offer_values(argument->get_single_name(), typed, "");
 }
 
-// Prints lines for a shell, which calls `tactor __complete WORD...`. `words`: those after "tactor", the last
-// one as far as it has been typed. Where a file or a folder fits, a line is ":files".
+// Prints completions for a shell, which calls `tactor __complete WORD...`. `words`: the words after "tactor";
+// the last one may be incomplete. The line ":files" stands for all files and folders.
 void print_completions(const CLI::App& app, const std::vector<std::string>& words)
 {
     if (words.size() == 1) {
@@ -286,7 +283,7 @@ int unprinted(int code)
     return status_failed;
 }
 
-// Returns true where the reader of a file written to standard output (-o -) is gone.
+// Returns true if the error says that the reader of standard output (-o -) is gone.
 bool is_unread(const tactor::error& e)
 {
     return e.os_code() == EPIPE && session::is_standard_output(std::string(e.subject()));
@@ -300,8 +297,8 @@ int flushed(int status)
     return unprinted(output_error() != 0 ? output_error() : errno);
 }
 
-// Opens /dev/null for each standard file that is closed: the next opened file would get its number, and the
-// output. Reading or writing it fails, as with a closed one.
+// Opens /dev/null for each standard file that is closed. Otherwise the next opened file would get its number,
+// and the output. Reads and writes fail, as they do for a closed file.
 void hold_standard_files() noexcept
 {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -315,8 +312,8 @@ void hold_standard_files() noexcept
 int main(int argc, char** argv)
 {
     using namespace tactor::cli;
-    // A file that grows beyond `ulimit -f`, and a pipe whose reader is gone, are errors that say what to do
-    // and leave nothing half done, not ends of the program.
+    // A file that exceeds `ulimit -f`, or a pipe without a reader, must not end the program: they become
+    // errors that say what to do, and nothing stays half done.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     hold_standard_files();
@@ -335,7 +332,7 @@ int main(int argc, char** argv)
         say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", said.what()); // an empty name
         return exit_status_for(e.kind());
     } catch (const std::system_error& e) {
-        if (std::ferror(stdout) != 0) // of fmt::print
+        if (std::ferror(stdout) != 0) // set by fmt::print
             return unprinted(output_error() != 0 ? output_error() : e.code().value());
         say_error("tactor: failed: {}\n", e.what());
     } catch (const std::bad_alloc&) {

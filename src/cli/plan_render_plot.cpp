@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns a line on what --fit did to places; several strokes share it.
+// Returns a line about what --fit did. Several strokes share it.
 std::string fit_note(const fitting& f)
 {
     return fmt::format(
@@ -86,7 +86,7 @@ void print_one(const std::string& title, const stroke& s, const plan& p, double 
         say(stdout, "warning: {}\n", w);
 }
 
-// Both write as they go: a plan of an hour needs no document in memory.
+// Writes a plan part by part, as print_csv() does: a plan of an hour needs no document in memory.
 void print_text(const piece& p, const environment& e, const render_options& sound, const weakening& weakened)
 {
     const auto starts = start_times_s(p.plans);
@@ -121,11 +121,11 @@ void print_plan(settings& s, const std::string& format)
     const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
     const render_options sound = session::find_render(s, e);
-    const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
+    const score samples = make_score(p, e, sound); // also checks levels and carrier
     session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
         files::write_plans({p, e.tactors, samples, sound}, [](std::string_view part) {
-            // A plan of an hour ends where its reader does.
+            // A plan may be an hour long: stop when its reader is gone.
             if (std::fwrite(part.data(), 1, part.size(), stdout) != part.size())
                 throw std::system_error(errno, std::generic_category(), "cannot write a plan");
         });
@@ -148,7 +148,8 @@ bool holds_wav(const fs::path& file)
            ((begin.starts_with("RIFF") || begin.starts_with("RF64")) && begin.ends_with("WAVE"));
 }
 
-// "-" is standard output. A slip of the keyboard must not replace somebody's thesis.
+// Returns the file to write; "-" is standard output. Refuses other kinds of files, because a slip of the
+// keyboard must not replace somebody's thesis.
 fs::path checked_output(const std::string& name)
 {
     constexpr const char* standard_output = "/dev/stdout";
@@ -174,7 +175,7 @@ fs::path checked_output(const std::string& name)
 
 int render(settings& s, const std::string& name)
 {
-    const fs::path file = checked_output(name); // before the work
+    const fs::path file = checked_output(name); // fails before the work
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
@@ -207,7 +208,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
 {
     f.width_mm = o.width_mm;
     f.heading = o.has_title();
-    const plot::file_format format = plot::find_format(o.file); // before the work
+    const plot::file_format format = plot::find_format(o.file); // fails before the work
     if (f.animated && format != plot::file_format::svg)
         refuse_option("--animate", "only SVG can be animated", "name a file .svg");
     if (f.animated && f.view == plot::figure_view::wave)
@@ -215,7 +216,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     const environment e = session::read_environment(s);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
-    // Only the samples have levels: a picture of a plan needs none that a card could play.
+    // Only the view of samples needs a score. Other pictures may show levels that no card can play.
     std::optional<score> sound;
     if (f.view == plot::figure_view::wave)
         sound = make_score(q, e, session::find_render(s, e));

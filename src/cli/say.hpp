@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The tool prints by the names of session/say.hpp: text, warnings, and how far the work is.
+/// Output of the tool, by the names of session/say.hpp: text, warnings and progress.
 #pragma once
 
 #include <chrono>
@@ -26,21 +26,21 @@ using session::show;
 using session::shown;
 using session::wrapped;
 
-/// Prints warnings. Of those that differ only in numbers and quoted names it prints the first, and how many
+/// Prints warnings. Of warnings that differ only in numbers and quoted names, prints the first and how many
 /// more there are.
 void say_warnings(std::span<const std::string> warnings);
 
 /// Returns the warnings of all plans, in order.
 std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);
 
-/// Warns of a score of a STROKE that is weaker than asked for.
+/// Warns if the score of a STROKE is weaker than requested.
 void warn_of_weakening(const std::string& name, const weakening& w, std::size_t strokes);
 
-/// A line on standard error that counts up in per cent. It needs a terminal, begins after half a second, and
-/// leaves nothing behind.
+/// A line on standard error that shows progress in per cent. It needs a terminal, begins after half a second,
+/// and erases itself at the end.
 class progress_line {
 public:
-    /// `name` must outlive it.
+    /// `name` must outlive the line.
     explicit progress_line(std::string_view name) : name_(name) {}
     progress_line(const progress_line&) = delete;
     progress_line& operator=(const progress_line&) = delete;

@@ -30,7 +30,6 @@ using session::settings;
 /// Exit statuses (see tactor(1)).
 enum exit_status { status_ok = 0, status_failed = 1, status_usage = 2, status_device = 3 };
 
-/// Returns the exit status for an error.
 constexpr int exit_status_for(error_kind kind) noexcept
 {
     return kind == error_kind::bad_input       ? status_usage
@@ -38,9 +37,8 @@ constexpr int exit_status_for(error_kind kind) noexcept
                                                : status_failed;
 }
 
-/// The command line of a command.
 struct command_line {
-    CLI::App& app; ///< of the command: takes its options
+    CLI::App& app; ///< the command's; gets its options
     std::vector<std::string> words;
     std::function<void(const CLI::App&)> show = {}; ///< shows the options in place of running the command
     settings values = {};                           ///< values of the options of the table
@@ -50,34 +48,34 @@ struct command_line {
     void parse() const;
 };
 
-/// Adds the options of the table that a command takes: `place` is its bit. Returns their values.
+/// Adds the options of the table that a command takes. `place` is the command's bit. Returns their values.
 settings& add_options(command_line& line, std::uint64_t place);
 
-/// Returns the first given option that is about a stream which sounds: for sessions in which nothing is
-/// played. Empty: none was given.
+/// Returns the first given option that only a playing stream can use, for sessions that play nothing. Empty
+/// if there is none.
 std::string asked_of_stream(const settings& s);
 
 /// Adds the argument STROKE, which may be given `most` times.
 void add_strokes(command_line& line, int most = 1);
 
-/// Lists the command's own options that are added next under this heading, of which --help has the names.
+/// Begins a heading of the help, with the options of the command that are added next.
 void begin_group(CLI::App& command, const std::string& heading = "Options");
 
-/// --format: one of `names`, of which the first is the default. `into` must live as long as the command.
+/// Adds --format, with one of `names`; the first is the default. `into` must live as long as the command.
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
 
-/// --force: output replaces a file that tactor did not write, or that was changed since.
+/// Adds --force, by which output replaces a file that tactor did not write or that was changed since.
 void add_force_option(CLI::App& command, bool& into);
 
 /// Adds an option whose text `take` reads. Returns it.
 CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,
                       const std::string& help, const std::function<void(const std::string&)>& take);
 
-/// Returns the place of a text among names. \throws error (bad_input) that lists them.
+/// Returns the index of a text in a list of names. \throws error (bad_input), which lists them.
 std::size_t choose(std::string_view option, const std::string& text, const std::vector<std::string>& names);
 
-/// \throws error (bad_input) about an option.
+/// Throws error (bad_input) about an option.
 [[noreturn]] void refuse_option(std::string_view option, const std::string& why, std::string_view hint);
 
 /// Options of every picture.
@@ -85,15 +83,15 @@ struct picture_options {
     std::string file = {}; ///< empty: none
     double width_mm = plot::figure_options{}.width_mm;
     unsigned dpi = plot::usual_dpi;
-    bool force = false;     ///< replaces a file that tactor did not write as it is
+    bool force = false;     ///< also replaces a file that tactor did not write, or that was changed
     std::string title = {}; ///< --title; empty: the picture's own, "none": none
 
     bool has_title() const { return title != "none"; }
-    /// Returns the title that is asked for, or `own`.
+    /// Returns the title of --title, or else `own`.
     std::string choose_title(const std::string& own) const { return title.empty() ? own : title; }
 };
 
-/// Adds --width, --dpi, --title and --force. `usual_width`: words for the help.
+/// Adds --width, --dpi, --title and --force. `usual_width`: the default width, for the help.
 void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width);
 
 /// Returns "--level-dbfs" for the row level_dbfs.
@@ -102,11 +100,11 @@ std::string option_name(const options::option& o);
 /// Returns the text with its marks as options: "--timing fit".
 std::string spelled(std::string_view marked);
 
-/// The same error with what it names, and what it advises, as options: "--soa" for "soa_s", "--timing fit"
-/// for "timing = fit". Doing so twice changes nothing.
+/// Returns an error that names options in place of fields and marks, also in its hint: "--soa" for "soa_s",
+/// "--timing fit" for "timing = fit". A second call changes nothing.
 error in_options(const error& e);
 
-/// Each returns the exit status. \throws error; CLI::Success.
+/// Runs a command, as the others below do. Returns the exit status. \throws error; CLI::Success.
 int run_plan(command_line& line);
 int run_analyze(command_line& line);
 int run_compare(command_line& line);

@@ -29,9 +29,8 @@ namespace tactor::cli {
 namespace {
 
 constexpr int name_columns = 26;
-constexpr const char* own_group = "Options"; // where CLI11 puts what has no group
+constexpr const char* own_group = "Options"; // CLI11's group for options without one
 
-// Returns a name without the dashes before it.
 std::string_view bare_name(std::string_view name) noexcept
 {
     return name.substr(std::min(name.find_first_not_of('-'), name.size()));
@@ -102,7 +101,7 @@ std::string describe_row(const options::option& o)
     return text;
 }
 
-// A key of array and configuration files that is no option of the table, or a table of them.
+// A key of array and configuration files that is not an option, or a table of such keys.
 struct file_key {
     std::string_view name;
     std::string_view type;
@@ -128,7 +127,7 @@ constexpr std::array file_keys{
              "power_dbfs, max_drive_s and window_s: limits on all tactors together, and on each one"},
 };
 
-// Returns a page about a key of files, "max_dbfs" or "[limits]"; nothing for others.
+// Returns a page about a key of files, "max_dbfs" or "[limits]"; nothing for other words.
 std::string describe_key(std::string_view word)
 {
     if (word.starts_with('[') && word.ends_with(']'))
@@ -188,7 +187,7 @@ std::string nearest(const std::string& given, const std::vector<std::string>& na
     return std::string(detail::nearest_name(given, views));
 }
 
-// Without the dashes, which would make any two names more alike than they are.
+// Returns the names without dashes, which would make any two names more alike.
 std::vector<std::string> option_names(const CLI::App& command)
 {
     std::vector<std::string> names;
@@ -198,7 +197,7 @@ std::vector<std::string> option_names(const CLI::App& command)
     return names;
 }
 
-// Names that other programs have for such options.
+// A name that other programs use, and the name that tactor uses.
 struct foreign_name {
     std::string_view name;
     std::string_view here;
@@ -223,8 +222,8 @@ constexpr std::array foreign_names{
     foreign_name{"frequency", "carrier"}, foreign_name{"card", "device"},     foreign_name{"pcm", "device"},
 };
 
-// The option that a name is a slip of, or nothing. Of a short name one letter makes another word: then its
-// beginning must agree ("seed" is not "speed", "sped" may be).
+// Returns the option that a misspelt name probably means, or nothing. One letter turns a short name into
+// another word, so the beginnings of short names must agree ("seed" does not mean "speed", "sped" may).
 std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
 {
     constexpr std::size_t short_name = 4;
@@ -238,8 +237,8 @@ std::string nearest_option(const std::string& given, const std::vector<std::stri
     return "--" + like;
 }
 
-// Returns the options that a letter may stand for: the one that has it in the other case, else those that
-// begin with it, unless there are many.
+// Returns the options that a letter may mean: the option with this letter in the other case, else the options
+// that begin with it, unless these are many.
 std::string options_by_letter(char letter, const CLI::App& command)
 {
     constexpr std::size_t many = 3;
@@ -292,7 +291,7 @@ error missing(const CLI::App& app, const CLI::App& command)
             fmt::format("tactor {} {}; {}", command.get_name(), name, help)};
 }
 
-// An option with too few values or too many: its name comes first in what the parser says.
+// Returns the error for an option with too few or too many values. Its name comes first in the parser's text.
 error miscounted(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::string name = said.substr(0, said.find_first_of(": "));
@@ -316,8 +315,8 @@ error unlisted(const CLI::App& command, const std::string& said)
             fmt::format("one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
 }
 
-// An option without another one that it needs, or beside one that it excludes: both are in what the parser
-// says.
+// Returns the error for an option without another one that it needs, or together with one that it excludes.
+// Both names are in the parser's text.
 error unpaired(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::size_t blank = said.find(' ');
@@ -350,8 +349,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
                                         takes.front()->get_name(true))};
 }
 
-// Turns the complaint of the parser into an error that names the option and, where it is not known, the
-// nearest one that is.
+// Turns the parser's error into one that names the option, and for an unknown option the nearest known one.
 error usage_error(const CLI::App& app, const CLI::ParseError& e)
 {
     const auto used = app.get_subcommands();
@@ -374,11 +372,11 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
 
 using words_type = std::vector<std::string>;
 
-// Characters that word processors, PDFs and web pages put in place of those of a keyboard.
+// A character that word processors, PDFs and web pages put in place of one of the keyboard.
 struct typeset {
     std::string_view written; // UTF-8
     std::string_view name;
-    std::string_view meant; // where it is not part of a number
+    std::string_view meant; // unless it begins a number
 };
 constexpr std::array typesets{typeset{"\u2010", "a hyphen", "-"},
                               typeset{"\u2011", "a non-breaking hyphen", "-"},
@@ -396,7 +394,7 @@ bool is_number(std::string_view rest)
     return !rest.empty() && ((rest.front() >= '0' && rest.front() <= '9') || rest.front() == '.');
 }
 
-// Returns a word as a keyboard types it. Sets `found` to its first character that no keyboard has.
+// Returns a word as a keyboard types it. Sets `found` to the first character that no keyboard has.
 std::string retype(std::string_view word, const typeset*& found)
 {
     std::string typed;
@@ -412,15 +410,16 @@ std::string retype(std::string_view word, const typeset*& found)
         word.remove_prefix(t->written.size());
         const bool dash = t->meant.front() == '-';
         if (dash && typed.ends_with("--"))
-            continue; // it stands for both
-        // "-D" has one dash, and so has a number; a dash beside another one completes "--".
+            continue; // this dash stood for both
+        // "-D" and numbers have one dash. A dash next to another one completes "--".
         const bool one = is_number(word) || word.size() == 1 || typed.ends_with('-') || word.starts_with('-');
         typed += dash && one ? "-" : t->meant;
     }
     return typed;
 }
 
-// Names of files may have such characters inside, options and numbers begin with them.
+// Returns true if such characters are probably a mistake: options and numbers begin with them, whereas names
+// of files may contain them.
 bool may_be_typeset(std::string_view word)
 {
     return std::any_of(typesets.begin(), typesets.end(), [&](const typeset& t) {
@@ -450,7 +449,7 @@ std::optional<error> find_typeset(const words_type& words)
     return {};
 }
 
-// Returns the error for words before the command. A slip of a command's own name is another one.
+// Returns the error for words before the command. A misspelt command gets another error.
 std::optional<error> find_late_command(const words_type& words, const words_type& commands)
 {
     const auto is_command = [&](const std::string& w) {
@@ -538,7 +537,7 @@ void parse_words(CLI::App& app, const words_type& words)
         throw CLI::Success();
     };
     try {
-        app.parse(words_type(words.rbegin(), words.rend())); // the last first, as CLI11 takes them
+        app.parse(words_type(words.rbegin(), words.rend())); // CLI11 takes the last word first
     } catch (const CLI::CallForHelp&) {
         print_help(false);
     } catch (const CLI::CallForAllHelp&) {

@@ -38,7 +38,7 @@
 namespace tactor::cli {
 namespace {
 
-// An option that not every method has.
+// An option that only some methods have.
 struct method_option {
     const char* name;
     bool of_staircase;
@@ -51,13 +51,13 @@ constexpr method_option all_method_options[] = {{"--rule", true, false},      {"
                                                 {"--trials", false, true},    {"--stop-sd", false, true}};
 
 struct calibrate_options {
-    study::calibration_settings settings; ///< as far as the options say it
+    study::calibration_settings settings; ///< the part that options set
     std::string output;
-    std::string log; ///< empty: beside the output
+    std::string log; ///< empty: next to the output
     std::optional<std::string> tactors;
     std::optional<std::string> simulate;
     std::optional<std::uint32_t> seed;
-    std::vector<std::string> keypads; ///< input devices of the participant's
+    std::vector<std::string> keypads; ///< the participant's input devices
     page_options page;
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
@@ -142,7 +142,7 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
     begin_group(c);
 }
 
-// Levels stay so far below a limit of the power: one that is met to the last digit may act.
+// Distance of levels from a power limit, in dB. At exactly the limit, rounding may trigger it.
 constexpr double power_margin_db = 1e-3;
 
 unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
@@ -177,8 +177,9 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
     return all;
 }
 
-// Refuses an interval that is too long by itself, and steady pulses of an adjustment that drive a tactor for
-// longer than their pauses let it rest. Before a trial of a staircase there may be a pause.
+// Refuses an interval that is too long by itself. Refuses pulses of an adjustment that drive a tactor for
+// longer than their pauses let it rest. Trials of a staircase need no such check, because a pause may come
+// before each.
 void check_drive_time(const study::calibration_settings& c, const drive_limits& l)
 {
     constexpr double rounding_s = 1e-9;
@@ -242,7 +243,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
              [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
 }
 
-// Checks that output and log have names that go with each other, and names the log that is not named.
+// Checks the extensions of output and log. Names the log after the output if it has no name.
 void settle_names(calibrate_options& o)
 {
     namespace fs = std::filesystem;
@@ -361,8 +362,8 @@ void print_ceilings(const study::calibration_settings& c)
 
 constexpr double paper_sl_db = 7.0; // Park et al. 2016
 
-// Returns the other contents of the array's own file. A configuration is read anyway when its array is
-// replaced, but for the channels.
+// Returns the other tables of the array's own file. If the array is in the configuration, returns only its
+// number of channels: tactor reads the configuration even when another file replaces its array.
 setup read_other_tables(const environment& e)
 {
     setup s;
@@ -399,7 +400,7 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 
-// Asks the trials that are left; each is in the log before the next.
+// Runs the remaining trials. Each is in the log before the next one begins.
 template <typename Who, typename After>
 void ask(study::calibration& c, study::calibration_log& log, Who& who, const After& after)
 {
@@ -410,7 +411,7 @@ void ask(study::calibration& c, study::calibration_log& log, Who& who, const Aft
     }
 }
 
-// Returns the signal that ended it, or 0.
+// Runs the trials with a person. Returns the signal that ended them, or 0.
 int ask_person(study::calibration& c, study::calibration_log& log, const settings& s, const environment& e,
                const calibrate_options& asked)
 {
@@ -423,7 +424,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     net::owned_fd listening = open_page(asked.page);
     study::stage stage(device, o, e);
     const study::page_words words = asked.words.value_or(study::page_words());
-    std::optional<study::participant_page> page; // its thread has the signals blocked that the stage takes
+    std::optional<study::participant_page> page; // after `stage`: its thread inherits the blocked signals
     if (listening)
         page.emplace(words, e.tactors, std::move(listening));
     study::person who(stage, e.tactors, render, c.settings(), {page ? &*page : nullptr, asked.keypads},
@@ -439,7 +440,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
         try {
             ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         } catch (...) {
-            who.thank(); // however it ends, for the participant it is over
+            who.thank(); // however it ends, it is over for the participant
             throw;
         }
         who.thank();
@@ -447,7 +448,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     return why.signal;
 }
 
-// Warns of thresholds that are not measured now: they would pass for this session's.
+// Warns of another session's thresholds, which this session removes.
 void warn_of_others(const environment& e, const study::calibration_settings& s)
 {
     const auto& earlier = e.config.calibration;

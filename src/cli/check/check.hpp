@@ -53,7 +53,8 @@ inline finding failure(std::string check, const error& of_library)
 
 std::string_view to_string(level l);
 
-/// Returns the exit status: that of bad input before that of a device before any other; 0 without an error.
+/// Returns the exit status: that of bad input, else that of a device error, else that of any other error,
+/// else 0.
 int worst_status(const std::vector<finding>& all);
 
 /// Outcome of a walk with answers.
@@ -63,18 +64,18 @@ struct walk_outcome {
     const session::walk_map& verdict;
 };
 
-/// Returns the findings for people. `brief`: leaves out the good ones, because a walk follows.
+/// Returns the findings as text for people. `brief`: leaves out the good ones, because a walk follows.
 std::string check_text(const std::vector<finding>& all, bool brief);
 
 /// Returns an object of schema tactor-check/1.
 std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked);
-/// Returns the schema of such an object.
+/// Returns the schema tactor-check/1.
 nlohmann::ordered_json check_schema();
 
 using line_finder = gpio_line_place (*)(const gpio_line_name&);
 
-/// Checks that each line is there and free, and, if the array is `felt`, that its amplifier has one. Requests
-/// and drives none. `find`: find_gpio_line() but in tests.
+/// Checks that each GPIO line exists and is free. If people feel the array (`felt`), checks that its
+/// amplifier has a line. Requests and drives none. `find`: find_gpio_line(), except in tests.
 std::vector<finding> check_lines(const setup& config, bool felt, line_finder find = find_gpio_line);
 
 /// Checks places, channels, levels, actuators, bursts and limits. Looks at values only.
@@ -91,26 +92,26 @@ struct device_node {
 };
 
 struct system_facts {
-    bool root = false; ///< this process may do all
+    bool root = false; ///< this process has all rights
     std::string user = {};
     std::vector<std::string> groups = {}; ///< groups in force
     std::vector<std::string> joined = {}; ///< groups of the user, in force or not
     realtime_rights rights = {};
-    int priority_error = 0;                 ///< errno of a try to get that of the audio thread
+    int priority_error = 0;                 ///< errno of an attempt to get the audio thread's priority
     std::uint64_t memory_bytes = 0;         ///< memory that play would lock
     std::vector<device_node> sound = {};    ///< playback devices
     std::vector<device_node> gpio = {};     ///< chips
     std::vector<process_info> servers = {}; ///< running sound servers
-    std::string keeps_outputs = {}; ///< file with the setting that lines keep their level when released
-    bool releases_outputs = false;  ///< a file has the setting that they do not
+    std::string keeps_outputs = {};         ///< file that lets lines keep their level when released
+    bool releases_outputs = false;          ///< a file has the opposite setting
     bool raspberry_pi = false;
 };
 
 /// Returns the name of the user that this process runs as; empty if it has none.
 std::string own_user();
 
-/// Returns the facts of this process and of files under `root`, "/" but in tests. Leaves out files that
-/// cannot be read. Blocks shortly.
+/// Returns the facts of this process and of files under `root`, which is "/" except in tests. Leaves out
+/// files that cannot be read. Blocks for a short time.
 system_facts read_system(const std::filesystem::path& root = "/", const std::string& user = own_user());
 
 /// Returns true if udev keeps desktop sound servers off a card.
@@ -118,7 +119,7 @@ bool servers_ignore(unsigned card_index, const std::filesystem::path& root = "/"
 
 /// Needs of the set-up from the machine.
 struct system_needs {
-    std::string pcm = {};                   ///< name with which it is opened
+    std::string pcm = {};                   ///< name under which it is opened
     std::optional<card_info> card = {};     ///< card in its name
     std::vector<process_info> holders = {}; ///< programs that hold that card
     bool ignored = false;                   ///< udev keeps desktop sound servers off that card
@@ -141,7 +142,7 @@ struct check_options {
 };
 
 struct walk_result {
-    int signal = 0; ///< signal that ended it, or 0
+    int signal = 0; ///< signal that ended the walk, or 0
     session::walk_answers felt;
 };
 

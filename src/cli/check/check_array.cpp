@@ -19,10 +19,10 @@
 namespace tactor::cli {
 namespace {
 
-// Tactors are discs of 5 mm and more on a body part: other distances are probably not in mm.
+// Least plausible distance: tactors are discs of 5 mm and more, so smaller numbers are probably not in mm.
 constexpr double closest_mm = 4.0;
 constexpr double widest_mm = 2000.0;
-// A trunk, or a leg: no hand or forearm is so wide.
+// Width of a trunk or a leg: no hand or forearm is so wide.
 constexpr double trunk_mm = 150.0;
 
 struct spread {
@@ -115,7 +115,7 @@ spread peaks(const render_options& r, const array& a)
     return s;
 }
 
-// Returns the numbers of the tactors for which `take` holds.
+// Returns the numbers of the tactors for which `take` is true.
 template <class F>
 std::vector<std::size_t> tactors_where(const array& a, F&& take)
 {
@@ -152,7 +152,7 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     return fine("levels", found);
 }
 
-// Returns the defaults of limits that a file or an option made weaker.
+// Returns the default values of the limits that a file or an option made weaker.
 std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
 {
     const drive_limits usual;
@@ -199,7 +199,7 @@ constexpr std::array slow_kinds{
     slow_kind{actuator_kind::lra,
               "an LRA needs over 20 ms to start, and works only within about 5 Hz of its own resonance",
               "set --carrier to the resonance in its data sheet, or use piezo or voice coil actuators"}};
-// Range in which vibration is felt well: Pacinian corpuscles.
+// Range of frequencies that Pacinian corpuscles feel well.
 constexpr double lowest_hz = 40.0;
 constexpr double highest_hz = 800.0;
 constexpr double fewest_cycles = 5.0;

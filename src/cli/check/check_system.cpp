@@ -68,15 +68,15 @@ std::vector<std::string> own_groups()
     return names;
 }
 
-// Tries to open a device: access(2) does not know of a container's rules for devices. One that another
-// program plays on may be opened.
+// Tries to open a device, because access(2) ignores a container's rules for devices. Returns true also for a
+// device on which another program plays.
 bool may_open(const fs::path& file)
 {
     const detail::owned_fd device(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
     return device || errno == EBUSY || errno == EAGAIN;
 }
 
-// Returns the devices of a folder whose names begin and end so.
+// Returns the devices of a folder whose names have this beginning and this end.
 std::vector<device_node> nodes(const fs::path& folder, std::string_view begin, std::string_view end = "")
 {
     std::vector<device_node> all;
@@ -127,7 +127,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Returns the hint for becoming a member. A group that was joined since the login needs a new login.
+// Returns the hint for joining a group. If the user joined it after the login, they must log in again.
 std::string how_to_join(const system_facts& f, const std::string& group)
 {
     if (f.root || contains(f.groups, group))

@@ -210,7 +210,7 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     alsa_options device;
     try {
         device = device_for(s, e);
-        std::string kept_as = device.pcm; // where it cannot be opened now
+        std::string kept_as = device.pcm; // if it cannot be opened now
         all.push_back(check_device(device, s.stream, e, session::names_device(s, e), kept_as));
         if (session::is_felt(device.pcm) && !kept_as.empty())
             all.push_back(check_drive_time(kept_as));
@@ -224,7 +224,8 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     return all;
 }
 
-// Returns the file that the array is from. An array that no file says is that of a configuration without one.
+// Reads the file that has the array. If no file has it, reads the configuration, unless --array names a
+// preset.
 setup read_array_source(const settings& s, const environment& e)
 {
     if (!e.array_file.empty())
@@ -232,7 +233,8 @@ setup read_array_source(const settings& s, const environment& e)
     return s.array_name || e.config_name.empty() ? setup{} : load_setup(e.config_name);
 }
 
-// Writes an array file with these channels and all else that the file in use says. It needs no other file.
+// Writes an array file with these channels and everything else that the file in use has. The new file needs
+// no other file.
 void write_channels(const std::string& name, const settings& s, const environment& e,
                     const std::vector<unsigned>& channels)
 {
@@ -301,7 +303,7 @@ int check(settings& s, const check_options& o)
 {
     check_usage(s, o);
     if (s.array_name)
-        detail::note_input(*s.array_name); // what is found must not be written into it
+        detail::note_input(*s.array_name); // the output must not replace it
     std::vector<finding> all;
     std::optional<environment> e;
     try {

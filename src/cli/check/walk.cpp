@@ -145,7 +145,7 @@ private:
         std::optional<unsigned> felt; // number of a tactor; nothing: not felt
     };
 
-    // Asks until there is an answer; nothing: back to the previous tactor.
+    // Asks until there is an answer. Returns nothing to go back to the previous tactor.
     std::optional<answer> ask(unsigned i)
     {
         const std::size_t last = tactors().size() - 1;

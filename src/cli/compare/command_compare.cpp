@@ -39,7 +39,7 @@ std::string join_names()
     return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
 }
 
-// "a,b,c", each once, in the order given.
+// Reads a list "a,b,c" in the order given. Refuses a name that occurs twice.
 template <class Enum>
 std::vector<Enum> parse_list(const char* option, std::string_view text)
 {
@@ -57,14 +57,14 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
     return list;
 }
 
-// The options of this command alone.
+// Options that only this command has.
 struct compare_options {
     comparison_choice choice;
     std::string format = "text";
     picture_options picture;
 };
 
-// Returns the last reason why no algorithm can play the strokes, and prints the others, each once.
+// Returns the last reason why no algorithm can play the strokes. Prints the others, each once.
 error why_refused(const std::vector<comparison>& all, const piece& p)
 {
     std::vector<error> reasons;
@@ -100,7 +100,7 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
     return all;
 }
 
-// A figure of the table, or a dash where there is none.
+// Returns a figure of the table, or a dash if it is missing.
 std::string figure(std::optional<double> v)
 {
     return v ? fmt::format("{:.3f}", *v) : "-";
@@ -116,11 +116,11 @@ struct column {
     std::string_view title;
     std::function<std::string(const comparison_row&)> text;
     std::optional<interval> row_spread::*spread = nullptr;
-    double factor = 1.0; // of the ends
+    double factor = 1.0; // for the ends
     int digits = 3;      // of the ends
 };
 
-// A column of lengths or ratios.
+// Returns a column of lengths or ratios.
 column plain_column(std::string_view title, std::optional<double> percept_summary::*value,
                     std::optional<interval> row_spread::*spread)
 {
@@ -292,7 +292,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     choice.compensate = s.compensate;
     choice.spread = s.spread;
 
-    // A row says what an algorithm cannot do; what nobody may ask for is wrong usage.
+    // A row reports what one algorithm cannot do. A burst that no algorithm can play is wrong usage.
     static_cast<void>(burst_duration_s(s.plan));
     const layout faces(e.tactors);
     const std::string argument = stroke_arguments(s).front();

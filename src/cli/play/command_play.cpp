@@ -34,7 +34,7 @@ namespace {
 constexpr std::size_t longest_line = 4096;
 constexpr double farthest_mm = 1e6;
 
-// Splits at blanks. A comma is a separator only before a blank: elsewhere it may be a decimal one.
+// Splits at blanks. A comma is a separator only before a blank: elsewhere it may be a decimal comma.
 std::vector<std::string_view> split(std::string_view line)
 {
     std::vector<std::string_view> words;
@@ -82,8 +82,8 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
 constexpr int max_strokes = 10000; // on one command line
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
-// Plays a piece, once again if the device went away before it began, and reports when it waits for its
-// trigger. Returns false if there is no device.
+// Plays a piece. Tries once more if the device went away before the piece began. Prints that the piece waits
+// for its trigger. Returns false if there is no device.
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
@@ -155,10 +155,10 @@ std::optional<error> play_all(session::play_session& session, const play_options
     return {};
 }
 
-// Reads how often STROKEs are played.
+// Reads the number of rounds; 0 is forever.
 std::uint64_t read_rounds(const std::string& text)
 {
-    constexpr double most_rounds = 1e6; // as a server
+    constexpr double most_rounds = 1e6; // the server has the same limit
     constexpr const char* range = "1 to 1000000, or forever";
     if (text == "forever")
         return 0;
@@ -182,9 +182,9 @@ void check_rounds(const settings& s, const play_options& o)
                       "give one STROKE, or a file that has several");
 }
 
-// Opens the device for so many channels at that rate, Hz, calls play(session, report.strokes), ends, and
-// prints the report. Returns the exit status. play() returns the error that broke the run off, if any.
-// \throws error: first of all if the amplifier may be on.
+// Opens the device for so many channels at that rate, Hz, calls play(session, report.strokes), closes the
+// device, and prints the report. Returns the exit status. play() returns the error that ended the run early,
+// if any. \throws error; if the amplifier may be on, the error is about that.
 template <class F>
 int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, const play_options& o,
              F play)
@@ -210,7 +210,7 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     return judge_run(r, session.signal(), broken);
 }
 
-// Plays a stroke that lines move, until they end.
+// Plays a stroke that follows lines of points, until they end.
 stroke_report follow_lines(session::play_session& session, const live_options& o, live_lines& lines)
 {
     live_stroke stroke = session.begin(o);
@@ -228,7 +228,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
     });
 }
 
-// Refuses options that a live stroke does not have, and standard input that this program writes to.
+// Refuses options that a live stroke does not have, and standard input that is also the program's output.
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
@@ -247,7 +247,7 @@ void check_live(const settings& s)
 // Plays until standard input ends.
 int play_live(settings& s, const play_options& o)
 {
-    s.strokes.clear(); // standard input has its points, which come later
+    s.strokes.clear(); // standard input has points, not a stroke file
     const environment e = session::read_environment(s);
     const live_options usual;
     live_options l;
@@ -313,7 +313,7 @@ bool live_lines::fill()
     if (n == 0) {
         end_ = true;
         if (!buffer_.empty() && buffer_.back() != '\n')
-            buffer_ += '\n'; // the last line counts without its end, too
+            buffer_ += '\n'; // the last line counts even without a line end
         return !buffer_.empty();
     }
     buffer_.append(bytes, static_cast<std::size_t>(n));

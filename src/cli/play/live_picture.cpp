@@ -36,13 +36,13 @@ namespace {
 constexpr unsigned margin = 3;              // left of the array
 constexpr double natural_mm = 1.25;         // of a column, if there is space: 4 columns are 5 mm
 constexpr unsigned least_array_columns = 5; // fewer show nothing
-// Read on black and on white: magenta has 4.5 : 1 and 4.7 : 1, reversed letters have the terminal's own
-// contrast.
+// Legible on black and on white: magenta has a contrast of 4.5 : 1 and 4.7 : 1, and reversed letters have the
+// terminal's own.
 constexpr const char* level_colour = "\033[35m";
 constexpr const char* target_colour = "\033[7m";
 constexpr const char* no_colour = "\033[0m";
 
-// Returns the level of a tactor as a shade: changes of digits would be hard to see.
+// Returns the level of a tactor as a shade, because changing digits would be hard to see.
 const char* shade(double level, bool unicode)
 {
     static constexpr std::array shades{"·", "░", "▒", "▓", "█"};
@@ -212,7 +212,8 @@ void ask_to_stop(int) noexcept
     stop_asked = 1;
 }
 
-// Returns true in the background. A terminal that does not control this process has no foreground group.
+// Returns true if this process is in the background. A terminal that does not control it has no foreground
+// group.
 bool is_in_background() noexcept
 {
     const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
@@ -233,7 +234,7 @@ class terminal {
 public:
     const picture_style style{speaks_utf8(), rt::variable("NO_COLOR").empty()};
 
-    // Returns the size as it is now: windows change.
+    // Returns the current size, which changes with the window.
     static terminal_size size() noexcept
     {
         winsize w{};
@@ -242,7 +243,7 @@ public:
         return {w.ws_col, w.ws_row};
     }
 
-    // Writes what is left of earlier texts. Returns true if the terminal has taken all.
+    // Writes the rest of earlier texts. Returns true if the terminal has taken all.
     bool idle()
     {
         while (!left_.empty()) {
@@ -266,8 +267,8 @@ public:
         idle();
     }
 
-    // Waits up to two seconds for the rest. A terminal that takes nothing blocks the next printed line
-    // anyway.
+    // Waits up to two seconds for the terminal to take the rest. A terminal that takes nothing blocks the
+    // next printed line anyway.
     void finish()
     {
         for (int tries = 10; !idle() && tries > 0; --tries) {
@@ -277,8 +278,8 @@ public:
     }
 
 private:
-    // Standard output, opened again: O_NONBLOCK on it would hold for all processes that share it, such as the
-    // shell.
+    // Standard output, opened again: O_NONBLOCK on the shared descriptor would also apply to other processes,
+    // such as the shell.
     detail::owned_fd file_{open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
     std::string left_;
 };
@@ -319,7 +320,8 @@ void live_picture::erase()
     terminal_->finish();
 }
 
-// Erases the picture and stops, if asked: the shell's prompt takes its place.
+// Erases the picture and stops the program if Ctrl-Z was pressed: the shell's prompt takes the picture's
+// place.
 void live_picture::stop_where_asked()
 {
     if (stop_asked == 0)

@@ -25,7 +25,7 @@ struct play_options {
     std::optional<std::string> socket = {}; ///< socket of a server; none: plays here
     std::string format = "text";
     std::uint64_t rounds = 1; ///< 0: until a signal comes
-    double pause_s = 0.0;     ///< between two strokes of rounds
+    double pause_s = 0.0;     ///< between two strokes, if there are several rounds
 
     bool json() const { return format == "json"; }
 };
@@ -96,12 +96,11 @@ private:
     struct sigaction before_ = {}; ///< previous action of SIGTSTP
 };
 
-/// Follows a score of a piece, which was submitted, to its end, and draws it on a terminal if that is
-/// `wanted`.
+/// Follows the submitted score of a piece to its end. Draws it on a terminal if that is `wanted`.
 stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
                            bool wanted);
 
-/// A STROKE argument and its report, of all rounds together; no report: it was not played.
+/// A STROKE argument and the joint report of all its rounds; no report: it was not played.
 struct stroke_outcome {
     std::string name;
     std::uint64_t length_frames = 0; ///< of one round
@@ -114,13 +113,13 @@ struct play_report : session::run_facts {
     std::vector<stroke_outcome> strokes = {};
 };
 
-/// Adds the report of a further stroke or round: the first beginning, the worst end, and the sum of the rest.
+/// Adds the report of another stroke or round: keeps the first start and the worst end, and adds up the rest.
 void add_report(std::optional<stroke_report>& sum, stroke_report r);
 
 /// Returns "played 1.4 s", "interrupted after 0.2 s: reason".
 std::string fate(const stroke_outcome& s, unsigned rate);
 
-/// Returns the same after "name: ".
+/// Returns fate() after "name: ".
 std::string describe(const stroke_outcome& s, unsigned rate);
 
 /// Returns "hw:Tactor: 9 of 16 channels, 48000 Hz, s32, period 96 of 288 frames, latency 6.0 ms"
@@ -137,15 +136,15 @@ void print_json(const play_report& r);
 void print_table(const play_report& r);
 /// Returns true if nothing disturbed or limited the strokes.
 bool is_clean(const play_report& r);
-/// Returns the schema of such an object.
+/// Returns the schema tactor-play/1.
 nlohmann::ordered_json play_schema();
 
-/// Returns the exit status of a run. `signal`: ended it; 0: none did. \throws error for a run that was broken
-/// off or has strokes that did not finish.
+/// Returns the exit status of a run. `signal`: the signal that ended it, or 0. \throws error for a run that
+/// ended early or has strokes that did not finish.
 int judge_run(const play_report& r, int signal, const std::optional<error>& broken);
 
-/// Plays all STROKEs through a server, one after the other; the exit status. \throws error, also for options
-/// that are the server's owner's alone.
+/// Plays all STROKEs through a server, one after the other. Returns the exit status. \throws error, also for
+/// options that only the server's owner may set.
 int play_remote(const settings& s, const play_options& o);
 
 } // namespace tactor::cli

@@ -19,7 +19,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Puts the options of the tool into descriptions.
+// Turns the marks in descriptions into options of the tool.
 void spell(json& schema)
 {
     for (auto& [key, value] : schema.items())
@@ -38,7 +38,7 @@ json titled(std::string_view what, const json& object)
     return j;
 }
 
-// Returns the schema of a list of objects, which stands alone.
+// Returns the schema of a document that only has a list of objects.
 json list_schema(const char* name, const char* key, const json& one)
 {
     return {{"type", "object"},

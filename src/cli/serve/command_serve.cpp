@@ -36,7 +36,7 @@ namespace {
 
 using files::or_null;
 
-// Returns true for a service of the system: the service manager gives a folder outside the user's.
+// Returns true for a system service: the service manager gives it a folder outside the user's.
 bool serves_system()
 {
     const std::string given = rt::service_folder();
@@ -56,7 +56,7 @@ std::string default_socket(bool others)
                 "name one with --socket PATH, or under [serve] in the configuration");
 }
 
-// Returns `s`, which the configuration says, with the options over it.
+// Returns the settings `s` of the configuration, overridden by the options `o`.
 options::serve_settings settle_serve(const options::serve_settings& o, options::serve_settings s)
 {
     const auto prefer = [](auto& ours, const auto& given) {
@@ -71,7 +71,7 @@ options::serve_settings settle_serve(const options::serve_settings& o, options::
     return s;
 }
 
-// Returns the ceiling of the files, or the lower one of --max-level-dbfs.
+// Returns the ceiling of the files, or that of --max-level-dbfs, which may not exceed one that the files set.
 session::ceiling settle_ceiling(const environment& e, std::optional<double> asked_dbfs)
 {
     const session::ceiling said = session::find_ceiling(e);
@@ -86,7 +86,7 @@ session::ceiling settle_ceiling(const environment& e, std::optional<double> aske
     return {*asked_dbfs, "--max-level-dbfs"};
 }
 
-// Refuses options that would lift a limit that the files say.
+// Refuses options that would lift a limit of the files.
 void check_limits(const session::stream_options& asked, const environment& e)
 {
     const limit_settings said = e.config.limits.value_or(limit_settings{});
@@ -131,10 +131,10 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
     return e;
 }
 
-// Raises the limit on open files to the need of so many clients; warns if that is not allowed.
+// Raises the limit on open files to what so many clients need; warns if that is not allowed.
 void provide_descriptors(const server::service_limits& l)
 {
-    // Senders of OSC share one; browsers that only load the page come in addition to clients.
+    // Senders of OSC share one. Browsers that only load the page are not counted as clients.
     constexpr rlim_t others = 96;
     const rlim_t wanted = l.max_clients + others;
     rlimit now{};
@@ -162,9 +162,9 @@ std::string plan_text(const server::planned& p, const environment& e, std::size_
     return text;
 }
 
-// Limits the channels for all clients together to the ceiling. A tactor that the owner makes stronger may
-// have its gain on top, unless it has a threshold: a sensation level takes no gain, so the sum would exceed
-// the ceiling.
+// Limits what all clients together play on a channel to the ceiling. A gain that makes a tactor stronger
+// raises its limit, unless the tactor has a threshold: a sensation level takes no gain, so the sum would
+// exceed the ceiling.
 array limit_levels(array a, double max_level_dbfs)
 {
     for (tactor_spec& t : a.tactors) {
@@ -180,7 +180,7 @@ server::planning make_planning(const settings& s, const environment& e, double c
 {
     server::planning p;
     p.owner = static_cast<const options::option_values&>(s);
-    p.owner.intensity_max.reset(); // each client says how its own numbers count
+    p.owner.intensity_max.reset(); // each client says which of its numbers means 1
     p.owner.render = session::find_render(s, e);
     p.max_level_dbfs = ceiling_dbfs;
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
@@ -244,7 +244,7 @@ void print_endpoints(const server::endpoints& at, const session::ceiling& highes
     }
     if (std::fflush(stdout) == 0)
         return;
-    // A program that waits for these lines does not get them; clients are served all the same.
+    // Only a program that waits for these lines gets nothing. Serve the clients nevertheless.
     say(stderr, "tactor: warning: standard output: {}: the addresses could not be printed there\n",
         std::strerror(errno));
     std::clearerr(stdout);
@@ -295,7 +295,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
             service.array[key] = *value;
     service.plans = make_planning(s, e, highest.dbfs, service.limits);
     service.array_name = e.array_file.empty() ? e.tactors.name : e.array_file;
-    if (service.plans.owner.render.marker_channel) // which no option of the tool says
+    if (service.plans.owner.render.marker_channel) // the tool has no option for it
         service.config_name = e.config_name;
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
@@ -333,7 +333,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
 
 int run_serve(command_line& line)
 {
-    options::serve_settings o; // of [serve], what the command line has, too
+    options::serve_settings o; // options of [serve] that the command line has, too
     std::string format;
     CLI::App& c = line.app;
     c.add_option("--socket", o.socket,

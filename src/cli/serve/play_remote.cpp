@@ -29,7 +29,7 @@ namespace tactor::cli {
 namespace {
 
 constexpr std::chrono::seconds to_finish{10};       // time for a server to fade out, after a signal
-constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
+constexpr std::chrono::milliseconds limit_pause{5}; // about ten points at 2,000 a second
 
 // Refuses options that the server's owner decides, or that a server does not have.
 void refuse_owners(const settings& s)
@@ -40,7 +40,7 @@ void refuse_owners(const settings& s)
                           "leave it out with --socket");
 }
 
-// Names the stroke that was sent, and the place in it, where an error of the server is about its parameter.
+// Rewords an error of the server about its parameter: names the stroke that was sent, and the place in it.
 error name_argument(const error& e, const std::string& argument)
 {
     constexpr std::array sources{"stroke", "path", "toml", "csv", "svg"};
@@ -50,7 +50,7 @@ error name_argument(const error& e, const std::string& argument)
     return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
 }
 
-// Puts the name of a STROKE in place of that of its kind, which a server's warnings begin with.
+// Replaces the kind, with which a server's warnings begin, by the name of the STROKE.
 std::vector<std::string> name_in(std::vector<std::string> warnings, const std::string& stroke)
 {
     for (std::string& w : warnings)
@@ -114,7 +114,7 @@ net::json client_options(const settings& s)
     return given;
 }
 
-// Reads how much weaker than asked for the server plays a piece.
+// Reads how much weaker than requested the server plays a piece.
 weakening read_weakening(const net::json& answer)
 {
     weakening w{.weakened_db = answer.value("weakened_db", 0.0)};
@@ -164,7 +164,7 @@ public:
     {
         report_.strokes.push_back({"live"});
         stroke_outcome& out = report_.strokes.back();
-        asked_.erase("intensity_max"); // its lines are divided here
+        asked_.erase("intensity_max"); // this program scales the intensities of lines
         net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
         if (stream_.smooth_s)
             begin["smooth_s"] = *stream_.smooth_s;
@@ -182,7 +182,7 @@ public:
             }
         } catch (const error&) {
             try {
-                server_.tell("cancel", {{"stroke", n}}); // a client that goes away ends it after its burst
+                server_.tell("cancel", {{"stroke", n}}); // else the burst plays to its end
             } catch (
                 const error&) { // NOLINT(bugprone-empty-catch): the server is gone, as the other error says
             }
@@ -299,7 +299,7 @@ private:
         return true;
     }
 
-    // Waits, unless a signal came: then strokes are cancelled first.
+    // Waits, but not after a signal until the strokes are cancelled.
     void wait(int also)
     {
         if (server_.signal() == 0 || cancelled_)

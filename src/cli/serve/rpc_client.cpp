@@ -65,7 +65,7 @@ bool is_address(const std::string& text)
            (!port.empty() && port.find_first_not_of("0123456789") == std::string::npos);
 }
 
-// Makes marks of the protocol's names of options: "{soa}" of "options.soa".
+// Turns the protocol's names of options into marks: "options.soa" into "{soa}".
 std::string mark_options(const std::string& text)
 {
     static const std::regex option("options\\.([a-z_]+)");
@@ -326,7 +326,7 @@ void status(const status_options& o, session::interrupt& stop)
         watch(server, o);
 }
 
-// Calls `ask`, which a signal interrupts, also while the server does not answer.
+// Calls `ask`. A signal interrupts it, even while the server does not answer.
 template <typename F>
 int until_interrupted(F ask)
 {

@@ -21,14 +21,14 @@ struct interrupted {
     int signal;
 };
 
-/// Client of a server.
 class rpc_client {
 public:
     /// Connects to the named server, else to that of XDG_RUNTIME_DIR, else to the system's. A signal at
-    /// `stop` ends waiting for a reply. \throws error (not_available) if none listens.
+    /// `stop` interrupts waiting for a reply. \throws error (not_available) if none listens.
     rpc_client(const std::optional<std::string>& socket, session::interrupt& stop);
 
-    /// Returns the result. \throws error with the server's words, runtime if it went away; interrupted.
+    /// Calls a method. Returns the result. \throws error with the server's words, or runtime if the server is
+    /// gone; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
     /// Does the same. Returns false if a limit of the server is reached: try again.
     bool try_call(const std::string& method, const net::json& params);
@@ -40,8 +40,8 @@ public:
     /// Waits until the server or `also` has input, or a signal comes. \throws interrupted.
     void wait(int also = -1);
     /// Gives the server time to finish after a first signal, which from now on only sets signal(). If the
-    /// signal comes while a reply is awaited, tells the server to cancel all requests of this client, also
-    /// those that it is still planning and would play without anybody to cancel them.
+    /// signal comes while a call waits for its reply, tells the server to cancel all requests of this client.
+    /// That includes requests that it is still planning: nobody could cancel their strokes later.
     void let_finish(std::chrono::milliseconds grace) { grace_ = grace; }
     /// Returns the signal that came, or 0.
     int signal() const noexcept { return signal_; }

@@ -17,19 +17,19 @@ class Option;
 namespace tactor::cli {
 
 struct page_options {
-    std::optional<bool> on_page = {};          ///< a page, or the terminal
-    std::optional<net::host_and_port> at = {}; ///< where the page is; a free port where it is not said
+    std::optional<bool> on_page = {};          ///< true: a page, false: the terminal
+    std::optional<net::host_and_port> at = {}; ///< address of the page; none: a free port
 
     bool shown() const { return on_page.value_or(at.has_value()); }
 };
 
-/// `o` must live as long as the command.
+/// Adds --display and --page. `o` must live as long as the command.
 void add_page_options(CLI::App& command, page_options& o);
 
-/// --keypad of a command, as often as there are any.
+/// Adds --keypad, which may be repeated.
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into);
 
-/// --masker: the device of the masking noise. Returns it.
+/// Adds --masker, the device of the masking noise. Returns it.
 CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::string& help);
 
 /// Checks that the options go together. \throws error (bad_input).
