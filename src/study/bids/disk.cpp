@@ -43,7 +43,7 @@ detail::owned_fd open_file(const fs::path& file, int flags)
     return fd;
 }
 
-// Returns 0 or an errno.
+// Writes a whole text. Returns 0 or an errno.
 int write_all(int fd, std::string_view text, bool synced)
 {
     while (!text.empty()) {
@@ -134,7 +134,7 @@ void try_to_write(const fs::path& file)
     fs::path folder = file.parent_path();
     while (!is_on_disk(folder))
         folder = folder.parent_path();
-    const std::string tail = ".part"; // remove_leftovers() knows it, should this end here
+    const std::string tail = ".part"; // remove_leftovers() knows it, if the program ends here
     const std::size_t length = std::max(file.filename().string().size(), tail.size() + 2);
     const fs::path probe = folder / ("." + std::string(length - tail.size() - 1, 'x') + tail);
     const detail::owned_fd fd(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));

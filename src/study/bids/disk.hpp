@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Files that survive a crash at any moment: whole ones, and text at the end of one.
+/// Files that survive a crash at any moment: files that are written whole, and text at the end of a file.
 #pragma once
 
 #include <cstddef>
@@ -17,27 +17,28 @@ namespace tactor::study {
 /// Returns the text of a JSON file, indented; bytes that are not UTF-8 are replaced.
 std::string json_text(const nlohmann::ordered_json& j);
 
-/// Writes a file beside its name, dot-named, and gives it the name when it is on the disk. \throws error.
+/// Writes a file under another name that begins with a dot, and renames it when it is on the disk. \throws
+/// error.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
-/// Throws what write_whole() would throw before it has anything to write.
+/// Throws the error that write_whole() would throw before it writes anything.
 void try_whole(const std::filesystem::path& file);
 
-/// Appends text to a file that is there; if `synced` it is on the disk when this returns. Where that fails
-/// nothing of it is left. \throws error (runtime).
+/// Appends text to a file that exists; if `synced`, it is on the disk when this returns. If that fails,
+/// removes what it has written. \throws error (runtime).
 void append_text(const std::filesystem::path& file, std::string_view text, bool synced = true);
 
-/// Cuts a file at a byte, after it has brought the rest to the disk beside the file, as NAME.cut-1 or the
-/// next number that is free; returns that name. \throws error (runtime).
+/// Cuts a file at a byte. First writes the rest to the disk, next to the file, as NAME.cut-1 or with the next
+/// free number. Returns that name. \throws error (runtime).
 std::filesystem::path cut_file(const std::filesystem::path& file, std::size_t at);
 
-/// Returns true if anything has this name, be it a link that leads nowhere.
+/// Returns true if anything has this name, even a link that leads nowhere.
 bool is_on_disk(const std::filesystem::path& p) noexcept;
 
-/// Makes a folder in one that is there, unless it is there already. \throws error (runtime).
+/// Makes a folder in an existing one. Does nothing if it exists already. \throws error (runtime).
 void make_folder(const std::filesystem::path& folder);
 
-/// Makes each folder of a path below one that is there. Throws as above.
+/// Makes each folder of the path `below` in a folder that exists. Throws as above.
 void make_folders(const std::filesystem::path& folder, const std::filesystem::path& below);
 
 /// Tries another name of the same length, to find out if a file can be written under this name once its

@@ -22,12 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 using ordered = nlohmann::ordered_json;
 
-// Facts about when and with which device a session was held; all others must stay as they were.
+// Facts about when and with which device a session was held. All others must stay as they were.
 constexpr std::array<std::string_view, 9> may_differ{"date",    "versions",     "device",
                                                      "streams", "sound_server", "masker_sound_server",
                                                      "walk",    "consent",      "answers"};
 
-// A card may have another name by now, but noise from a card must stay noise from a card.
+// Returns true if a resumed session may have this fact. A card may have another name by now, but noise from a
+// card must stay noise from a card.
 bool is_as_begun(const std::string& key, const ordered& began, const ordered& now)
 {
     if (key == "masker")
@@ -38,9 +39,9 @@ bool is_as_begun(const std::string& key, const ordered& began, const ordered& no
 // Room for a trial's line and the tables that it may have to make.
 constexpr std::size_t reserved_bytes = std::size_t{64} << 10;
 
-// The first file has these bytes. Each gives up the place of a file's name, because a disk or a quota may run
-// out of those, too: the first answer of all needs three folders, if there are several sessions, and three
-// tables.
+// Files that reserve room; the first has reserved_bytes. Each also reserves an inode, because a disk or a
+// quota may run out of inodes, too. The first answer needs six: three folders, if there are several sessions,
+// and three tables.
 constexpr std::array<const char*, 6> reserved{".reserve",   ".reserve-2", ".reserve-3",
                                               ".reserve-4", ".reserve-5", ".reserve-6"};
 
@@ -67,8 +68,8 @@ std::string name_form(const questionnaire& q, const std::string& after)
     return after.empty() ? q.name : fmt::format("{} after {}", q.name, after);
 }
 
-// Reads the columns of a table that is there. Returns what its last line lacks before another one can follow;
-// nothing if it cannot be read.
+// Reads the columns of an existing table. Returns the text that its last line lacks before another line can
+// follow; nothing if the table cannot be read.
 std::optional<std::string> read_columns(text_table& t)
 {
     try {
@@ -200,7 +201,7 @@ std::vector<trial_row> session_store::practice_rows(const run_definition& r) con
     return own;
 }
 
-// Calls `write`, and once more in the reserved room if that fails.
+// Calls `write`. If that fails, frees the reserved room and calls it once more.
 template <class Write>
 void session_store::keep(const Write& write)
 {
@@ -231,7 +232,7 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
 
 void session_store::append_practice(const run_definition& r, const trial_row& row)
 {
-    std::vector<const run_outline*> all; // whose practice has one table
+    std::vector<const run_outline*> all; // they share the table of practice trials
     for (const run_definition* one : runs_)
         all.push_back(&one->outline);
     named_cells cells = make_cells(row, all);
@@ -282,8 +283,8 @@ void session_store::keep_answer(const questionnaire& q, const std::string& after
     });
 }
 
-// Appends a line, or makes the table with it. Reads a table that has no line of this process, or that
-// somebody else has changed.
+// Appends a line, or makes the table with it. Reads the table first if this process has no line in it, or if
+// somebody else has changed it.
 void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
     const auto was = written_.find(file);
@@ -295,7 +296,7 @@ void session_store::write_line(const fs::path& file, const named_cells& cells)
     if (is_on_disk(file)) {
         if (!known)
             end = read_columns(own.columns);
-        // A table that cannot be read takes an answer nevertheless: in the order of a new table.
+        // A table that cannot be read gets the answer nevertheless, in the order of a new table.
         append_text(file, end.value_or("\n") + own.columns.line(cells));
     } else {
         write_whole(file, own.columns.with_line(cells));
@@ -328,7 +329,7 @@ void session_store::write_facts() const
     write_whole(source_ / "session.json", json_text(facts_));
 }
 
-// Takes room on the disk, to give it up for an answer that would be lost otherwise.
+// Takes room on the disk, which is freed for an answer that would be lost otherwise.
 void session_store::reserve()
 {
     for (const char* name : reserved)

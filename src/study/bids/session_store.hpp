@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A participant's session on the disk: the facts that it began with, its stimuli, and its trials, each of
-/// which is there before the next begins.
+/// A participant's session on the disk: the facts with which it began, its stimuli, and its trials. Each
+/// trial is on the disk before the next one begins.
 #pragma once
 
 #include <cstddef>
@@ -22,40 +22,39 @@
 
 namespace tactor::study {
 
-/// A session's runs in its order; the definition must live as long.
+/// The runs of a session in their order. The definition must live as long.
 using runs_in_order = std::vector<const run_definition*>;
 
 class session_store {
 public:
-    /// Prepares a new session, or with `resume` one that is there. `facts` go into session.json; those of a
-    /// session that is there must be the same, except the ones that `may_differ` lists.
-    /// \throws error: bad_input if this session is there and not `resume`, or the other way round, or it
-    /// began
-    ///         with other facts; runtime for what the system refuses.
+    /// Prepares a new session, or with `resume` an existing one. `facts` go into session.json. The facts of
+    /// an existing session must be the same, except those that `may_differ` lists.
+    /// \throws error: bad_input if the session exists without `resume`, if it does not exist with `resume`,
+    ///         or if it began with other facts; runtime for what the system refuses.
     session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts, bool resume);
     ~session_store();
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
 
-    /// Makes sure, before anybody answers, that there will be a place for each answer: tries each name that
-    /// the session will write. \throws as study::try_to_write().
+    /// Checks, before anybody answers, that there will be a place for each answer: tries each name that the
+    /// session will write. \throws as study::try_to_write().
     void try_to_write() const;
 
-    /// Writes session.json and the files of the study unless they are there, and each plan under its hash.
+    /// Writes session.json and the files of the study, if they do not exist, and each plan under its hash.
     /// `events`: the description of append_event()'s tables; null if there are none.
     void begin(const std::vector<stimulus>& stimuli, const nlohmann::ordered_json& events = nullptr);
 
-    /// Reads the tables as the analysis does. \throws error (bad_input) with file and line, and if a run has
-    /// no table and a later one has.
+    /// Reads the tables as the analysis does. \throws error (bad_input) with file and line, also if a run has
+    /// no table but a later run has one.
     void check_tables() const;
     /// Refuses tables whose last line is cut off. \throws error (bad_input).
     void refuse_cut_lines() const;
-    /// Cuts off what a crash left of a last line and keeps it beside the table; adds participant and runs to
-    /// their lists if they are missing there. Returns a sentence for each thing it did. Call it after
-    /// check_tables(). \throws error (runtime).
+    /// Cuts off the rest of a line that a crash left, and keeps it next to the table. Adds participant and
+    /// runs to their lists if they are missing there. Returns a sentence for each of these changes. Call it
+    /// after check_tables(). \throws error (runtime).
     std::vector<std::string> mend();
 
-    /// Returns true if this session goes on with one that was begun.
+    /// Returns true if this session continues an earlier one.
     bool resumed() const noexcept { return resumed_; }
     /// Returns true if anything of the session is on the disk.
     bool begun() const { return resumed_ || begun_; }
@@ -64,9 +63,9 @@ public:
     std::vector<trial_row> rows(const run_definition& r) const;
     std::vector<trial_row> practice_rows(const run_definition& r) const;
 
-    /// Adds a line; it is on the disk when this returns. The first of a run makes the table and enters
-    /// participant and run into their lists; `acq_time` is the time of the run's first sample.
-    /// \throws error (runtime): if the disk is full, after the line was written into the reserved room.
+    /// Adds a line, which is on the disk when this returns. The first line of a run makes the table and
+    /// enters participant and run into their lists; `acq_time` is the time of the run's first sample.
+    /// \throws error (runtime); if the disk is full, after the line was written into the reserved room.
     void append(const run_definition& r, const trial_row& row, const std::string& acq_time);
     void append_practice(const run_definition& r, const trial_row& row);
     /// Adds a line to the events of a run, sub-CODE_task-NAME_events.tsv, in the order of the cells.
@@ -75,8 +74,9 @@ public:
     const study_folder& folder() const noexcept { return folder_; }
     /// Returns how many items of a questionnaire have an answer; `after`: see study_folder::has_answers().
     std::size_t count_answers(const questionnaire& q, const std::string& after) const;
-    /// Keeps the answer to an item, the next one or one before it: in session.json, and all of them in the
-    /// questionnaire's table once each has one. It is on the disk when this returns.
+    /// Keeps the answer to an item, which is the next one or an earlier one, in session.json. Once each item
+    /// has an answer, writes all of them into the questionnaire's table. The answer is on the disk when this
+    /// returns.
     /// \throws error (runtime) as append().
     void keep_answer(const questionnaire& q, const std::string& after, std::size_t item,
                      const std::string& answer);
@@ -102,8 +102,8 @@ private:
     void keep(const Write& write);
     void write_line(const std::filesystem::path& file, const named_cells& cells);
 
-    /// A table that has a line of this process, with the size and time that this left it with: the next line
-    /// needs its columns alone, unless somebody else has changed it.
+    /// A table with a line of this process, and the size and time that the table had after it. The next line
+    /// needs only the columns, unless somebody else has changed the table.
     struct written_table {
         text_table columns;
         std::pair<std::uintmax_t, std::filesystem::file_time_type> state;
@@ -112,7 +112,7 @@ private:
     study_folder& folder_;
     runs_in_order runs_;
     nlohmann::ordered_json facts_;
-    std::filesystem::path source_; ///< sourcedata/sub-CODE, of several sessions sourcedata/sub-CODE/ses-N
+    std::filesystem::path source_; ///< sourcedata/sub-CODE; with several sessions sourcedata/sub-CODE/ses-N
     bool resumed_ = false;
     bool begun_ = false; ///< by this process
     std::map<std::filesystem::path, written_table> written_ = {};

@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Hidden files of a file manager or a crash do not count. Nor does sourcedata, which is all that a session
-// whose beginning was broken off leaves.
+// Returns true if a folder is not empty. Hidden files of a file manager or a crash do not count.
+// Neither does sourcedata, which is all that remains of a session that failed at its beginning.
 bool has_other_things(const fs::path& folder)
 {
     std::error_code failed;
@@ -155,7 +155,7 @@ std::string task_text(const run_definition& r, const experiment_definition& d, b
     return json_text(j);
 }
 
-// Returns the first cells of a questionnaire's line: those that say whose it is, and when it was asked.
+// Returns the first cells of a questionnaire's line, which say whose it is and when it was asked.
 named_cells find_key(const questionnaire& q, const std::string& code, session_number session,
                      const std::string& after)
 {
@@ -176,7 +176,7 @@ std::string on_one_line(const std::string& answer)
     return line.empty() ? "n/a" : line;
 }
 
-// Returns the header of a new table, or the whole line.
+// Returns the cells of a whole line; without answers, those for the header of a new table.
 named_cells make_cells(const questionnaire& q, const std::string& code, session_number session,
                        const std::string& after, const std::vector<std::string>& answers)
 {
@@ -328,7 +328,7 @@ void study_folder::describe() const
         if (!is_on_disk(file))
             write_whole(file, text);
     };
-    // First, because it makes the folder known as a study's.
+    // First, because this file makes the folder known as a study's.
     put(folder_ / "dataset_description.json", dataset_text(definition_, simulated_));
     put(folder_ / "README", readme_text(definition_, simulated_));
     put(folder_ / "participants.json", participants_text(definition_, simulated_));
@@ -336,8 +336,8 @@ void study_folder::describe() const
         put(folder_ / description_path(r.outline), task_text(r, definition_, simulated_));
     if (!definition_.outline.questionnaires.empty()) {
         make_folder(folder_ / "phenotype");
-        // bids-validator 1 wants exactly one line of each participant. There are several of a questionnaire
-        // between runs, and none after a session that was broken off.
+        // bids-validator 1 wants exactly one line for each participant. A questionnaire between runs has
+        // several, and none after a session that was broken off.
         ignore("phenotype/*.tsv");
     }
     for (const questionnaire& q : definition_.outline.questionnaires)

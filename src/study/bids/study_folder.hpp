@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// The folder of a study (BIDS), as tactor writes it: its descriptions, the lists of people and runs, and
-/// times as it has them.
+/// times in the form that BIDS wants.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ std::string events_description(const run_definition& r);
 /// A study's folder with a participant's session, locked as long as this lives. One thread.
 class study_folder {
 public:
-    /// Makes the folder, or takes one that is a study's. `d` must live as long. The destructor removes a
-    /// folder that this made, if it is empty.
+    /// Makes the folder, or takes an existing folder of a study. `d` must live as long. The destructor
+    /// removes a folder that this made, if it is empty.
     /// \throws error: bad_input if the folder has other things in it, another session is running in it,
     ///         somebody in it had another experiment, the participant was in another group, or real and
     ///         simulated sessions would meet; runtime for what the system refuses.
@@ -40,7 +40,8 @@ public:
     const std::string& code() const noexcept { return code_; }
     session_number session() const noexcept { return definition_.session; }
 
-    /// Sentences about allowed differences from the sessions that are there, and an earlier one that is not.
+    /// Sentences about allowed differences from earlier sessions, and about an earlier session that is
+    /// missing.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
     /// Tests whether a session in the folder sent codes to a recorder.
@@ -49,24 +50,24 @@ public:
     /// Returns the list of the session's runs: sub-CODE_scans.tsv.
     std::filesystem::path scans() const;
 
-    /// Writes the descriptions that are not there yet: dataset_description.json, README, participants.json,
-    /// one of each run's tables. Call it after session.json is written. \throws error (runtime).
+    /// Writes the descriptions that do not exist yet: dataset_description.json, README, participants.json,
+    /// and one for each run's tables. Call it after session.json is written. \throws error (runtime).
     void describe() const;
 
     /// Lists the files that the session makes: descriptions and lists, without plans and trials.
     std::vector<std::filesystem::path> list_files() const;
 
-    /// Reads participants.tsv, scans() and the tables of questionnaires, if they are there.
-    /// \throws error (bad_input) with file and line: see read_participants(); if the first has another group
-    /// for the participant; if a questionnaire's table lacks a column.
+    /// Reads participants.tsv, scans() and the tables of questionnaires, if they exist.
+    /// \throws error (bad_input) with file and line: as read_participants(); if participants.tsv has another
+    ///         group for the participant; if a questionnaire's table lacks a column.
     void check_lists() const;
 
-    /// Adds a line to participants.tsv, with the group, and n/a in its other columns. Returns false if there
-    /// is one.
+    /// Adds a line to participants.tsv, with the group, and n/a in the other columns. Returns false if the
+    /// participant has a line.
     bool add_participant();
 
-    /// Enters a run's table, named relative to its session's folder, into scans(); replaces the time of one
-    /// that is there.
+    /// Enters a run's table, named relative to its session's folder, into scans(). If it is there already,
+    /// replaces its time.
     void add_scan(const std::string& file_name, const std::string& acq_time);
 
     /// Returns the time that add_scan() entered for a table, if any.
@@ -76,14 +77,14 @@ public:
     /// run before it, empty unless it is asked between runs.
     bool has_answers(const questionnaire& q, const std::string& after) const;
 
-    /// Adds them, in the order of the items, or changes one of those that are there, in a file written whole.
+    /// Adds the answers in the order of the items, or changes one of them. Writes the whole table anew.
     /// \throws error.
     void add_answers(const questionnaire& q, const std::string& after,
                      const std::vector<std::string>& answers) const;
     void change_answer(const questionnaire& q, const std::string& after, std::size_t item,
                        const std::string& answer) const;
 
-    /// Writes into .bidsignore that programs which read BIDS ignore the files of cut_file().
+    /// Tells programs that read BIDS to ignore the files of cut_file(), by .bidsignore.
     void ignore_cut_lines() const;
 
 private:
@@ -99,10 +100,10 @@ private:
     std::vector<std::string> warnings_ = {};
 };
 
-/// Returns dataset_description.json, which says it if the study is simulated.
+/// Returns dataset_description.json, which says so if the study is simulated.
 std::string dataset_text(const experiment_definition& d, bool simulated);
-/// Returns true if a dataset_description.json is of a simulated study; nothing if tactor experiment did not
-/// write it.
+/// Returns true if a dataset_description.json is about a simulated study; nothing if tactor experiment did
+/// not write it.
 std::optional<bool> says_simulated(const std::string& dataset_description);
 
 /// Returns "2026-11-21T14:03:00.123456Z": UTC, whole microseconds, from ns since 1970.

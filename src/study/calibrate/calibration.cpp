@@ -17,9 +17,9 @@
 namespace tactor::study {
 namespace {
 
-constexpr std::size_t tries = 10;        // at the ceiling, at the floor
-constexpr std::size_t enough = 8;        // of them, and of check trials
-constexpr std::size_t counted_after = 8; // reversals where there were more than asked for
+constexpr std::size_t tries = 10;        // trials at the ceiling or the floor
+constexpr std::size_t enough = 8;        // right answers to these, or to check trials
+constexpr std::size_t counted_after = 8; // reversals that count if there were more than requested
 constexpr std::size_t most_staircases = 2;
 constexpr double check_db = 6.0; // above and below the threshold
 constexpr double halves_may_differ_db = 2.0;
@@ -28,13 +28,13 @@ constexpr double series_from_db = 15.0;
 
 constexpr double guess_chance = 0.5; // of two intervals
 
-// QUEST+: levels and thresholds stand 1 dB apart, thresholds as far above the ceiling as says "not felt".
+// QUEST+: levels and thresholds are 1 dB apart. Thresholds this far above the ceiling mean "not felt".
 constexpr int levels_db = 80;
 constexpr int above_ceiling_db = 10;
-// Right answers of a tactor, without a wrong one, that do not come from the skin.
+// Number of right answers without a wrong one that cannot come from the skin.
 constexpr std::size_t too_many_right = 20;
-// The first tactor's threshold is expected below the start level, within some 20 dB; each other's near to
-// those that were measured.
+// The first tactor's threshold is expected below the start level, within some 20 dB. The others are expected
+// near the thresholds that were measured so far.
 constexpr double below_start_db = 20.0;
 constexpr double first_sd_db = 20.0;
 constexpr double other_sd_db = 10.0;
@@ -159,7 +159,7 @@ void staircase::go_to(double level_dbfs)
     level_ = std::clamp(rounded, floor_dbfs, o_.ceiling_dbfs);
 }
 
-// A step that the ceiling blocks has a direction all the same.
+// Notes the direction of a step, even if the ceiling blocks the step. Returns true at a reversal.
 bool staircase::turn(bool up)
 {
     const bool turned = run_.up && *run_.up != up;
@@ -192,7 +192,7 @@ void staircase::settle()
     const std::vector<double>& all = run_.reversals;
     const std::size_t kept = (all.size() - o_.discard) / 2 * 2;
     const std::size_t counted = all.size() == o_.reversals ? kept : std::min(kept, counted_after);
-    // Two more at a time, so that the number asked for and this one are both even or both odd.
+    // Add two at a time, so that this number and the requested one are both even or both odd.
     if ((all.size() - o_.reversals) % 2 != 0)
         return;
     const reversal_mean m = average_reversals(all, counted);
@@ -202,8 +202,8 @@ void staircase::settle()
     go_to(m.mean_dbfs + check_db);
 }
 
-// Below the threshold half of all guesses are right. Somebody who is right there more often feels it: a lapse
-// held the staircase above, and it runs once more.
+// Takes the answer to a check trial. Below the threshold, half of all guesses are right. A participant who is
+// right more often feels the level: a lapse kept the staircase above the threshold, and it runs once more.
 void staircase::check(bool right)
 {
     const bool above = run_.above.given < check_count;
@@ -438,7 +438,8 @@ calibration_answer observer::answer(const calibration_trial& t)
     return {.interval = right ? t.interval : 3 - t.interval};
 }
 
-// Goes by 2 dB until it is near to what it feels as the threshold this time, then by half a dB.
+// Moves by 2 dB until the level is near what the observer feels as the threshold this time, then by half a
+// dB.
 calibration_answer observer::adjust(const calibration_trial& t)
 {
     const double aim = find_threshold(t.tactor) + o_.spread_db * r_.normal();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// A calibration of several tactors: the adaptive staircase of each (Levitt 1971) or its QUEST+ (Watson
-/// 2017), the next trial, the effect of an answer, the thresholds; and a simulated observer, who tests the
-/// chain and says nothing about people.
+/// 2017), the next trial, the effect of an answer, and the thresholds. Also a simulated observer, which tests
+/// the software and says nothing about people.
 /// Uses no clock and no device: the same settings and answers give the same trials.
 #pragma once
 
@@ -21,11 +21,11 @@ namespace tactor::study {
 
 /// Lowest level: below it nothing is left of a sample of 24 bits.
 inline constexpr double floor_dbfs = -144.0;
-/// Reversals after which the threshold stands as it is.
+/// Number of reversals after which the threshold is final.
 inline constexpr std::size_t most_reversals = 24;
 
-/// Check trials above the threshold, and as many below it; and right ones below it that show that it is too
-/// high. Guesses reach that in 11 of 1024 series.
+/// Number of check trials above the threshold, and of those below it; and the number of right answers below
+/// it from which the threshold is too high. Guesses reach it in 11 of 1024 series.
 inline constexpr std::size_t check_count = 10;
 inline constexpr std::size_t too_many_below = 9;
 
@@ -33,28 +33,28 @@ struct staircase_options {
     unsigned right_for_down = 3; ///< 3: 79.4 %, 2: 70.7 %
     double start_dbfs = -20.0;
     double ceiling_dbfs = 0.0;
-    std::vector<double> steps_db = {4.0, 2.0, 1.0}; ///< the next from every second reversal on
+    std::vector<double> steps_db = {4.0, 2.0, 1.0}; ///< the next one after every second reversal
     std::size_t reversals = 12;                     ///< at most most_reversals
-    std::size_t discard = 4;                        ///< the first of them; two at least are left
+    std::size_t discard = 4;                        ///< the first reversals; at least two must be left
 };
 
 enum class staircase_end {
     felt,
     not_felt,
-    below_range, ///< right at floor_dbfs: by something else than what the skin feels
+    below_range, ///< right at floor_dbfs, so something other than the skin felt it
 };
 
-/// Mean and standard deviation (n - 1) of the reversals that count, an even number of the last ones.
+/// Mean and standard deviation (n - 1) of the reversals that count: an even number, the last ones.
 struct reversal_mean {
     double mean_dbfs = 0.0;
     double sd_db = 0.0;
-    double halves_db = 0.0; ///< how far the means of the halves are apart
+    double halves_db = 0.0; ///< difference of the means of both halves
 };
 /// Averages the last `counted` reversals.
 reversal_mean average_reversals(std::span<const double> reversals_dbfs, std::size_t counted);
 
-/// A tactor's measurement: a staircase, check trials above its threshold, check trials below it. Where the
-/// trials below are right the staircase runs once more, from there.
+/// A tactor's measurement: a staircase, check trials above its threshold, and check trials below it. If too
+/// many trials below are right, the staircase runs once more, from there.
 class staircase {
 public:
     explicit staircase(staircase_options o);
@@ -67,14 +67,15 @@ public:
 
     /// Trials of both staircases, and their check trials.
     std::size_t trials() const noexcept { return trials_; }
-    /// Staircases begun: 1 or 2.
+    /// Number of staircases begun: 1 or 2.
     std::size_t staircases() const noexcept { return staircases_; }
     /// Reversals of the last staircase. The functions below are about that one, too.
     const std::vector<double>& reversals_dbfs() const noexcept { return run_.reversals; }
-    /// Right answers to the check trials above and below the threshold; nothing before there were any.
+    /// Number of right answers to the check trials above and below the threshold; nothing before there were
+    /// any.
     std::optional<std::size_t> check_right() const noexcept { return run_.above.right_answers(); }
     std::optional<std::size_t> check_below_right() const noexcept { return run_.below.right_answers(); }
-    /// Threshold by the reversals; also of a tactor that was not felt, if it came so far.
+    /// Threshold from the reversals, even of a tactor that was not felt if the staircase got so far.
     std::optional<reversal_mean> threshold() const noexcept { return run_.threshold; }
 
 private:
@@ -136,10 +137,10 @@ struct calibration_settings {
     std::string participant = {};
     calibration_method method = calibration_method::staircase;
     std::vector<unsigned> tactors = {};     ///< in the order in which they are measured
-    std::vector<double> ceilings_dbfs = {}; ///< of each of these
+    std::vector<double> ceilings_dbfs = {}; ///< ceiling of each of these
     staircase_options staircase = {};       ///< its ceiling is not used
     std::size_t trials = 30;                ///< quest: for each tactor, at most
-    std::optional<double> stop_sd_db = {};  ///< quest: posterior deviation with which a tactor ends earlier
+    std::optional<double> stop_sd_db = {};  ///< quest: posterior deviation at which a tactor ends early
     double carrier_hz = 250.0;
     double interval_s = 0.5;
     bool feedback = true;
@@ -148,10 +149,10 @@ struct calibration_settings {
     unsigned practice = 0;       ///< trials at the start level on the first tactor, which do not count
     std::uint32_t seed = 0;
     std::string simulate = {}; ///< the simulated observer as it was asked for; empty: a person
-    std::string date = {};     ///< on which it began, UTC
+    std::string date = {};     ///< UTC day on which it began
     std::string array = {};    ///< SHA-256 of what the array file will say besides the thresholds
 
-    double start_dbfs() const noexcept { return staircase.start_dbfs; } ///< at most each tactor's ceiling
+    double start_dbfs() const noexcept { return staircase.start_dbfs; } ///< its ceiling, if lower
 };
 
 /// Returns "1up3down" or "1up2down".
@@ -160,25 +161,25 @@ std::string rule_name(const calibration_settings& s);
 struct calibration_trial {
     std::size_t number = 0; ///< from 1, over the whole session
     unsigned tactor = 0;
-    double level_dbfs = 0.0;   ///< adjustment: at which the series starts
+    double level_dbfs = 0.0;   ///< adjustment: level at which the series starts
     double ceiling_dbfs = 0.0; ///< of this tactor
     unsigned interval = 0;     ///< 1 or 2: which one sounds; 0: an adjustment
     bool practice = false;
-    std::size_t place = 0;     ///< of the tactor in the session, from 1
+    std::size_t place = 0;     ///< number of the tactor in the session, from 1
     std::size_t on_tactor = 0; ///< number among the trials or series of this tactor, from 1
 };
 
-/// An answer: to a staircase's trial `interval`, to an adjustment the level set.
+/// An answer: to a trial of a staircase or of QUEST+ `interval`, to an adjustment the level set.
 struct calibration_answer {
     unsigned interval = 0;
     std::optional<double> set_dbfs = {}; ///< nothing: not felt at any level
     std::optional<double> response_time_s = {};
-    std::optional<std::uint64_t> onset_frame = {}; ///< of the stream: the first frame of the trial
+    std::optional<std::uint64_t> onset_frame = {}; ///< frame of the stream with which the trial begins
 };
 
 /// A line of the log.
 struct calibration_record {
-    calibration_trial trial = {}; ///< of an adjustment with the level that was set
+    calibration_trial trial = {}; ///< for an adjustment with the level that was set
     std::string response = {};    ///< "1", "2"; "set", "none"
     std::optional<bool> correct = {};
     bool reversal = false;
@@ -189,7 +190,7 @@ struct calibration_record {
 struct tactor_threshold {
     unsigned tactor = 0;
     staircase_end end = staircase_end::felt;
-    std::optional<double> threshold_dbfs = {}; ///< nothing where it was not felt
+    std::optional<double> threshold_dbfs = {}; ///< nothing if it was not felt
     std::optional<double> sd_db = {};
     std::optional<double> posterior_sd_db = {}; ///< quest
     std::size_t trials = 0;
@@ -223,12 +224,12 @@ private:
 
     calibration_settings settings_;
     std::size_t place_ = 0; ///< in settings_.tactors
-    std::size_t given_ = 0; ///< trials answered in all
+    std::size_t given_ = 0; ///< number of all answered trials
     unsigned practised_ = 0;
     random_numbers intervals_;
     staircase stairs_;
     std::optional<quest> quest_ = {};
-    std::size_t answered_ = 0; ///< trials or series of this tactor
+    std::size_t answered_ = 0; ///< answered trials or series of this tactor
     std::size_t wrong_ = 0;    ///< quest: wrong answers of this tactor
     std::vector<double> series_dbfs_ = {};
     calibration_trial trial_ = {};
@@ -236,22 +237,22 @@ private:
 };
 
 struct observer_settings {
-    std::vector<double> thresholds_dbfs = {}; ///< one for all, or one for each tactor that is measured
+    std::vector<double> thresholds_dbfs = {}; ///< one for all, or one for each measured tactor
     double spread_db = 2.0;                   ///< 0: a step at the threshold
     double lapse = 0.0;                       ///< 0 to 0.5
     std::optional<std::uint64_t> seed = {};   ///< none: the session's
 };
 
-/// Reads "seed=1,threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the
-/// tactors that are measured, of `all` that the array has: a list has as many entries as the one or the
-/// other. \throws error (bad_input) naming simulate.
+/// Reads "seed=1,threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. It has an entry for
+/// each of the `measured` tactors, or for each of `all` tactors of the array. \throws error (bad_input)
+/// naming simulate.
 observer_settings parse_observer(std::string_view text, const std::vector<unsigned>& measured,
                                  std::size_t all);
 
 /// Returns the chance of a right answer: 0.5 + (0.5 - lapse) Phi((level - threshold) / spread).
 double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs);
 
-/// Answers trials in order. One that resumes must answer all of them again.
+/// Simulated observer that answers trials in order. To resume, it must answer all earlier trials again.
 class observer {
 public:
     observer(observer_settings o, const calibration_settings& s);
@@ -267,8 +268,8 @@ private:
     random_numbers r_;
 };
 
-/// Returns "9 tactors, about 480 trials: some 30 minutes" for what is left of a calibration: what a simulated
-/// observer needs, with time for the answers.
+/// Returns "9 tactors, about 480 trials: some 30 minutes" for the rest of a calibration. Counts the trials
+/// that a simulated observer needs, with time for the answers.
 std::string time_text(const calibration& c);
 
 } // namespace tactor::study

@@ -37,7 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json; // messages list differences in the order of the options
 
-// Refuses what another program wrote: it is neither used nor replaced.
+// Reads the settings. Refuses a file of another program, which is neither used nor replaced.
 ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
 {
     ordered_json j = ordered_json::parse(read_file(file), nullptr, false);
@@ -51,7 +51,7 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
     return j;
 }
 
-// Takes the date of the beginning; another device is allowed, all else must be the same.
+// Takes the date from the session's beginning. The device of the noise may differ, all else must be the same.
 void take_beginning(const fs::path& file, calibration_settings& s)
 {
     const ordered_json began = parse_settings(file, s);
@@ -105,7 +105,7 @@ bool lacks_header(const std::string& log)
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
-constexpr double most_frame = 9e15; // a double counts them up to there
+constexpr double most_frame = 9e15; // a double counts them up to here
 
 // Reads any answer of a line; replay() compares it afterwards with what the line should say.
 calibration_answer answer_in(const text_table& log, std::size_t row)
@@ -126,7 +126,8 @@ calibration_answer answer_in(const text_table& log, std::size_t row)
     return a;
 }
 
-// Other programs write numbers with more or fewer digits and truths in capitals.
+// Compares a cell with the expected text. Other programs write numbers with more or fewer digits, and truths
+// in capitals.
 bool is_same(const std::string& expected, std::optional<std::string_view> cell)
 {
     if (!cell)
@@ -208,7 +209,7 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         if (!begun || !resume)
             detail::write_file(beginning, settings_text(s), detail::owner_kind::program);
         if (synced_)
-            detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
+            detail::sync_folder(file_.parent_path()); // the name of the log must last, too
     } catch (...) {
         remove_empty();
         throw;
@@ -220,7 +221,7 @@ calibration_log::~calibration_log()
     remove_empty();
 }
 
-// The lock keeps others from writing them.
+// Removes log and settings if there is no answer. The lock keeps others from writing them.
 void calibration_log::remove_empty() const noexcept
 {
     if (!made_ || lines_.rows() > 0)
@@ -230,7 +231,7 @@ void calibration_log::remove_empty() const noexcept
     fs::remove(file_, ignored);
 }
 
-// O_NONBLOCK: does not wait for somebody's pipe.
+// Opens and locks the log. O_NONBLOCK: does not wait for the other end of a pipe.
 void calibration_log::open()
 {
     fd_ =
@@ -249,7 +250,7 @@ void calibration_log::open()
                     "end that one first, or name another log");
 }
 
-// Reads no line of an empty log or one whose header is cut off.
+// Reads the lines; none if the log is empty or its header is cut off.
 text_table calibration_log::read_lines() const
 {
     const std::string text = read_file(file_);
@@ -310,7 +311,7 @@ std::string settings_text(const calibration_settings& s)
                              {"simulate", files::or_null(s.simulate)},
                              {"array_sha256", s.array},
                              {"date", s.date}};
-    if (s.method == calibration_method::quest) { // absent else: sessions of older versions go on
+    if (s.method == calibration_method::quest) { // absent otherwise: older sessions can resume
         j["trials"] = s.trials;
         j["stop_sd_db"] = files::or_null(s.stop_sd_db);
     }
@@ -369,7 +370,7 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
 
 void check_finished(const std::filesystem::path& file, const calibration_settings& s)
 {
-    read_file(file); // refuses what is no file
+    read_file(file); // refuses what is not a file
     const auto written = load_setup(file).calibration;
     std::vector<unsigned> tactors;
     if (written)

@@ -13,7 +13,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr double lead_s = 0.5; // from the answer before to interval 1, so that nobody is surprised
+constexpr double lead_s = 0.5; // from the previous answer to interval 1, so that it surprises nobody
 constexpr int most_attempts = 5;
 
 // In the order of adjust_screen()'s choices.
@@ -28,7 +28,7 @@ page_screen adjust_screen(const page_words& w)
             .keys = level_keys};
 }
 
-// Returns the place of the tactor and, where their number is known, that of its trial.
+// Returns the place of the tactor, and that of its trial if the number of trials is known.
 page_progress find_progress(const calibration_trial& t, const calibration_settings& s)
 {
     page_progress p{t.place, s.tactors.size(), t.practice, 0, 1};
@@ -72,7 +72,7 @@ score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, do
     return score(a, std::move(p), render_);
 }
 
-// A stimulus that a limit cuts off would give away its interval.
+// Waits, because a stimulus that a limit cuts short would give away its interval.
 void person::make_room(const score& s)
 {
     const double wait_s = stage_.room_s(s, 0.0);
@@ -119,7 +119,7 @@ void person::begin()
         ;
 }
 
-// Lets the participant begin with each tactor.
+// Pauses until the participant begins with the next tactor.
 void person::rest()
 {
     on_page({.name = "introduce", .text = words_["rest"], .choices = {words_["begin"]}, .keys = " "});
@@ -167,7 +167,7 @@ calibration_answer person::choose(const calibration_trial& t)
     const given_stimulus p = play(t, s, [&](double at_s) {
         show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
     });
-    show_until(2); // where the process was too slow to look
+    show_until(2); // if the process was too slow to look
     noise.reset();
     keys_.drop_keys();
     on_page({.name = "question", .question = words_["calibrate_which"], .choices = {"", ""}, .keys = "12"});
@@ -209,7 +209,7 @@ calibration_answer person::adjust(const calibration_trial& t)
             for (std::size_t i = 0; i < k->text.size() && !out; ++i)
                 press(k->text[i]);
             if (!k->text.empty() && !out)
-                on_page(adjust_screen(words_)); // each change is an answer
+                on_page(adjust_screen(words_)); // shows that the answer arrived
         }
     };
     keys_.drop_keys();

@@ -16,17 +16,17 @@ namespace tactor::study {
 
 class person {
 public:
-    /// Opens the keypads. `render` has the array's options except the level. All that it refers to must live
-    /// as long. \throws error.
+    /// Opens the keypads. `render` has the array's options except the level. What this keeps by reference
+    /// must live as long. \throws error.
     person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
            const answering& with, const page_words& words);
 
     /// Plays a trial and takes the answer to it. \throws stage::interruption; error (runtime) if the device
-    /// is gone or no answer can come any more.
+    /// is gone or no more answers can come.
     calibration_answer answer(const calibration_trial& t);
-    /// Says if the answer was right, with feedback only.
+    /// Tells the participant if the answer was right, but only with feedback.
     void tell(const calibration_record& r);
-    /// Shows that no trial comes any more.
+    /// Shows on the page that the session is over.
     void thank();
 
 private:

@@ -35,9 +35,9 @@ constexpr std::array<section, 6> sections{{{0.99886, 0.0555179},
                                            {-0.7616, -0.0168980}}};
 constexpr double direct = 0.5362;
 constexpr double delayed = 0.115926;
-constexpr int response_samples = 1 << 15; // until the slowest pole has nothing left
+constexpr int response_samples = 1 << 15; // after so many, the slowest pole has decayed
 
-constexpr int look_ms = 20;          // interval of looks at a stream that stands still
+constexpr int look_ms = 20;          // time between two looks at a stream that stands still
 constexpr int masking_priority = 60; // below the array's audio thread
 
 } // namespace
@@ -45,7 +45,7 @@ constexpr int masking_priority = 60; // below the array's audio thread
 noise::noise(noise_color c, double level_dbfs, std::string_view seed)
     : color_(c),
       gain_(std::pow(10.0, level_dbfs / 20.0) *
-            std::numbers::sqrt3), // a uniform number between -1 and 1 has 1 / sqrt 3
+            std::numbers::sqrt3), // the RMS of a uniform number between -1 and 1 is 1 / sqrt 3
       r_(seed)
 {
     if (c == noise_color::white)
@@ -156,7 +156,7 @@ void masking_stream::make_block(std::size_t frames, bool on) noexcept
     const std::size_t bytes = sample_bytes(sink_.setup().format);
     const std::array<synth::channel_samples, 1> mono{{{.channel = 0, .x = samples_.data()}}};
     synth::interleave(sink_.setup().format, mono, 1, static_cast<unsigned>(frames), block_.data());
-    // Spread from the last frame on: none is overwritten before it is read.
+    // Copy from the last frame on, so that no frame is overwritten before it is read.
     for (std::size_t i = frames; i-- > 0;)
         for (std::size_t c = sink_.setup().channels; c-- > 0;)
             std::copy_n(block_.data() + i * bytes, bytes, block_.data() + i * frame_bytes_ + c * bytes);
@@ -214,7 +214,7 @@ masker::~masker()
 void masker::want(bool on) noexcept
 {
     on_ = on;
-    // The old state is over, also before the thread has looked.
+    // The old state is over, even if the thread has not looked yet.
     if (ended_ == io_kind::ok)
         state_ = masking_state::fading;
     wake_.signal();
@@ -231,7 +231,7 @@ bool masker::wait_for(masking_state s, const waiter& wait)
 {
     const auto until = std::chrono::steady_clock::now() + patience_;
     for (;;) {
-        // The state before the time: it may have come while this thread had no processor.
+        // Read the clock before the state: the state may come while this thread has no processor.
         const bool late = std::chrono::steady_clock::now() >= until;
         if (ended_ != io_kind::ok)
             return false;
@@ -267,7 +267,7 @@ void masker::run() noexcept
             return;
         }
         const masking_state is = stream_.state();
-        // A state other than the wanted one is not final, if the wish has changed meanwhile.
+        // Do not publish a state opposite to the request: the stream has not followed it yet.
         if (is != (on ? masking_state::silent : masking_state::full) && state_.exchange(is) != is)
             changed_.signal();
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Masking noise on a separate device, faded in and out: its samples, its stream without a thread and a
+/// Masking noise on a separate device, faded in and out: its samples, its stream, which has no thread and no
 /// clock, and a thread that plays the stream through a calibration or an experiment.
 #pragma once
 
@@ -35,8 +35,8 @@ constexpr std::string_view to_string(noise_color c) noexcept
     return c == noise_color::white ? "white" : "pink";
 }
 
-/// Returns the greatest level, dBFS, without clipping. White noise is uniform; pink noise has peaks, which
-/// are clipped at full scale (15 dB above this level, once in minutes).
+/// Returns the greatest level that does not clip, dBFS. White noise is uniform. Pink noise has peaks: those
+/// 15 dB above this level, once in minutes, are clipped at full scale.
 constexpr double greatest_noise_dbfs(noise_color c) noexcept
 {
     return c == noise_color::white ? -5.0 : -15.0;
@@ -65,7 +65,7 @@ struct masking_options {
     double level_dbfs = -30.0; ///< root of the mean square, dB below that of a full-scale square
     double fade_s = 0.05;      ///< raised cosine, in and out
     std::string seed = {};
-    double patience_s = 5.0; ///< masker: so much longer than the fade may take
+    double patience_s = 5.0; ///< masker: time beyond the fade after which it gives up
 };
 
 /// Sound at the DAC.
@@ -116,7 +116,7 @@ public:
     /// (runtime) when the stream does not start; std::system_error if the system has no thread or descriptor
     /// left.
     masker(std::unique_ptr<sink> s, const masking_options& o);
-    /// Cuts the sound: call fade_out() and wait_for(masking_state::silent) before.
+    /// Cuts the sound: call fade_out() and wait_for(masking_state::silent) first.
     ~masker();
     masker(const masker&) = delete;
     masker& operator=(const masker&) = delete;
@@ -125,11 +125,12 @@ public:
     void fade_out() noexcept { want(false); }
     /// Waits for a descriptor to be readable, or a time; returns false to give up.
     using waiter = std::function<bool(int descriptor, int timeout_ms)>;
-    /// Blocks until that state is at the DAC. Returns false if the device has failed, takes
-    /// masking_options::patience_s longer than the fade, or the waiter gave up.
+    /// Blocks until that state is at the DAC. Returns false if the device has failed, if the state comes
+    /// later than the fade and masking_options::patience_s allow, or if the waiter gave up.
     bool wait_for(masking_state s, const waiter& wait = poll_descriptor);
 
-    /// Number of times that the stream stood still: noise did not cover a stimulus during which it changed.
+    /// Number of times that the stream stood still. The noise did not cover a stimulus during which it
+    /// changed.
     unsigned breaks() const noexcept { return breaks_; }
     /// Reason for the end of the stream; `ok` while it goes on.
     io_kind ended() const noexcept { return ended_; }

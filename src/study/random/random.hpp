@@ -16,8 +16,8 @@
 
 namespace tactor::study {
 
-/// xoshiro256** of Blackman and Vigna (2018). Its state is the SHA-256 of a text, eight bytes a word, the
-/// first the most significant.
+/// xoshiro256** of Blackman and Vigna (2018). Its state is the SHA-256 of a text, eight bytes to a word, the
+/// most significant byte first.
 class random_numbers {
 public:
     explicit random_numbers(std::string_view seed) : s_{}

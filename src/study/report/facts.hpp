@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Parts of the report's facts, and the words that they share. Stimuli are in stimuli.cpp; runs, sessions
-/// and questionnaires in procedure.cpp; all else in methods.cpp.
+/// Facts of the report, in parts, and the words that the parts share. Stimuli are in stimuli.cpp; runs,
+/// sessions and questionnaires in procedure.cpp; everything else in methods.cpp.
 #pragma once
 
 #include <set>
@@ -24,7 +24,7 @@ std::string join(const Texts& texts, std::string_view between = ", ")
     return fmt::format("{}", fmt::join(texts, between));
 }
 
-/// Returns "all" for a fact of everybody.
+/// Returns a list of sessions in words; "all" if these are all.
 std::string name_subjects(const study_facts& f, const std::vector<std::string>& codes);
 
 /// Returns a fact of a session in words: "none" where it is null.
@@ -40,18 +40,18 @@ std::string law_text(const session_facts& s);
 /// Lists the methods of the definition that were played, in the order in which they came.
 nlohmann::ordered_json list_methods(const study_facts& f);
 
-/// Lists the plans of each motion by each method, each once with the values that it is of. Those of one
-/// option with more than a few values are one row of ranges.
+/// Lists the plans of each motion by each method, each plan once with its values. If an option has more than
+/// a few values, its plans share one row of ranges.
 nlohmann::ordered_json list_stimuli(const study_facts& f);
 
-/// Lists what is noted of motions, and what the planner warned of.
+/// Lists the notes on motions and the warnings of the planner.
 std::set<std::string> list_notes(const study_facts& f);
 
 std::string describe_pause(double s);
 
 nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, std::size_t run);
 
-/// Returns what was so in a session, with the trials of each run that count, void ones, and those of them
+/// Describes a session, with the number of trials of each run that count, of void trials, and of void trials
 /// with gaps in the sound.
 nlohmann::ordered_json describe_session(const session_facts& s);
 

@@ -60,7 +60,7 @@ std::string ages_text(const study_facts& f)
     return join(parts, "; ");
 }
 
-// Counts the values of a column.
+// Counts how often each value of a column occurs.
 std::string counts_text(const study_facts& f, std::optional<std::string> participant::*column)
 {
     std::map<std::string, unsigned> counts;
@@ -84,7 +84,6 @@ std::string describe_array(const session_facts& s)
 template <class Fact>
 using shared_facts = std::vector<std::pair<Fact, std::vector<std::string>>>;
 
-// Adds a fact of a session.
 template <class Fact>
 void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code)
 {
@@ -116,7 +115,8 @@ json list_arrays(const study_facts& f)
     return all;
 }
 
-// Returns the acceleration that the measured displacement is at each carrier; empty if none was measured.
+// Returns the acceleration that follows from the measured displacement at each carrier; empty if none was
+// measured.
 std::string acceleration_text(const session_facts& s)
 {
     constexpr double m_per_um = 1e-6;
@@ -151,7 +151,7 @@ std::string codes_text(const session_facts& s)
     return join(places);
 }
 
-// Describes the experiment's level, and then those of the methods that have their own.
+// Describes the experiment's level, and then the levels of methods that have their own.
 std::string describe_level(const session_facts& s)
 {
     const json_value level = s.facts()["level"];
@@ -241,7 +241,8 @@ json list_calibrations(const study_facts& f)
     return all;
 }
 
-// Cuts the intervals of means to the values that a mean may have: one from t knows no bounds.
+// Cuts the intervals of means to the values that a mean may have, because an interval from t ignores these
+// bounds.
 void cut_intervals(json& results, double low, double high)
 {
     if (const auto ci = results.find("ci"); ci != results.end() && ci->is_array())
@@ -278,8 +279,8 @@ std::vector<run_outline> add_groups(json& runs, const experiment_outline& e)
     return all;
 }
 
-// Lists the results of all trials and of each condition of a task that measures. Only the main figure of each
-// is tested, if there is something against which.
+// Lists the results of all trials and of each condition of a task that measures. Tests only the main figure
+// of each, if there is a value to test it against.
 json list_measured(const json& run)
 {
     json all = json::array();

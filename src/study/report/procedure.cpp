@@ -23,7 +23,7 @@ bool is_simulated(const session_facts& s)
     return s.facts()["simulated"].truth().value_or(false);
 }
 
-// Returns what the openings of the device have under a key, each once.
+// Returns the different values under a key of all openings of the device.
 std::string stream_text(const session_facts& s, const std::string& key)
 {
     std::set<std::string> seen;

@@ -150,8 +150,8 @@ namespace mustache = kainjow::mustache;
 
 constexpr std::string_view mark = "Written by tactor ";
 
-// Returns a value for the template. An object has its members once more, as `list`: each with its name, and
-// a plain one with its value. Two numbers are an interval. Null is false: no section, and no text.
+// Returns a value for the template. An object also has a `list` of its members: each has its name, and its
+// value if the value is plain. Two numbers are an interval. Null is false: no section, and no text.
 mustache::data make_data(const nlohmann::ordered_json& v)
 {
     if (v.is_null())
@@ -185,7 +185,7 @@ mustache::data make_data(const nlohmann::ordered_json& v)
     return members;
 }
 
-// Keeps one empty line of several in a row, which sections without a fact leave.
+// Keeps one of several empty lines in a row, which sections without a fact leave.
 std::string without_gaps(const std::string& text)
 {
     std::string out;

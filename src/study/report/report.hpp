@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The methods section of a paper about a study, as Markdown: methods.md, filled in with the facts in the
-/// study's files besides the answers: each session's circumstances, and the participants.
+/// The methods section of a paper about a study, as Markdown: methods.md, filled in with facts. They come
+/// from the study's files other than the answers: the circumstances of each session, and the participants.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct planned_stimulus {
     std::string hash;
     std::string file;
     nlohmann::ordered_json plan;
-    std::optional<double> value = {}; ///< of what its run varies
+    std::optional<double> value = {}; ///< value of what its run varies
 
     json_value facts() const { return {plan, file, changed_file}; }
 };
@@ -50,12 +50,12 @@ struct session_facts {
     std::string code;        ///< the same, or CODE_ses-N
     std::string file;        ///< session.json
     nlohmann::ordered_json document;
-    /// The definition with its defaults; only if tactor held the session: other programs may have other
+    /// The definition with its defaults. Only for sessions that tactor held: other programs may have other
     /// defaults.
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<std::size_t> answered = {}; ///< its lines, by questionnaire of the design
+    std::vector<std::size_t> answered = {}; ///< number of lines, by questionnaire of the design
     std::vector<trial_counts> counts = {};  ///< by run
 
     json_value facts() const { return {document, file, changed_file}; }
@@ -70,26 +70,25 @@ struct participant {
 };
 
 struct study_facts {
-    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv, of each in their order
-    std::vector<participant> people = {};     ///< who was selected, those without a session too
+    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv, then by number
+    std::vector<participant> people = {};     ///< selected participants, also those without a session
 };
 
 /// Reads the facts about the participants of `d`, which was read from the same folder.
 /// \throws error (bad_input) with the file: a value of another type; a definition or a plan that is missing
-///         or does not have its SHA-256 any more; a trial whose stimulus is not the one that its plan's hash
-///         names.
+///         or no longer has its SHA-256; a trial whose stimulus is not the one with its plan's hash.
 study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
 
-/// Returns the whole text. `f` is from the same folder as `d`; `analysis` is an object of tactor-analysis/1
+/// Returns the whole text. `f` and `d` are from the same folder; `analysis` is an object of tactor-analysis/1
 /// about it.
 std::string methods_text(const study_facts& f, const dataset& d, const nlohmann::ordered_json& analysis);
 
-/// Writes it whole, or nothing, and its SHA-256 in the last line. \throws error: bad_input for a folder that
-/// does not exist, a file that was read as input or, without `force`, one that is no report of tactor, or
-/// that somebody has changed; runtime for what the system refuses.
+/// Writes the report whole or not at all, with its SHA-256 in the last line. \throws error: bad_input for a
+/// folder that does not exist, for a file that was read as input, and without `force` for a file that is not
+/// a report of tactor or that somebody has changed; runtime for what the system refuses.
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
-/// Returns all facts by the names that methods.md has for them.
+/// Returns all facts, by their names in methods.md.
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d,
                                      const nlohmann::ordered_json& analysis);
 
@@ -103,14 +102,14 @@ std::string escape_markdown(std::string_view text);
 /// text reads "not recorded".
 std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text);
 
-/// Returns the days from the begin of a session to that of the participant's next.
+/// Returns the days from the start of each session to the start of the participant's next session.
 std::string between_text(const study_facts& f);
 
-/// Returns the least and the largest value, or the only one; "not recorded" for none.
+/// Returns the least and the largest value, or the only one; "not recorded" without values.
 std::string range_text(const std::vector<double>& values);
 
-/// Returns the options of a method by name, those with defaults of the plan too: "algorithm park2016, soa
-/// 0.07".
+/// Returns the options of a method by name, including those that have the plan's defaults: "algorithm
+/// park2016, soa 0.07".
 std::string method_options(const options::option_values& o);
 
 } // namespace tactor::study

@@ -12,7 +12,7 @@ namespace {
 
 using square_matrix = std::vector<std::vector<double>>;
 
-// Lists the first item and those from which preferences lead to it and back.
+// Lists the first item, and each item with a chain of preferences to the first item and one back.
 std::vector<std::size_t> list_comparable(const square_matrix& wins)
 {
     const std::size_t n = wins.size();

@@ -16,7 +16,7 @@
 namespace tactor::study {
 namespace {
 
-// In double: as in tests.cpp.
+// Computes in double, for the reason in tests.cpp.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 struct sigmoid_value {
@@ -43,20 +43,20 @@ double normal_quantile(double share)
     return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * share, in_double());
 }
 
-// The stimuli are -1 to 1 here: z = a + b x.
+// Parameters where the stimuli are -1 to 1: z = a + b x.
 struct point {
     double a;
     double b;
     double lapse;
 };
 
-// The log-likelihood without binomial coefficients, and its derivatives by a, b and the lapse.
+// Log-likelihood without binomial coefficients, and its derivatives by a, b and the lapse.
 struct likelihood {
     double log = 0.0;
     std::array<double, 3> gradient = {};
     std::array<std::array<double, 3>, 3> information = {};
 
-    double determinant() const // of a and b
+    double determinant() const // of the information about a and b
     {
         const auto& i = information;
         return i[0][0] * i[1][1] - i[0][1] * i[0][1];
@@ -67,7 +67,7 @@ struct likelihood {
     }
 };
 
-// Computes the information that was observed, or that is expected.
+// Computes the log-likelihood with the observed information, or with the expected one.
 likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_family& f, const point& p,
                     bool expected = false)
 {
@@ -97,8 +97,8 @@ likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_
     return all;
 }
 
-// Returns the move to the best point within the bounds of the lapse if the information were constant. Nothing
-// if there is no best one; if the answers say nothing on the lapse, it stays.
+// Returns the move to the maximum that would follow if the information were constant, with the lapse within
+// its bounds. Returns nothing if there is no maximum. The lapse stays if the answers say nothing about it.
 std::optional<point> find_move(const likelihood& l, double lapse, double most_lapse, bool expected)
 {
     if (l.singular())
@@ -123,11 +123,11 @@ std::optional<point> find_move(const likelihood& l, double lapse, double most_la
 struct summit {
     point at;
     double log;
-    bool step = false; // the slope may be any large one
+    bool step = false; // any steep slope fits as well
 };
 
-// Climbs by Newton's method, or Fisher's scoring where that does not lead up; halves a move until it does not
-// lead down. Nothing if the answers do not rise.
+// Climbs by Newton's method, or by Fisher's scoring if Newton's finds no move. Halves a move until it does
+// not lead down. Returns nothing if the answers do not rise.
 std::optional<summit> climb(const std::vector<answer_block>& blocks, const psychometric_family& f, point p)
 {
     likelihood here = evaluate(blocks, f, p);
@@ -162,7 +162,8 @@ std::optional<summit> climb(const std::vector<answer_block>& blocks, const psych
     return {};
 }
 
-// Returns the highest of the summits above the starts: with lapses and a guess there may be several.
+// Returns the highest of the summits that climbs from the starts reach: with lapses and a guess there may be
+// several.
 std::optional<summit> find_summit(const std::vector<answer_block>& blocks, const psychometric_family& f,
                                   const std::vector<point>& starts)
 {
@@ -189,7 +190,7 @@ struct scaled_blocks {
     double half = 0.0;
 };
 
-// Returns the highest log-likelihood of all functions.
+// Returns the highest log-likelihood that any function can have.
 double saturated(const std::vector<answer_block>& blocks)
 {
     double sum = 0.0;
@@ -211,7 +212,8 @@ psychometric_fit describe(const scaled_blocks& blocks, const summit& best)
     return fit;
 }
 
-// Returns the 95 % interval from values of `times` simulations: percentiles, moved by Efron's (1987) bias.
+// Returns the 95 % interval from values of `times` simulations: percentiles, corrected for `bias` (Efron
+// 1987).
 std::optional<interval> percentiles(std::vector<double> values, std::size_t times, double bias = 0.0)
 {
     const auto n = static_cast<double>(values.size());

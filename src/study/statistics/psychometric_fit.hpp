@@ -22,16 +22,16 @@ struct answer_block {
     std::size_t k;
 };
 
-/// The family that a fit chooses from:
+/// A family of functions from which a fit chooses:
 /// F(x) = guess + lapses_to_yes lapse + (1 - guess - lapse) S((x - threshold) / slope).
 struct psychometric_family {
     sigmoid kind = sigmoid::normal; ///< S: Phi(z) or 1 / (1 + exp(-z))
     double guess = 0.0;             ///< 0 to below 1 - most_lapse, fixed
-    double most_lapse = 0.06;       ///< the lapse is fitted within 0 and this; 0: none
+    double most_lapse = 0.06;       ///< upper bound of the fitted lapse; 0: no lapses
     double lapses_to_yes = 0.0;     ///< part of the lapses that end in "yes"
 };
 
-/// The family of two answers of equal standing: who lapses presses either key.
+/// Returns the family for two answers of equal rank: in a lapse, either key is pressed.
 constexpr psychometric_family two_answers(sigmoid kind) noexcept
 {
     return {kind, 0.0, 0.12, 0.5};
@@ -47,17 +47,18 @@ struct psychometric_fit {
     double deviance = 0.0; ///< against a free chance for each block
 };
 
-/// Returns the z at which S is 0.75: the jnd is so many slopes.
+/// Returns the z at which S is 0.75: the jnd is the slope times this.
 double find_quartile(sigmoid kind) noexcept;
 
-/// Fits a family to answers by maximum likelihood. Nothing where answers are flat or fall. Blocks of one x
-/// are best joined: the deviance needs many trials in each. With lapses or a guess the likelihood may have
-/// several maxima: the search begins at slopes no steeper than the spacing of the stimuli.
+/// Fits a family to answers by maximum likelihood. Returns nothing if the answers are flat or fall. Join
+/// blocks with the same x first: the deviance needs many trials in each block. With lapses or a guess the
+/// likelihood may have several maxima: the search begins at slopes no steeper than the spacing of the
+/// stimuli.
 std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> blocks,
                                                  const psychometric_family& f);
 
-/// Intervals (95 %) and goodness of fit by simulated answers. tests/study/test_observers.cpp measures how
-/// often they hold the truth.
+/// Intervals (95 %) and goodness of fit from simulated answers. tests/study/test_observers.cpp measures how
+/// often the intervals contain the true value.
 struct psychometric_bootstrap {
     std::optional<interval> threshold = {}; ///< percentiles
     std::optional<interval> slope = {}; ///< percentiles corrected for bias (Efron 1987): fits are too steep
@@ -65,10 +66,10 @@ struct psychometric_bootstrap {
     std::size_t failed = 0;             ///< simulated sets of answers that are flat or fall
 };
 
-/// Simulates `times` sets of answers from a fit to these blocks, and fits the family to each; a set that
+/// Simulates `times` sets of answers from a fit to these blocks, and fits the family to each. A set that
 /// rises in one step counts with its steep slope. The text `seed` determines the draws. Shallow functions and
-/// few trials give many sets that have no fit: with more than 5 % of these intervals and p are missing, as
-/// they are for a fit that is a step.
+/// few trials give many sets without a fit. If more than 5 % have none, or the fit itself is a step,
+/// intervals and p are missing.
 psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> blocks,
                                               const psychometric_family& f, const psychometric_fit& fit,
                                               std::string_view seed, std::size_t times = 2000);

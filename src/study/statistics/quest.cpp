@@ -53,7 +53,8 @@ quest::quest(const quest_grid& g, const std::function<double(double, const psych
     choose();
 }
 
-// An answer takes away as much entropy of the parameters as the parameters would take away of the answer's.
+// Chooses the stimulus whose answer is expected to take most entropy from the parameters. That is as much as
+// known parameters would take from the answer.
 void quest::choose()
 {
     double entropy = 0.0;

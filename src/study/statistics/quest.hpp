@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// QUEST+ (Watson 2017): the stimulus of the next trial is the one whose answer is expected to say most about
-/// the parameters of a psychometric function.
+/// QUEST+ (Watson 2017): the next stimulus is the one whose answer is expected to say most about the
+/// parameters of a psychometric function.
 #pragma once
 
 #include <cstddef>
@@ -27,26 +27,26 @@ double normal_chance(double x, const psychometric& p, double guess);
 struct quest_grid {
     std::vector<double> stimuli = {};
     std::vector<double> thresholds = {};
-    std::vector<double> weights = {}; ///< of the thresholds before the first answer; empty: all equal
+    std::vector<double> weights = {}; ///< weights of the thresholds before the first answer; empty: all equal
     std::vector<double> slopes = {};
     std::vector<double> lapses = {};
 };
 
 class quest {
 public:
-    /// `chance` of a right answer, 0 to 1, to a stimulus, by the parameters.
+    /// `chance` returns the chance of a right answer to a stimulus, 0 to 1, from the parameters.
     quest(const quest_grid& g, const std::function<double(double, const psychometric&)>& chance);
 
-    /// Returns the next stimulus; of equally good ones the first in the grid.
+    /// Returns the next stimulus. Of equally good ones this is the first in the grid.
     double stimulus() const noexcept { return stimuli_[next_]; }
-    /// Returns its place in the grid.
+    /// Returns the index of stimulus() in the grid.
     std::size_t place() const noexcept { return next_; }
     /// Takes the answer to stimulus().
     void answer(bool right);
 
-    /// Returns the means of the parameters by the answers so far.
+    /// Returns the means of the parameters after the answers so far.
     psychometric estimate() const;
-    /// Returns the standard deviation of the threshold by the answers so far.
+    /// Returns the standard deviation of the threshold after the answers so far.
     double threshold_sd() const;
     /// Returns the entropy (natural logarithm) that is expected after the answer to stimulus().
     double expected_entropy() const noexcept { return entropy_; }

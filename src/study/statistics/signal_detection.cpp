@@ -17,7 +17,7 @@
 namespace tactor::study {
 namespace {
 
-// In double: as in tests.cpp.
+// Computes in double, for the reason in tests.cpp.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using normal = boost::math::normal_distribution<double, in_double>;
 
@@ -36,8 +36,8 @@ double log_likelihood(std::size_t k, std::size_t n)
     return part(k) + part(n - k);
 }
 
-// Returns 2 ln of the likelihood ratio of a participant. With hits above false alarms the model has a d' and
-// a criterion for any two rates; else d' = 0 is the likeliest.
+// Returns 2 ln of the likelihood ratio of a participant. If hits are above false alarms, the model fits any
+// two rates by some d' and criterion. Otherwise d' = 0 is the most likely.
 double likelihood_ratio(const difference_counts& c)
 {
     if (c.hits * c.same <= c.false_alarms * c.different)
@@ -46,7 +46,7 @@ double likelihood_ratio(const difference_counts& c)
                   log_likelihood(c.hits + c.false_alarms, c.different + c.same));
 }
 
-// The likelihood ratios of a participant whose answers "different" fall on any pairs.
+// Likelihood ratios of a participant whose answers "different" fall on the pairs at random.
 class drawn_ratios {
 public:
     explicit drawn_ratios(const difference_counts& c)
@@ -99,7 +99,7 @@ sensitivity same_different(double hits, double false_alarms)
     const auto off = [&](double d) {
         return boost::math::cdf(differences, d) + boost::math::cdf(differences, -d) - hits;
     };
-    // Without the second term, which is positive.
+    // An upper bound: d' without the second term, which is positive.
     const double most = c + std::numbers::sqrt2 * z(hits) + 1e-9;
     std::uintmax_t steps = 200;
     const auto [low, high] = boost::math::tools::toms748_solve(

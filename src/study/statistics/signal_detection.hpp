@@ -24,10 +24,10 @@ sensitivity yes_no(double hits, double false_alarms);
 
 /// Computes d' of same-different answers by the differencing model (Macmillan and Creelman 2005), from the
 /// rates of "different" to different and to same pairs, above 0 and below 1. c is the least difference that
-/// is called "different". d' is 0 where hits are not above false alarms: the model has no such rates.
+/// is called "different". If hits are not above false alarms, d' is 0, because the model has no such rates.
 sensitivity same_different(double hits, double false_alarms);
 
-/// Answers "different" of a participant to pairs that differed, and to pairs that did not.
+/// Numbers of answers "different" of a participant, to pairs that differed and to pairs that did not.
 struct difference_counts {
     std::size_t hits = 0;
     std::size_t different = 0; ///< pairs
@@ -35,23 +35,23 @@ struct difference_counts {
     std::size_t same = 0; ///< pairs
 };
 
-/// A test that nobody can tell the stimuli apart. A t test of d' cannot be one: d' is never below 0, so that
-/// its mean is above 0 without any difference.
+/// A test of whether anybody can tell the stimuli apart. A t test of d' does not work: d' is never below 0,
+/// so its mean is above 0 even without a difference.
 struct difference_test {
-    double likelihood_ratio; ///< 2 ln of it, summed over participants: d' >= 0 against d' = 0
+    double likelihood_ratio; ///< 2 ln of the ratio, summed over participants: d' >= 0 against d' = 0
     double p;                ///< (1 + simulated ratios at least as large) / (1 + all)
-    std::size_t studies;     ///< that were simulated
+    std::size_t studies;     ///< number of simulated studies
 };
 
-/// Tests d' = 0 of the differencing model. In a simulated study each participant says "different" as often as
-/// in truth, in trials that are drawn anew, so that p needs no estimate of a criterion. The text `seed`
-/// determines the draws. Nothing without participants.
+/// Tests d' = 0 of the differencing model. In each simulated study, each participant says "different" as
+/// often as they really did, but in trials drawn at random, so p needs no estimate of a criterion. The text
+/// `seed` determines the draws. Returns nothing without participants.
 std::optional<difference_test> test_difference(std::span<const difference_counts> people,
                                                std::string_view seed);
 
 /// Returns the exponent of Stevens's power law: the slope of log estimates over log values by least squares.
-/// Dividing by the participant's geometric mean does not change it. Nothing with less than two different
-/// values, or numbers that are not above 0. Both spans have the same length.
+/// Dividing by the participant's geometric mean does not change it. Returns nothing if fewer than two values
+/// differ, or a number is not above 0. Both spans have the same length.
 std::optional<double> stevens_exponent(std::span<const double> values, std::span<const double> estimates);
 
 } // namespace tactor::study

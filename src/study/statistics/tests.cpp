@@ -23,14 +23,14 @@ namespace {
 // main(), where valgrind, which has no long double, ends the program.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
-// Returns the noncentrality with which P(T <= t) is `below`: P falls as the noncentrality grows.
+// Returns the noncentrality for which P(T <= t) is `below`. P falls as the noncentrality grows.
 double noncentrality(double t, double df, double below)
 {
     const auto off = [&](double delta) {
         return boost::math::cdf(boost::math::non_central_t_distribution<double, in_double>(df, delta), t) -
                below;
     };
-    // Near t, as wide as the estimate of a standard deviation is uncertain.
+    // Begin near t, at the distance by which an estimated standard deviation is uncertain.
     double width = 1.0 + std::abs(t) / std::sqrt(df);
     double low = t - width;
     double high = t + width;
@@ -52,7 +52,7 @@ struct share {
 
 constexpr std::size_t most_sums = std::size_t{1} << 20;
 
-// Lists the sums of the values with either sign, in order and each once; empty if there are too many.
+// Lists the sums of the values with either sign, in order, each once; empty if there are too many.
 std::vector<share> all_sums(std::span<const double> values, double equal)
 {
     std::vector<share> sums{{0.0, 1.0}};
@@ -117,8 +117,8 @@ matrix kronecker(const matrix& a, const matrix& b)
     return c;
 }
 
-// The sums of squares of an effect, of its interaction with groups and of its error, and the cross products
-// of the participants' differences within groups.
+// Sums of squares of an effect, of its interaction with groups and of its error, and the cross products of
+// the participants' differences within groups.
 struct parts {
     double effect = 0.0;
     double by_group = 0.0;
@@ -126,7 +126,7 @@ struct parts {
     matrix cross;
 };
 
-// `groups`: of each participant, from 0; none is empty.
+// Projects the cells on contrasts. `groups`: the group of each participant, from 0; no group is empty.
 parts project(const cell_table& t, const matrix& c, const std::vector<std::size_t>& groups)
 {
     std::vector<double> n(1 + *std::max_element(groups.begin(), groups.end()), 0.0);
@@ -172,7 +172,7 @@ parts project(const cell_table& t, const matrix& c, const std::vector<std::size_
     return s;
 }
 
-// Returns the largest sum of squares that rounding leaves of 0.
+// Returns the largest sum of squares that rounding can make of 0.
 double nothing(const cell_table& t)
 {
     double largest = 0.0;
@@ -198,7 +198,7 @@ double p_of_f(double f, double df1, double df2)
         boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
 }
 
-// Judges a sum of squares with `df1` against the error of these parts.
+// Tests a sum of squares with `df1` against the error of these parts.
 effect judge(double squares, std::size_t df1, const parts& s, const cell_table& t, std::size_t groups,
              double all_error)
 {
@@ -247,7 +247,7 @@ double determinant(matrix m)
 {
     double product = 1.0;
     for (std::size_t k = 0; k < m.size(); ++k) {
-        // The largest that is left comes first, so that only rounding remains of a singular matrix.
+        // Take the largest remaining element first, so that a singular matrix leaves only rounding.
         std::size_t best = k;
         for (std::size_t i = k; i < m.size(); ++i)
             best = m[i][i] > m[best][best] ? i : best;
@@ -270,15 +270,16 @@ double upper_chi_squared(double x, double df)
         boost::math::chi_squared_distribution<double, in_double>(df), std::max(0.0, x)));
 }
 
-// The normal distribution's upper tail.
+// Returns the upper tail of the normal distribution.
 double above(double z)
 {
     return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
-// The chance that the range of k standard normal variables is above w: over the place z of the least of them,
-// all others are above z, less that all are in z ... z + w. Trapezoids of this width are right to rounding:
-// the integrand is a Gaussian's kin, and its error falls as exp(-2 pi^2 / (k step^2)).
+// Chance that the range of k standard normal variables is above w. It is an integral over the place z of the
+// least variable: the chance that all others are above z, less the chance that all are in z ... z + w.
+// Trapezoids of this width are right to rounding, because the integrand resembles a Gaussian: the error falls
+// as exp(-2 pi^2 / (k step^2)).
 class range_tail {
 public:
     explicit range_tail(std::size_t k) : others_(k - 1), step_(0.7 / std::sqrt(static_cast<double>(k)))
@@ -307,7 +308,7 @@ private:
         double weight;
     };
 
-    // a^m - b^m, where a - b is known: nothing of a small one is lost.
+    // Returns a^m - b^m from a - b, so that a small difference loses no digits.
     double difference(double a, double b, double a_less_b) const
     {
         if (others_ == 1)
@@ -393,7 +394,7 @@ t_test test_mean(std::span<const double> values, double against, double rounding
     t_test r = quick_test_mean(values, against, rounding);
     if (values.size() < 2)
         return r;
-    // Signs mean nothing where the difference is rounding's alone.
+    // A difference that is only rounding has no sign.
     std::vector<double> off(values.begin(), values.end());
     for (double& x : off) {
         const double least = std::max(few_digits * std::max(std::abs(x), std::abs(against)), rounding);
@@ -466,12 +467,13 @@ std::optional<double> sign_flip_p(std::span<const double> values)
     }
     if (values.empty())
         return {};
-    // A sum of one half and one of the other make each sum of all.
+    // Each sum of all values is a sum of the first half plus a sum of the second half.
     const std::vector<share> first = all_sums(values.first(values.size() / 2), 1e-12 * all);
     const std::vector<share> second = all_sums(values.subspan(values.size() / 2), 1e-12 * all);
     if (first.empty() || second.empty())
         return {};
-    // The count at or above |observed| is the count at or below -|observed|: signs come in opposites.
+    // Count only the sums at or above |observed|: each choice of signs has its opposite, so as many are at or
+    // below -|observed|.
     const double limit = std::abs(observed) - 1e-9 * all;
     if (limit <= 0.0)
         return 1.0;
@@ -531,7 +533,7 @@ double greenhouse_geisser(const matrix& cross)
         for (const double v : row)
             squares += v * v;
     const double sum = trace(cross);
-    return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // but for rounding
+    return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // rounding may exceed 1
 }
 
 std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df)
@@ -572,8 +574,8 @@ double studentized_range_p(double q, std::size_t levels, double df)
     if (!(q > 0.0))
         return 1.0;
     const range_tail tail(levels);
-    // Over x = log s, s^2 = chi squared / df: density c exp(df (x - s^2 / 2)). Its logarithm relative to the
-    // peak at 0, beside which nothing below e^-90 counts.
+    // Logarithm of the density of x = log s, relative to its peak at 0. s^2 is chi squared / df, so the
+    // density is c exp(df (x - s^2 / 2)). Values below e^-90 do not count.
     const auto log_density = [&](double x) { return df * (x - 0.5 * std::expm1(2.0 * x)); };
     const double step = std::min(0.04, 0.35 / std::sqrt(df));
     double sum = 0.0;
