@@ -307,7 +307,8 @@ TEST_CASE("faults have their line")
          "e.toml:14:", "guess");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
          "e.toml:12:", "no attribute");
-    says(head + motion + methods + run + "scale = 7\n", "e.toml:17:", "scale only applies to runs that rate");
+    says(head + motion + methods + run + "scale = 7\n", "e.toml:17:",
+         "scale does not apply to runs with task \"choose\" (leave it out, or use task = \"rate\")");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n",
          "e.toml:12:", "no trials");
     const std::string rate =
@@ -323,8 +324,8 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + line + "labels = [\"a\"]\n", "e.toml:18:", "labels has 1 text for");
     says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n",
          "e.toml:18:", "labels has 3 texts for a visual analogue scale");
-    says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n",
-         "e.toml:17:", "choices does not apply to runs that rate (leave it out)");
+    says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n", "e.toml:17:",
+         "choices does not apply to runs with task \"rate\" (leave it out, or use task = \"choose\" or");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
          "e.toml:17:", "choices has 1 text (give one for each of the two answers)");
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n",

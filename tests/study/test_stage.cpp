@@ -759,18 +759,18 @@ TEST_CASE("a trial that became void does not move its track, and its answer coun
 {
     coded_session c(coded_array, climb);
     const study::run_definition& r = c.p.definition.runs[0];
-    study::run_table table(c.store, r, false);
-    const auto next = [&](unsigned trial, unsigned attempt) {
-        const study::session_step step{study::step_kind::trial, 0, 0, false, {trial, attempt}};
-        return study::find_trial(c.p, step, c.store);
+    study::held_run held(c.p, 0, c.store);
+    const auto step = [](unsigned trial, unsigned attempt) {
+        return study::session_step{study::step_kind::trial, 0, 0, false, {trial, attempt}};
     };
+    const auto next = [&](unsigned trial, unsigned attempt) { return held.find_trial(step(trial, attempt)); };
     const auto add = [&](unsigned trial, unsigned attempt, bool is_void) {
         const study::planned_trial t = next(trial, attempt);
         study::trial_row row = study::planned_row(c.p, t, {trial, attempt});
         // The value under test, not its standard, was the stronger one.
         study::set_response(row, r, row.method_1 == "a" ? 1 : 2, 0.5);
         row.is_void = is_void;
-        table.add(row, 0, rate);
+        held.add(step(trial, attempt), row, 0);
         return *study::find_value(c.p.definition, t);
     };
     CHECK(add(1, 1, true) == -16.0);
@@ -778,6 +778,8 @@ TEST_CASE("a trial that became void does not move its track, and its answer coun
     CHECK(add(1, 2, true) == -20.0);
     CHECK(add(1, 3, false) == -20.0);
     CHECK(*study::find_value(c.p.definition, next(3, 1)) == -24.0);
+    const study::held_run resumed(c.p, 0, c.store);
+    CHECK(*study::find_value(c.p.definition, resumed.find_trial(step(3, 1))) == -24.0);
 }
 
 } // namespace stage_test

@@ -366,6 +366,15 @@ void check_cells(const toml_table& t, const run_outline& o)
 
 constexpr std::size_t most_texts = 1000; // a definition that is held has stricter bounds
 
+task_kind read_task(const toml_table& t)
+{
+    std::vector<std::string_view> names;
+    for (const task* one : list_tasks())
+        names.push_back(one->name());
+    const std::string name = t.need(t.choice("task", names), "task");
+    return static_cast<task_kind>(std::ranges::find(names, name) - names.begin());
+}
+
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
 {
@@ -382,11 +391,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
                    fmt::format("the files of the runs \"{}\" and \"{}\" would have the same name",
                                other.outline.name, o.name),
                    "make their letters and digits differ");
-    std::vector<std::string_view> names;
-    for (const task* one : list_tasks())
-        names.push_back(one->name());
-    const std::string task = t.need(t.choice("task", names), "task");
-    o.task = static_cast<task_kind>(std::find(names.begin(), names.end(), task) - names.begin());
+    o.task = read_task(t);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     o.motions = names_at(r.motions, d.motions);
@@ -423,9 +428,9 @@ void check_keys(const toml_table& t, const task& own)
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
                                    std::vector<method_definition>& variants)
 {
-    run_definition r = read_run_outline(t, d);
-    const task& own = find_task(r.outline.task);
+    const task& own = find_task(read_task(t));
     check_keys(t, own);
+    run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
         if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))

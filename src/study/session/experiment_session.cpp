@@ -534,23 +534,6 @@ std::string name_run_before(const prepared_experiment& p, const questionnaire& q
     return q.when == questionnaire_time::between ? p.run_at(run).outline.name : "";
 }
 
-planned_trial find_trial(const prepared_experiment& p, const session_step& s, const session_store& store)
-{
-    const run_sequence& run = p.runs[s.run];
-    if (s.practice)
-        return run.practice[s.which.trial - 1];
-    planned_trial t = run.trials[s.which.trial - 1];
-    if (t.track == 0)
-        return t;
-    const run_definition& r = p.run_at(s.run);
-    const auto values = find_task(r.outline.task).choose_values(r);
-    for (const trial_row& row : store.rows(r))
-        if (row.track == t.track)
-            take_line(*values, row);
-    values->choose(t);
-    return t;
-}
-
 run_table::run_table(session_store& store, const run_definition& r, bool practice)
     : store_(store), run_(r), practice_(practice)
 {
@@ -589,6 +572,32 @@ double run_table::onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_
     if (first_frame_ && stream == first_stream_)
         return (static_cast<double>(frame) - static_cast<double>(*first_frame_)) / rate;
     return std::max(0.0, static_cast<double>(at_ns - began_ns_.value_or(at_ns)) * 1e-9);
+}
+
+held_run::held_run(const prepared_experiment& p, std::size_t place, session_store& store)
+    : p_(p),
+      sequence_(p.runs[place]),
+      practice_(store, p.run_at(place), true),
+      trials_(store, p.run_at(place), false),
+      values_(find_task(p.run_at(place).outline.task).choose_values(p.run_at(place)))
+{
+    for (const trial_row& row : store.rows(p.run_at(place)))
+        take_line(*values_, row);
+}
+
+planned_trial held_run::find_trial(const session_step& s) const
+{
+    planned_trial t = (s.practice ? sequence_.practice : sequence_.trials)[s.which.trial - 1];
+    if (!s.practice)
+        values_->choose(t);
+    return t;
+}
+
+void held_run::add(const session_step& s, const trial_row& row, std::int64_t started_ns)
+{
+    (s.practice ? practice_ : trials_).add(row, started_ns, p_.render.rate);
+    if (!s.practice)
+        take_line(*values_, row);
 }
 
 } // namespace tactor::study

@@ -21,6 +21,7 @@
 #include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/code_numbers.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 
@@ -122,9 +123,6 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
 /// Returns the name of the run before a questionnaire that is asked between runs; empty for others.
 std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run);
 
-/// Returns the trial of a step. One of an adaptive run has the value that follows from the answers so far.
-planned_trial find_trial(const prepared_experiment& p, const session_step& s, const session_store& store);
-
 /// Lines of one run, or of its practice, with times that count from its first sample at the DAC.
 class run_table {
 public:
@@ -148,16 +146,24 @@ private:
     std::optional<std::int64_t> began_ns_ = {};     ///< CLOCK_REALTIME
 };
 
-/// Both tables of a run.
-struct run_tables {
-    run_table practice;
-    run_table trials;
+/// A run while it is held: its tables, and the values that its answers so far choose.
+class held_run {
+public:
+    /// Goes on after the lines that are there.
+    held_run(const prepared_experiment& p, std::size_t place, session_store& store);
 
-    run_tables(session_store& store, const run_definition& r)
-        : practice(store, r, true), trials(store, r, false)
-    {
-    }
-    run_table& at(const session_step& s) { return s.practice ? practice : trials; }
+    /// Returns the trial of a step, with its value.
+    planned_trial find_trial(const session_step& s) const;
+    /// Writes the line of a trial, and lets its answer choose values: run_table::add().
+    void add(const session_step& s, const trial_row& row, std::int64_t started_ns);
+    const run_table& table(const session_step& s) const { return s.practice ? practice_ : trials_; }
+
+private:
+    const prepared_experiment& p_;
+    const run_sequence& sequence_;
+    run_table practice_;
+    run_table trials_;
+    std::unique_ptr<value_chooser> values_;
 };
 
 /// Holds the rest of a session without a device: a model answers, and no time passes. Returns the signal that

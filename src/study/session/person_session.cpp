@@ -127,9 +127,9 @@ void person_session::step(const session_step& s)
     if (s.what != step_kind::trial)
         stage_.fade_out();                           // noise through the run ends with it
     if (const auto v = std::exchange(voided_, {})) { // not before, because something may have played
-        codes_.send(code_event::made_void, *v, find_trial(p_, *v, store_));
+        codes_.send(code_event::made_void, *v, held_->find_trial(*v));
         const trial_row row{.trial = v->which.trial, .attempt = v->which.attempt, .stream = stream_};
-        codes_.write(p_.run_at(v->run), row, tables_->trials);
+        codes_.write(p_.run_at(v->run), row, held_->table(*v));
     }
     switch (s.what) {
     case step_kind::consent:
@@ -190,7 +190,7 @@ void person_session::introduce(const session_step& s)
 {
     begin_store();
     const run_definition& r = p_.run_at(s.run);
-    tables_.emplace(store_, r);
+    held_.emplace(p_, s.run, store_);
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
                                     r.outline.question, find_answers(p_.definition, r).possible));
@@ -452,7 +452,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
 void person_session::trial(const session_step& s)
 {
     const run_definition& r = p_.run_at(s.run);
-    const planned_trial t = find_trial(p_, s, store_);
+    const planned_trial t = held_->find_trial(s);
     const page_words& w = p_.definition.page;
     session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                               s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
@@ -481,9 +481,9 @@ void person_session::trial(const session_step& s)
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
-    tables_->at(s).add(row, started_ns, p_.render.rate);
+    held_->add(s, row, started_ns);
     flow_.took(row.is_void);
-    codes_.write(r, row, tables_->at(s)); // after the answer, which a kill during its code must not lose
+    codes_.write(r, row, held_->table(s)); // after the answer, which a kill during its code must not lose
     find_device();
 }
 
@@ -549,7 +549,7 @@ void person_session::void_last()
     const run_definition& r = p_.run_at(flow_.void_run());
     store_.make_last_void(r);
     const trial_row row = store_.rows(r).back();
-    tables_.emplace(store_, r);
+    held_.emplace(p_, flow_.void_run(), store_);
     voided_ = {{step_kind::trial, 0, flow_.void_run(), false, {row.trial, row.attempt}}};
     session::say(stderr, "tactor: {}: trial {} is void: the experimenter made it void\n", r.outline.name,
                  row.trial);

@@ -106,7 +106,7 @@ private:
     sync_codes& codes_;
     session_keys keys_;
     session_flow flow_;
-    std::optional<run_tables> tables_ = {}; ///< of the present run
+    std::optional<held_run> held_ = {}; ///< present run
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
     std::optional<unsigned> doubted_ = {};    ///< tactor whose first No offered it again
     std::optional<session_step> voided_ = {}; ///< trial that the experimenter made void: its code is to come

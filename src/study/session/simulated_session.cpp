@@ -34,13 +34,13 @@ public:
     int hold()
     {
         go_to_end_of_lines();
-        std::optional<run_tables> tables;
+        std::optional<held_run> run;
         std::optional<simulated_observer> who;
         for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next()) {
             if (const int signal = stop_.poll())
                 return signal;
             if (s.what == step_kind::introduce) {
-                tables.emplace(store_, p_.run_at(s.run));
+                run.emplace(p_, s.run, store_);
                 who.emplace(simulation_, p_.definition, p_.run_at(s.run), p_.stimuli, p_.participant);
             }
             if (s.what == step_kind::rest)
@@ -56,11 +56,11 @@ public:
                 flow_.go_on();
                 continue;
             }
-            const planned_trial t = find_trial(p_, s, store_);
+            const planned_trial t = run->find_trial(s);
             const trial_row row = play(s, *who, t);
-            tables->at(s).add(row, utc_ns(now_), p_.render.rate);
+            run->add(s, row, utc_ns(now_));
             note_codes(s, t, row);
-            codes_.write(p_.run_at(s.run), row, tables->at(s));
+            codes_.write(p_.run_at(s.run), row, run->table(s));
             pass(row);
             flow_.took(row.is_void);
         }
