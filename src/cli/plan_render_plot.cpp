@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // plan, render and plot: what a STROKE becomes without a device, as text, samples or a picture.
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -23,6 +21,7 @@
 #include "plot/paint/output.hpp"
 #include "session/environment.hpp"
 #include "session/process.hpp"
+#include "sink/wav/wav.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -137,20 +136,9 @@ void print_plan(settings& s, const std::string& format)
         print_text(p, e, sound, samples.weakened());
 }
 
-// Returns true for a file that may be replaced: an empty one, or a WAV file.
-bool holds_wav(const fs::path& file)
-{
-    std::array<char, 12> head{};
-    std::ifstream in(file, std::ios::binary);
-    in.read(head.data(), head.size());
-    const std::string_view begin(head.data(), static_cast<std::size_t>(in.gcount()));
-    return begin.empty() ||
-           ((begin.starts_with("RIFF") || begin.starts_with("RF64")) && begin.ends_with("WAVE"));
-}
-
 // Returns the file to write; "-" is standard output. Refuses other kinds of files, because a slip of the
 // keyboard must not replace somebody's thesis.
-fs::path checked_output(const std::string& name)
+fs::path checked_output(const std::string& name, bool force)
 {
     constexpr const char* standard_output = "/dev/stdout";
     fs::path file = name == "-" ? standard_output : name;
@@ -167,15 +155,13 @@ fs::path checked_output(const std::string& name)
     if (in_small_letters(file.extension().string()) != ".wav")
         throw error(error_kind::bad_input, name, "the name does not end in .wav",
                     "end it in .wav, or write -o - > FILE");
-    if (fs::exists(there) && !holds_wav(file))
-        throw error(error_kind::bad_input, name, "it exists and is not a WAV file",
-                    "choose another name, or remove it first");
+    wav::check_output(file, force);
     return file;
 }
 
-int render(settings& s, const std::string& name)
+int render(settings& s, const std::string& name, bool force)
 {
-    const fs::path file = checked_output(name); // fails before the work
+    const fs::path file = checked_output(name, force); // fails before the work
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
@@ -190,7 +176,7 @@ int render(settings& s, const std::string& name)
     int signal = 0;
     {
         progress_line line(name);
-        write_wav(sc, format, file, [&](std::uint64_t done, std::uint64_t all) {
+        wav::save(sc, format, file, force, [&](std::uint64_t done, std::uint64_t all) {
             line.update(done, all);
             signal = stop.poll();
             return signal == 0;
@@ -252,16 +238,18 @@ int run_plan(command_line& line)
 int run_render(command_line& line)
 {
     std::string file;
+    bool force = false;
     add_strokes(line);
     settings& s = add_options(line, options::on_render);
     line.app.add_option("-o,--output", file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
         ->required();
+    add_force_option(line.app, force);
     line.app.footer("tactor render park2016-3 -o stroke.wav\n"
                     "tactor render --path \"M 0 10 L 40 30\" --speed 80 -o line.wav\n"
                     "tactor render --shape circle --duration 2 --sample-format s16 -o circle.wav");
     line.parse();
-    return render(s, file);
+    return render(s, file, force);
 }
 
 int run_plot(command_line& line)

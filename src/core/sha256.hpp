@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -16,5 +17,20 @@ sha256_digest sha256(std::string_view bytes);
 
 /// Returns the digest as 64 lower-case hexadecimal digits.
 std::string sha256_text(std::string_view bytes);
+
+/// A digest of bytes that come in parts.
+class sha256_sum {
+public:
+    sha256_sum();
+    ~sha256_sum();
+
+    void add(std::string_view bytes);
+    /// Returns the digest as sha256_text() does. Ends the sum.
+    std::string text();
+
+private:
+    struct context;
+    std::unique_ptr<context> context_;
+};
 
 } // namespace tactor::detail

@@ -83,17 +83,39 @@ fs::path follow_links(const fs::path& named)
 
 constexpr std::string_view hash_name = "sha256";
 
-/// Returns true if with_hash() made these bytes.
-bool has_own_hash(std::string bytes, const hash_note& note)
+[[noreturn]] void refuse_foreign(const fs::path& file, std::string_view why)
 {
+    throw error(error_kind::bad_input, source_place{file.string()}, why,
+                "choose another name, or replace it with {force=true}")
+        .with_field("force");
+}
+
+/// Returns true if with_hash() made this file of so many bytes. Reads it in blocks: samples may have many GB.
+bool has_own_hash(std::istream& in, std::uint64_t bytes, const hash_note& note)
+{
+    constexpr std::size_t block_bytes = 65536;
     constexpr std::size_t digits = 64;
-    const std::size_t at = bytes.rfind(hash_name);
-    if (at == bytes.npos || at + hash_name.size() + 1 + digits > bytes.size())
+    sha256_sum sum;
+    std::string tail;
+    std::string block(block_bytes, '\0');
+    for (std::uint64_t before = bytes - std::min<std::uint64_t>(bytes, block_bytes); before > 0;) {
+        in.read(block.data(), static_cast<std::streamsize>(std::min<std::uint64_t>(before, block_bytes)));
+        if (in.gcount() == 0)
+            return false;
+        sum.add({block.data(), static_cast<std::size_t>(in.gcount())});
+        before -= static_cast<std::uint64_t>(in.gcount());
+    }
+    tail.assign(std::istreambuf_iterator<char>(in), {});
+    const std::size_t at = tail.rfind(hash_name);
+    if (at == tail.npos || at + hash_name.size() + 1 + digits > tail.size())
         return false;
-    const std::string hash = bytes.substr(at + hash_name.size() + 1, digits);
+    const std::string hash = tail.substr(at + hash_name.size() + 1, digits);
     const std::string all = note(hash);
-    const std::size_t begin = bytes.rfind(all);
-    return begin != bytes.npos && sha256_text(bytes.erase(begin, all.size())) == hash;
+    const std::size_t begin = tail.rfind(all);
+    if (begin == tail.npos)
+        return false;
+    sum.add(tail.erase(begin, all.size()));
+    return sum.text() == hash;
 }
 
 } // namespace
@@ -106,14 +128,14 @@ std::string with_hash(std::string bytes, std::size_t at, const hash_note& note)
 
 void check_replaced(const fs::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
-                    const hash_note& note)
+                    const hash_note& note, owner_kind writer)
 {
     constexpr std::size_t begin_bytes = 16384;
     constexpr std::size_t end_bytes = 1024;
     struct stat existing {};
     if (::stat(file.c_str(), &existing) != 0)
         return;
-    refuse_input(existing, file);
+    refuse_input(existing, file, writer);
     if (force || !S_ISREG(existing.st_mode) || existing.st_size == 0)
         return;
     std::ifstream in(file, std::ios::binary);
@@ -126,17 +148,34 @@ void check_replaced(const fs::path& file, bool force,
         end.resize(end_bytes);
         in.read(end.data(), end_bytes);
     }
-    const auto refuse_foreign = [&file](std::string_view why) {
-        throw error(error_kind::bad_input, source_place{file.string()}, why,
-                    "choose another name, or replace it with {force=true}")
-            .with_field("force");
-    };
     if (!is_ours(begin, end))
-        refuse_foreign("it exists, and tactor did not write it");
+        refuse_foreign(file, "it exists, and tactor did not write it");
     in.clear();
     in.seekg(0);
-    if (!has_own_hash(std::string(std::istreambuf_iterator<char>(in), {}), note))
-        refuse_foreign("somebody changed it after tactor wrote it");
+    if (!has_own_hash(in, static_cast<std::uint64_t>(existing.st_size), note))
+        refuse_foreign(file, "somebody changed it after tactor wrote it");
+}
+
+void write_text(const fs::path& file, const std::string& text, comment_marks comment, bool force,
+                owner_kind writer)
+{
+    constexpr std::string_view what = ": from this line tactor knows whether the text was changed";
+    const auto note = [&](std::string_view digits) {
+        return fmt::format("\n{}{} {}{}{}\n", comment.begin, hash_name, digits, what, comment.end);
+    };
+    const auto is_ours = [&](std::string_view, std::string_view end) { return end.find(what) != end.npos; };
+    check_replaced(file, force, is_ours, note, writer);
+    write_file(file, with_hash(text, text.size(), note), writer);
+}
+
+void check_same(const fs::path& file, std::string_view bytes, bool force)
+{
+    std::error_code unknown;
+    if (force || !fs::is_regular_file(file, unknown) || fs::file_size(file, unknown) == 0)
+        return;
+    std::ifstream in(file, std::ios::binary);
+    if (std::string(std::istreambuf_iterator<char>(in), {}) != bytes)
+        refuse_foreign(file, "it exists, and has another content");
 }
 
 void sync_folder(const fs::path& folder) noexcept

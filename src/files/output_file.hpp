@@ -18,7 +18,7 @@ namespace tactor::detail {
 /// Maker of the note in which a format keeps a SHA-256. The note contains "sha256", one byte and the digits.
 using hash_note = std::function<std::string(std::string_view digits)>;
 
-/// Returns bytes with the note of their SHA-256 at a place.
+/// Returns bytes with the note of their SHA-256 at a place in their last 64 kB.
 std::string with_hash(std::string bytes, std::size_t at, const hash_note& note);
 
 /// Refuses to replace a file that was read as input. Without `force` it also refuses a file that another
@@ -27,7 +27,24 @@ std::string with_hash(std::string bytes, std::size_t at, const hash_note& note);
 /// \throws error (bad_input).
 void check_replaced(const std::filesystem::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
-                    const hash_note& note);
+                    const hash_note& note, owner_kind writer = owner_kind::user);
+
+/// Begin and end of a comment in a text format.
+struct comment_marks {
+    std::string_view begin;
+    std::string_view end;
+};
+inline constexpr comment_marks toml_comment{"# ", ""};
+inline constexpr comment_marks markdown_comment{"<!-- ", " -->"};
+
+/// Writes a text whole or not at all, and its SHA-256 in a comment on the last line.
+/// \throws error as output_file; without `force` also bad_input as check_replaced().
+void write_text(const std::filesystem::path& file, const std::string& text, comment_marks comment, bool force,
+                owner_kind writer = owner_kind::user);
+
+/// Refuses to replace a file by other bytes, unless `force`. For formats that have no place for a note.
+/// \throws error (bad_input).
+void check_same(const std::filesystem::path& file, std::string_view bytes, bool force);
 
 /// Syncs the names in a folder (empty: the current one), so that they survive a power cut, too. Ignores
 /// failures: some file systems cannot do it.

@@ -18,6 +18,7 @@
 #include "options/option.hpp"
 #include "plan/curve_impl.hpp"
 #include "python/binding.hpp"
+#include "sink/wav/wav.hpp"
 
 namespace tactor::python {
 namespace {
@@ -420,13 +421,13 @@ private:
     std::size_t frame_; ///< bytes
 };
 
-void write(const score& s, const std::string& file, const std::string& format)
+void write(const score& s, const std::string& file, const std::string& format, bool force)
 {
     static_cast<void>(options::read_value(*options::find("sample_format"), format));
     const auto f = from_string<format_kind>(format);
     const without_lock free;
     std::uint64_t next = frames_at_once;
-    write_wav(s, f, std::filesystem::path(file), [&](std::uint64_t done, std::uint64_t) {
+    wav::save(s, f, std::filesystem::path(file), force, [&](std::uint64_t done, std::uint64_t) {
         if (done >= next) {
             next = done + frames_at_once;
             check_signals();

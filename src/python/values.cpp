@@ -219,10 +219,17 @@ py::array_t<double> places(const numbers& all, F&& find)
     return to_numpy(std::move(out), 2);
 }
 
-// Writes a file whole or not at all.
-void write_text(const std::string& file, const std::string& text)
+void write_toml(const std::string& file, const std::string& text, bool force)
 {
     const without_lock free;
+    detail::write_text(file, text, detail::toml_comment, force, detail::owner_kind::caller);
+}
+
+// A plan's bytes are its identity: it has no place for a note.
+void write_plan(const std::string& file, const std::string& text, bool force)
+{
+    const without_lock free;
+    detail::check_same(file, text, force);
     detail::write_file(file, text, detail::owner_kind::caller);
 }
 
@@ -243,7 +250,8 @@ setup checked(setup s)
 void bind_array(py::module_& m)
 {
     m.def("read_text", &read_text);
-    m.def("write_text", &write_text);
+    m.def("write_plan", &write_plan);
+    m.def("write_toml", &write_toml);
     py::class_<array_handle, std::shared_ptr<array_handle>>(m, "Array")
         .def(py::init<array>())
         .def_static("preset", [](const std::string& name) { return array_handle(preset_array(name)); })

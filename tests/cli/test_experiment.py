@@ -772,6 +772,8 @@ class Power(ExperimentTest):
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)
         self.ok(*args, "--part", "1/3", "-o", "1.json")
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)
+        self.write("thesis.tex", "years of work")
+        self.refused(2, *args, "--part", "1/3", "-o", "thesis.tex", says=["thesis.tex: it exists, and tactor did not write it"])
 
     def test_a_job_array_does_all_parts(self):
         args = (self.small(), "--power", "3", "--studies", "4", "--simulate", "sigma=5")

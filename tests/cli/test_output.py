@@ -260,9 +260,9 @@ class Inputs(ExperimentTest):
         self.simulate()
         png = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sIIBBBBBI", 13, b"IHDR", 1, 1, 8, 2, 0, 0, 0, 0)
         foreign = {".svg": self.SVG.encode(), ".png": png, ".pdf": b"%PDF-1.4\n" + b"x" * 40000 + b"\nstartxref\n9\n%%EOF\n",
-                   ".md": b"# Methods\n\nA year of writing.\n"}
+                   ".md": b"# Methods\n\nA year of writing.\n", ".wav": wav_bytes([0.25, -0.25])}
         for command, stroke, extension in (*(("plot", "park2016-1", e) for e in (".svg", ".png", ".pdf")), ("compare", "park2016-1", ".svg"),
-                                           ("analyze", "study", ".svg"), ("report", "study", ".md")):
+                                           ("analyze", "study", ".svg"), ("report", "study", ".md"), ("render", "park2016-1", ".wav")):
             with self.subTest(command=command, extension=extension):
                 name = f"mine{extension}"
                 self.write(name, foreign[extension])
@@ -282,7 +282,7 @@ class Inputs(ExperimentTest):
                     self.assertEqual((self.dir / name).read_bytes(), ours)
                 digits = re.search(rb"sha256.([0-9a-f]{64})", ours)
                 note = {".svg": ours[digits.start() - 5:], ".md": ours[digits.start() - 6:], ".pdf": ours[digits.start() - 2:digits.end() + 1],
-                        ".png": ours[digits.start() - 8:digits.end() + 4]}[extension]
+                        ".png": ours[digits.start() - 8:digits.end() + 4], ".wav": ours[-92:]}[extension]
                 self.assertEqual(hashlib.sha256(ours.replace(note, b"")).hexdigest(), digits[1].decode())
         self.ok("plot", "park2016-1", "-o", "p.svg")
         edited = (self.dir / "p.svg").read_text(encoding="utf-8").replace(

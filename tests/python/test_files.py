@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Plans, strokes and records as files."""
+import hashlib
 import json
 import os
+import re
 import wave
 
 import numpy as np
@@ -60,6 +62,32 @@ def test_strokes_that_were_read_are_changed_and_written_again(tmp_path, palm, st
         tactor.load_plan(tmp_path / "p.json").write(tmp_path / "p.json")
     assert tactor.load(tmp_path / "s.toml")[0].duration == pytest.approx(stroke.duration / 4)
     assert tactor.Array.from_file(tmp_path / "a.toml")[0].gain_db == palm[0].gain_db - 2
+
+
+def test_a_file_that_somebody_wrote_or_changed_is_replaced_by_force_only(tmp_path, palm, stroke):
+    plan, other = tactor.plan(palm, stroke), tactor.plan(palm, tactor.Stroke.preset("park2016-2"))
+    for write, write_other, name in ((stroke.write, other.stroke.write, "s.toml"), (palm.write, palm.replace(gains=-1.0).write, "a.toml"),
+                                     (tactor.Score(palm, plan).write, tactor.Score(palm, other).write, "s.wav"), (plan.write, other.write, "p.json")):
+        file = tmp_path / name
+        file.write_bytes(b"")
+        write(file)
+        ours = file.read_bytes()
+        write(file)
+        assert file.read_bytes() == ours
+        if name != "p.json":  # what is not as tactor wrote it; a plan, whose bytes are its identity, has no place for a hash
+            digits = re.search(rb"sha256 ([0-9a-f]{64})", ours)
+            note = ours[-92:] if name == "s.wav" else ours[digits.start() - 3:]
+            assert hashlib.sha256(ours.replace(note, b"")).hexdigest() == digits[1].decode()
+            write_other(file)
+            write(file)
+        else:
+            assert "another content" in refused(lambda: write_other(file)).why
+        for changed in (b"x" + ours, ours + b"\n", b"a year of work"):
+            file.write_bytes(changed)
+            assert "force=True" in refused(lambda: write(file)).hint
+            assert file.read_bytes() == changed
+            write(file, force=True)
+            assert file.read_bytes() == ours
 
 
 def test_sound_does_not_replace_a_file_that_was_read(tmp_path, palm, stroke):

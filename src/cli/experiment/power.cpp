@@ -179,16 +179,18 @@ void write_part(const std::string& file, json j, const study::power_request& ask
     study::write_whole(file, study::json_text(j));
 }
 
-// Refuses to write a part over one of another simulation, or with another number, which may be hours of work.
+// Refuses to write a part over another file, and over a part of another simulation or with another number,
+// which may be hours of work.
 void check_other_part(const std::string& file, const json& common, const study::power_request& asked)
 {
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored))
+    if (!std::filesystem::is_regular_file(file, ignored) || std::filesystem::is_empty(file, ignored))
         return;
     std::ifstream stream(file); // read_text_file() would note an input, which no output may replace
     const json there = json::parse(stream, nullptr, false);
     if (!there.is_object() || there.value("schema", json()) != common.at("schema"))
-        return;
+        throw error(error_kind::bad_input, file, "it exists, and tactor did not write it",
+                    "name another file, or remove it");
     json own = common;
     own["part"] = asked.part;
     own["parts"] = asked.parts;

@@ -330,24 +330,26 @@ class Array(_Value):
         origin = self._origin if tactors is None and thresholds is None else ""
         return Array._wrap(_make_core(self.name if name is None else name, made, self._worn), self._file, self._besides, origin)
 
-    def write(self, file: str | os.PathLike[str]) -> None:
+    def write(self, file: str | os.PathLike[str], force: bool = False) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
 
-        Complete or not at all: an existing file, also one that was read, is replaced at the end.
+        Complete or not at all. The last line has a SHA-256: without `force` a file is replaced only as tactor wrote it.
 
         Parameters
         ----------
         file : path-like
+        force : bool
+            True replaces a file that tactor did not write, or that somebody changed since.
 
         Raises
         ------
         InputError
-            For a folder that does not exist.
+            For a folder that does not exist, and a file that `force` would replace.
         StreamError
             For what the file system refuses.
         """
         with reading(file) as to:
-            _tactor.write_text(to, self._core.text() + self._besides + self._origin)
+            _tactor.write_toml(to, self._core.text() + self._besides + self._origin, bool(force))
 
     def _settings(self) -> _t.Any:
         """Returns the other tables of its file; None if there are none."""

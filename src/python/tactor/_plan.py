@@ -246,27 +246,29 @@ class Plan(_Value):
         core = _tactor.Plan.from_json(text, name)
         return cls._wrap(core, recorded=True)
 
-    def write(self, file: str | os.PathLike[str]) -> None:
+    def write(self, file: str | os.PathLike[str], force: bool = False) -> None:
         """Writes the plan as `tactor plan --format json` does: a record of every sample, for `load_plan` and the tool.
 
-        Complete or not at all: an existing file, also one that was read, is replaced at the end.
+        Complete or not at all.
 
         Parameters
         ----------
         file : path-like
             Ends in .json.
+        force : bool
+            True replaces a file with another content.
 
         Raises
         ------
         InputError
-            For another extension, a folder that does not exist, and a level that a tactor may not have.
+            For another extension, a folder that does not exist, a level that a tactor may not have, and a file that `force` would replace.
         StreamError
             For what the file system refuses.
         """
         with reading(file) as to:
             if not to.endswith(b".json"):
                 raise InputError(os.fspath(file), "a plan is written as JSON", "end the name in .json")
-            _tactor.write_text(to, self._core.json())
+            _tactor.write_plan(to, self._core.json(), bool(force))
 
     def to_dict(self) -> dict[str, _t.Any]:
         """Returns the tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.

@@ -277,21 +277,21 @@ class Score(_Value):
         """Does the same as `render()`."""
         return self.render()
 
-    def write(self, file: str | os.PathLike[str], sample_format: _WavFormat = "float") -> None:
+    def write(self, file: str | os.PathLike[str], sample_format: _WavFormat = "float", force: bool = False) -> None:
         """Writes a WAV file, one channel per tactor, the same bytes as `tactor render` does.
 
-        Complete or not at all: an existing file is replaced at the end.
+        Complete or not at all. A comment after the samples has a SHA-256: without `force` a file is replaced only as tactor wrote it.
 
         Raises
         ------
         InputError
-            For a folder that does not exist, and a file that was read as input.
+            For a folder that does not exist, a file that was read as input, and one that `force` would replace.
         StreamError
             For what the file system refuses.
         """
         with reading(file) as name:
             _need(sample_format, str, "sample_format")
-            self._core.write(name, sample_format)
+            self._core.write(name, sample_format, bool(force))
 
     def __len__(self) -> int:
         return self.frames

@@ -271,27 +271,30 @@ class Stroke(_Stated):
         """Returns the same movement with every intensity times a factor; none may get above 1."""
         return self._wrap(self._core.with_intensity(_number("factor", factor)))
 
-    def write(self, file: str | os.PathLike[str]) -> None:
+    def write(self, file: str | os.PathLike[str], force: bool = False) -> None:
         """Writes a stroke file in TOML that `load` and the tool read.
 
-        Warnings, and a start that counts from another stroke, are lost. Complete or not at all: an existing file, also one that was read, is replaced at the end.
+        Warnings, and a start that counts from another stroke, are lost. Complete or not at all. The last line has a SHA-256: without `force` a file is
+        replaced only as tactor wrote it.
 
         Parameters
         ----------
         file : path-like
             Ends in .toml.
+        force : bool
+            True replaces a file that tactor did not write, or that somebody changed since.
 
         Raises
         ------
         InputError
-            For another extension, and a folder that does not exist.
+            For another extension, a folder that does not exist, and a file that `force` would replace.
         StreamError
             For what the file system refuses.
         """
         with reading(file) as to:
             if not to.endswith(b".toml"):
                 raise InputError(os.fspath(file), "a stroke is written as TOML", "end the name in .toml")
-            _tactor.write_text(to, self._core.text())
+            _tactor.write_toml(to, self._core.text(), bool(force))
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
         """Returns the same shape, as large as the array has space for and in its middle; see `fit_strokes`."""

@@ -25,8 +25,10 @@ constexpr container container_for(std::uint64_t frames, std::uint64_t frame_byte
 /// Returns RIFF's chunks up to the first sample: fmt (18 bytes and a fact chunk for float, as the format
 /// requires for all but integer PCM), and ds64 if the container is RF64. No PEAK chunk: it contains the time
 /// of day, so the same stroke would give other bytes.
+/// `bytes_after`: those of the chunks after the samples.
 /// \throws error (bad_input) for a format that WAV cannot hold (s24 in four bytes).
-std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames);
+std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames,
+                   std::uint64_t bytes_after = 0);
 
 /// Returns the bytes of padding after the samples, 0 or 1: a chunk has an even number of bytes.
 constexpr unsigned padding(std::uint64_t data_bytes) noexcept
@@ -39,7 +41,16 @@ constexpr unsigned padding(std::uint64_t data_bytes) noexcept
 std::string bytes(const score& s, format_kind f);
 
 /// Writes a file as write_wav() does, in the given container, so that tests can make small RF64 files.
+/// `marked`: with a comment after the samples (LIST INFO ICMT) that has the SHA-256 of all else.
 bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,
-           const wav_progress& progress);
+           const wav_progress& progress, bool marked = false);
+
+/// Refuses to replace a file without its right mark, unless `force`, and a file that was read as input.
+/// \throws error (bad_input).
+void check_output(const std::filesystem::path& file, bool force);
+
+/// Writes a marked file. \throws error as write_wav() and check_output().
+bool save(const score& s, format_kind f, const std::filesystem::path& file, bool force,
+          const wav_progress& progress);
 
 } // namespace tactor::wav

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/refused.hpp"
+#include "core/sha256.hpp"
 #include "files/output_file.hpp"
 #include "sink/wav/wav.hpp"
 
@@ -59,12 +60,22 @@ std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
     return chunk("fmt ", s);
 }
 
+constexpr std::string_view comment_name = "INFOICMT";
+constexpr std::uint64_t mark_bytes = 8 + 12 + 72;
+
+/// Returns the chunk with a file's SHA-256. Players skip it; audio editors show it as the comment.
+std::string mark(std::string_view digits)
+{
+    return chunk("LIST", "INFO" + chunk("ICMT", fmt::format("sha256 {}{}", digits, '\0')));
+}
+
 /// Renders a file block by block: calls put(data, bytes) with its parts and counts the frames in `done`.
 /// Stops when go_on() returns false.
 template <class GoOn, class Put>
-void render_parts(const score& s, format_kind f, container c, std::uint64_t& done, GoOn go_on, Put put)
+void render_parts(const score& s, format_kind f, container c, std::uint64_t bytes_after, std::uint64_t& done,
+                  GoOn go_on, Put put)
 {
-    const std::string before = header(f, c, s.channels(), s.rate(), s.frames());
+    const std::string before = header(f, c, s.channels(), s.rate(), s.frames(), bytes_after);
     const std::size_t frame_bytes = s.channels() * sample_bytes(f);
     const std::uint64_t at_once = std::clamp<std::uint64_t>(block_bytes / frame_bytes, 1, most_block_frames);
     std::vector<std::byte> block(at_once * frame_bytes);
@@ -92,29 +103,53 @@ std::string bytes(const score& s, format_kind f)
     all.reserve(s.frames() * s.channels() * sample_bytes(f) + 128);
     std::uint64_t done = 0;
     render_parts(
-        s, f, container_of_score(s, f), done, [] { return true; },
+        s, f, container_of_score(s, f), 0, done, [] { return true; },
         [&](const void* data, std::size_t n) { all.append(static_cast<const char*>(data), n); });
     return all;
 }
 
 bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,
-           const wav_progress& progress)
+           const wav_progress& progress, bool marked)
 {
     std::uint64_t done = 0;
     bool given_up = false;
+    detail::sha256_sum sum;
     const auto wanted = [&] { return !progress || progress(done, s.frames()); };
     check_format(f);
     detail::output_file to(file, wanted);
     render_parts(
-        s, f, c, done, [&] { return to.good() && !(given_up = !wanted()); },
-        [&](const void* data, std::size_t n) { to.write(data, static_cast<std::int64_t>(n)); });
+        s, f, c, marked ? mark_bytes : 0, done, [&] { return to.good() && !(given_up = !wanted()); },
+        [&](const void* data, std::size_t n) {
+            if (marked)
+                sum.add({static_cast<const char*>(data), n});
+            to.write(data, static_cast<std::int64_t>(n));
+        });
+    if (marked && to.good() && !given_up)
+        to.write(mark(sum.text()).data(), mark_bytes);
     if (given_up || to.given_up() || (to.good() && !wanted()))
         return false;
     to.commit();
     return true;
 }
 
-std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames)
+void check_output(const std::filesystem::path& file, bool force)
+{
+    const auto is_ours = [](std::string_view, std::string_view end) {
+        const std::size_t at = end.find(comment_name);
+        return at != end.npos && end.substr(at + comment_name.size()).substr(0, 11).ends_with("sha256 ");
+    };
+    detail::check_replaced(file, force, is_ours, mark);
+}
+
+bool save(const score& s, format_kind f, const std::filesystem::path& file, bool force,
+          const wav_progress& progress)
+{
+    check_output(file, force);
+    return write(s, f, file, container_of_score(s, f), progress, true);
+}
+
+std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames,
+                   std::uint64_t bytes_after)
 {
     check_format(f);
     const bool large = c == container::rf64;
@@ -123,7 +158,8 @@ std::string header(format_kind f, container c, unsigned channels, unsigned rate,
     if (is_float(f))
         chunks += chunk("fact", number(large ? elsewhere : frames, 4));
     constexpr std::uint64_t ds64_bytes = 8 + 28;
-    const std::uint64_t riff = 4 + (large ? ds64_bytes : 0) + chunks.size() + 8 + data + padding(data);
+    const std::uint64_t riff =
+        4 + (large ? ds64_bytes : 0) + chunks.size() + 8 + data + padding(data) + bytes_after;
     std::string s = (large ? "RF64" : "RIFF") + number(large ? elsewhere : riff, 4) + "WAVE";
     if (large)
         s += chunk("ds64", number(riff, 8) + number(data, 8) + number(frames, 8) + number(0, 4));

@@ -148,8 +148,6 @@ std::vector<participant> read_people(const fs::path& folder, const std::vector<s
 
 namespace mustache = kainjow::mustache;
 
-constexpr std::string_view mark = "Written by tactor ";
-
 // Returns a value for the template. An object also has a `list` of its members: each has its name, and its
 // value if the value is plain. Two numbers are an interval. Null is false: no section, and no text.
 mustache::data make_data(const nlohmann::ordered_json& v)
@@ -229,16 +227,7 @@ std::string between_text(const study_facts& f)
 
 void write_report(const fs::path& file, const std::string& text, bool force)
 {
-    const auto is_ours = [](std::string_view begin, std::string_view) {
-        return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
-    };
-    const auto note = [](std::string_view digits) {
-        return fmt::format("\n"
-                           "<!-- sha256 {}: from this line tactor knows whether the text was changed -->\n",
-                           digits);
-    };
-    detail::check_replaced(file, force, is_ours, note);
-    detail::write_file(file, detail::with_hash(text, text.size(), note));
+    detail::write_text(file, text, detail::markdown_comment, force);
 }
 
 std::string escape_markdown(std::string_view text)

@@ -17,6 +17,7 @@
 #include <tactor/error.hpp>
 
 #include "../../synth/pieces.hpp"
+#include "core/sha256.hpp"
 #include "folder.hpp"
 
 namespace write_test {
@@ -117,6 +118,35 @@ TEST_CASE("the same score gives the same file, whatever was there before")
         CHECK((dir.bytes("a.wav") == dir.bytes("b.wav")));
         CHECK((dir.bytes("a.wav") == wav::bytes(make_score(), f)));
     }
+}
+
+TEST_CASE("a marked file has its hash in a comment after the same samples")
+{
+    const folder dir;
+    const score s = make_score();
+    for (const format_kind f : {format_kind::float32, format_kind::s24_3})
+        for (const wav::container c : {wav::container::wave, wav::container::rf64}) {
+            CHECK(wav::write(s, f, dir / "a.wav", c, {}, true));
+            const std::string bytes = dir.bytes("a.wav");
+            const std::string without = bytes.substr(0, bytes.size() - 92);
+            SNDFILE* file = nullptr;
+            SF_INFO info{};
+            REQUIRE((file = sf_open((dir / "a.wav").c_str(), SFM_READ, &info)) != nullptr);
+            if (c == wav::container::wave) // libsndfile reads no comment of an RF64 file
+                CHECK(sf_get_string(file, SF_STR_COMMENT) == "sha256 " + detail::sha256_text(without));
+            sf_close(file);
+            CHECK(bytes.find("sha256 " + detail::sha256_text(without)) == without.size() + 20);
+            CHECK((read_back(dir / "a.wav").raw == render(s, f)));
+            CHECK_NOTHROW(wav::check_output(dir / "a.wav", false));
+        }
+    CHECK(wav::save(s, format_kind::s16, dir / "a.wav", false, {}));
+    write_wav(s, format_kind::s16, dir / "a.wav");
+    CHECK_THROWS_WITH_AS(wav::save(s, format_kind::s16, dir / "a.wav", false, {}),
+                         doctest::Contains("tactor did not write it"), error);
+    CHECK(wav::save(s, format_kind::s16, dir / "a.wav", true, {}));
+    dir.write("a.wav", dir.bytes("a.wav").replace(100, 2, "!!"));
+    CHECK_THROWS_WITH_AS(wav::save(s, format_kind::s16, dir / "a.wav", false, {}),
+                         doctest::Contains("somebody changed it"), error);
 }
 
 TEST_CASE("a score without frames is a file without frames")
