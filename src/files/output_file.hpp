@@ -29,13 +29,11 @@ void check_replaced(const std::filesystem::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
                     const hash_note& note, owner_kind writer = owner_kind::user);
 
-/// Begin and end of a comment in a text format.
+/// Begin and end of a comment in a text format: "# " and nothing in TOML.
 struct comment_marks {
     std::string_view begin;
     std::string_view end;
 };
-inline constexpr comment_marks toml_comment{"# ", ""};
-inline constexpr comment_marks markdown_comment{"<!-- ", " -->"};
 
 /// Writes a text whole or not at all, and its SHA-256 in a comment on the last line.
 /// \throws error as output_file; without `force` also bad_input as check_replaced().

@@ -222,7 +222,7 @@ py::array_t<double> places(const numbers& all, F&& find)
 void write_toml(const std::string& file, const std::string& text, bool force)
 {
     const without_lock free;
-    detail::write_text(file, text, detail::toml_comment, force, detail::owner_kind::caller);
+    detail::write_text(file, text, {"# ", ""}, force, detail::owner_kind::caller);
 }
 
 // A plan's bytes are its identity: it has no place for a note.

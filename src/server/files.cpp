@@ -408,7 +408,7 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
     const double frames = p.total_s() * s.render.rate;
     if (frames * static_cast<double>(s.render.channels * sample_bytes(format)) > most_file_bytes)
         too_large(); // checked before rendering
-    return wav::bytes(score(o.plans.tactors, p.plans, p.render), format);
+    return wav::bytes(score(o.plans.tactors, p.plans, p.render), format, true);
 }
 
 std::string command_line(const service_options& o, const file_kind& kind, const std::string& name,

@@ -36,9 +36,9 @@ constexpr unsigned padding(std::uint64_t data_bytes) noexcept
     return data_bytes % 2 != 0 ? 1U : 0U;
 }
 
-/// Returns the bytes that write_wav() writes.
+/// Returns the bytes that write_wav() writes; `marked`: those of save().
 /// \throws error (bad_input) for a format that WAV cannot hold.
-std::string bytes(const score& s, format_kind f);
+std::string bytes(const score& s, format_kind f, bool marked = false);
 
 /// Writes a file as write_wav() does, in the given container, so that tests can make small RF64 files.
 /// `marked`: with a comment after the samples (LIST INFO ICMT) that has the SHA-256 of all else.

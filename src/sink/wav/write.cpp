@@ -97,15 +97,15 @@ container container_of_score(const score& s, format_kind f)
 
 } // namespace
 
-std::string bytes(const score& s, format_kind f)
+std::string bytes(const score& s, format_kind f, bool marked)
 {
     std::string all;
     all.reserve(s.frames() * s.channels() * sample_bytes(f) + 128);
     std::uint64_t done = 0;
     render_parts(
-        s, f, container_of_score(s, f), 0, done, [] { return true; },
+        s, f, container_of_score(s, f), marked ? mark_bytes : 0, done, [] { return true; },
         [&](const void* data, std::size_t n) { all.append(static_cast<const char*>(data), n); });
-    return all;
+    return marked ? all + mark(detail::sha256_text(all)) : all;
 }
 
 bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,

@@ -227,7 +227,7 @@ std::string between_text(const study_facts& f)
 
 void write_report(const fs::path& file, const std::string& text, bool force)
 {
-    detail::write_text(file, text, detail::markdown_comment, force);
+    detail::write_text(file, text, {"<!-- ", " -->"}, force);
 }
 
 std::string escape_markdown(std::string_view text)
