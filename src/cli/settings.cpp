@@ -43,6 +43,8 @@ constexpr std::array own_words{options::own_word{"command:plan", "tactor plan ST
 
 std::string spell_option(const options::option& o, std::string_view value)
 {
+    if ((o.where & options::file_only) != 0)
+        return fmt::format("{}{}{} in [defaults]", options::dashed(o), value.empty() ? "" : " = ", value);
     if (value.empty() || o.what == options::kind::flag)
         return option_name(o);
     return fmt::format("{} {}", o.letter.empty() ? option_name(o) : fmt::format("-{}", o.letter), value);
@@ -97,7 +99,7 @@ settings& add_options(command_line& line, std::uint64_t place)
 {
     line.values.place = place;
     for (const options::option& o : options::all())
-        if ((o.where & place) != 0)
+        if ((o.where & place) != 0 && (o.where & options::file_only) == 0)
             add_one(line.app, line.values, o);
     return line.values;
 }

@@ -75,9 +75,11 @@ std::string places_text(std::span<const options::place_name> names, std::uint64_
 
 std::string describe_row(const options::option& o)
 {
-    std::string text = fmt::format(
-        "{}\n  {}\n", with_type(option_name(o), o.what == options::kind::flag ? "" : options::type_text(o)),
-        spelled(o.help));
+    const bool is_key = (o.where & options::file_only) != 0;
+    std::string text = fmt::format("{}\n  {}\n",
+                                   with_type(is_key ? options::dashed(o) : option_name(o),
+                                             o.what == options::kind::flag ? "" : options::type_text(o)),
+                                   spelled(o.help));
     const auto line = [&text](const char* title, const std::string& said) {
         if (!said.empty())
             text += fmt::format("  {:<18}{}\n", title, said);
@@ -87,7 +89,7 @@ std::string describe_row(const options::option& o)
         line("Range:", spelled(options::range_text(o)));
     line("Not with:", o.rival.empty() ? "" : row(o.rival));
     line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
-    line("Commands:", places_text(options::command_names(), o.where));
+    line(is_key ? "Used by:" : "Commands:", places_text(options::command_names(), o.where));
     const bool is_default = (o.where & options::in_defaults) != 0;
     line("[defaults]:", is_default ? options::dashed(o) : "");
     line("Stroke files:", (o.where & options::in_stroke) != 0 ? std::string(o.field_name()) : "");
@@ -217,6 +219,18 @@ constexpr std::array other_ways{
     other_way{"calibrate", "level-dbfs", "--start-dbfs is the level at which it begins"},
 };
 
+// Returns the hint for an option that a command uses and only a file sets; empty for others.
+std::string file_hint(const CLI::App& command, std::string_view name)
+{
+    const options::option* o = options::find(name);
+    if (o == nullptr || (o->where & options::file_only) == 0)
+        return {};
+    for (const options::place_name& p : options::command_names())
+        if (p.name == command.get_name() && (o->where & p.bit) != 0)
+            return fmt::format("put {} into [defaults] of a file for --array", options::dashed(*o));
+    return {};
+}
+
 constexpr std::array foreign_names{
     foreign_name{"volume", "level-dbfs"}, foreign_name{"gain", "level-dbfs"}, foreign_name{"port", "http"},
     foreign_name{"frequency", "carrier"}, foreign_name{"card", "device"},     foreign_name{"pcm", "device"},
@@ -335,6 +349,8 @@ error unknown(const CLI::App& app, const CLI::App& command)
             if (o.command == command.get_name() && o.name == bare_name(name))
                 return {error_kind::bad_input, name, fmt::format("tactor {} does not accept it", o.command),
                         o.hint};
+        if (const std::string hint = file_hint(command, bare_name(name)); !hint.empty())
+            return {error_kind::bad_input, name, "only a file sets it", hint};
         const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
                                                   : nearest_option(name, option_names(command));
         return {error_kind::bad_input, name, "no such option",

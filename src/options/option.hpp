@@ -130,6 +130,7 @@ enum place : std::uint64_t {
     in_player = 1 << 21,      ///< Python's Player()
     shown_first = 1 << 22,    ///< --help explains it; most people need it
     unstated = 1 << 23,       ///< a report on methods does not state its default
+    file_only = 1 << 24,      ///< commands use it, but only [defaults] of a file sets it for them
 };
 
 /// A place and its name there.

@@ -73,8 +73,8 @@ constexpr access reach(Member)
 namespace of = detail::bounds_of;
 
 constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play;
-constexpr std::uint64_t sounding =
-    (drawing & ~std::uint64_t{on_compare}) | on_check; // a prediction needs no sound
+constexpr std::uint64_t rendered = drawing & ~std::uint64_t{on_compare}; // a prediction needs no sound
+constexpr std::uint64_t sounding = rendered | on_check;
 constexpr std::uint64_t playing = on_play | on_check | on_serve;
 constexpr std::uint64_t measuring = playing | on_calibrate | on_experiment;
 constexpr std::uint64_t with_device = playing | on_devices | on_calibrate | on_experiment;
@@ -251,11 +251,11 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.plan.burst_s; })},
     option{.name = "slope", .allowed = of::slope, .shown = "A", .in = group::timing,
            .help = "slope of the timing law SOA = A duration + S (default 0.32)",
-           .where = planned | on_check | live | in_method,
+           .where = planned | on_check | live | in_method | file_only,
            .to = reach([](auto& w) -> auto& { return w.plan.profile.slope; })},
     option{.name = "intercept", .field = "intercept_s", .unit = "s", .allowed = of::intercept_s, .in = group::timing,
            .help = "intercept of the timing law (default 0.0473)",
-           .where = planned | on_check | live | in_method,
+           .where = planned | on_check | live | in_method | file_only,
            .to = reach([](auto& w) -> auto& { return w.plan.profile.intercept_s; })},
     option{.name = "timing", .what = kind::choice, .choices = detail::kind_names<timing_kind>, .in = group::timing,
            .help = "keep the SOA, or shorten it so that the bursts end with the path (default fixed)",
@@ -263,7 +263,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.plan.timing; })},
     option{.name = "min_duration", .field = "min_duration_s", .unit = "s", .allowed = of::min_duration_s, .in = group::timing,
            .help = "timing fit: shortest burst (default 0.02)",
-           .where = planned | in_method,
+           .where = planned | in_method | file_only,
            .used = [](const option_values& w) { return w.plan.timing == timing_kind::fit; }, .needs = "{timing=fit}",
            .to = reach([](auto& w) -> auto& { return w.plan.min_duration_s; })},
     option{.name = "snap", .what = kind::flag, .in = group::timing,
@@ -288,7 +288,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.low_speed.sigma_mm; })},
     option{.name = "sigma_v_mm_s", .unit = "mm/s", .allowed = {least_sigma_v_mm_s, most_sigma_v_mm_s}, .in = group::timing,
            .help = "low-speed: spread of the expected speeds (default 100)",
-           .where = planned | in_method,
+           .where = planned | in_method | file_only,
            .used = has_sigma, .needs = "{observer=low-speed}|{compensate=low-speed}",
            .to = reach([](auto& w) -> auto& { return w.low_speed.sigma_v_mm_s; })},
 
@@ -307,17 +307,17 @@ constexpr std::array table{
            .to = {set_modulation, get_modulation}},
     option{.name = "noise_seed", .what = kind::whole, .allowed = of::seed, .in = group::sound,
            .help = "noise: seed of its samples (default 1)",
-           .where = in_stroke | sounding | in_defaults | by_client | live | in_plan | planning | in_method,
+           .where = in_stroke | rendered | in_defaults | by_client | live | in_plan | planning | in_method,
            .used = has_noise, .needs = "{waveform=noise:LO-HI}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.seed; })},
     option{.name = "texture", .what = kind::choice, .choices = detail::kind_names<texture_kind>, .in = group::sound,
            .help = "FILE.wav: play it as the carrier's cycle (default), at its own rate, or along the path",
-           .where = in_stroke | sounding | in_defaults | live | in_plan | planning | in_method,
+           .where = in_stroke | rendered | in_defaults | live | in_plan | planning | in_method,
            .used = has_recording, .needs = "{waveform=FILE.wav}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.texture; })},
     option{.name = "texture_mm", .unit = "mm", .allowed = of::texture_mm, .in = group::sound,
            .help = "{texture=length}: length of path for the whole file (default: the whole path)",
-           .where = in_stroke | sounding | in_defaults | live | in_plan | planning | in_method,
+           .where = in_stroke | rendered | in_defaults | live | in_plan | planning | in_method,
            .used = has_recording_along_path, .needs = "{waveform=FILE.wav} {texture=length}",
            .to = reach([](auto& w) -> auto& { return w.plan.wave.texture_mm; })},
     option{.name = "phase", .what = kind::choice, .choices = detail::kind_names<phase_kind>, .in = group::sound,
@@ -361,11 +361,11 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.render.together; })},
     option{.name = "intensity_scale", .what = kind::choice, .choices = detail::kind_names<scale_kind>, .in = group::level,
            .help = "scale of intensities: amplitude (default), dB of {sl}, or felt strength",
-           .where = planned | on_check | live | in_method | unstated,
+           .where = planned | live | in_method | unstated,
            .to = reach([](auto& w) -> auto& { return w.plan.scale.kind; })},
     option{.name = "stevens_exponent", .allowed = of::stevens_exponent, .shown = "E", .in = group::level,
            .help = "felt = amplitude^E (default 0.6, at 250 Hz; 0.95 at 60 Hz: Stevens 1968)",
-           .where = planned | on_check | live | in_method,
+           .where = planned | live | in_method | file_only,
            .used = [](const option_values& w) { return w.plan.scale.kind == scale_kind::stevens; },
            .needs = "{intensity_scale=stevens}",
            .to = reach([](auto& w) -> auto& { return w.plan.scale.exponent; })},
@@ -470,7 +470,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.spread.people; })},
     option{.name = "spread_seed", .what = kind::whole, .allowed = of::spread_seed, .in = group::output,
            .help = "{spread}: seed of the draw (default 1)",
-           .where = on_compare | in_compare, .used = has_people, .needs = "{spread=N}",
+           .where = on_compare | in_compare | in_defaults | file_only, .used = has_people, .needs = "{spread=N}",
            .to = reach([](auto& w) -> auto& { return w.spread.seed; })},
     option{.name = "spread_sigma", .allowed = of::spread_sigma, .shown = "FACTOR", .in = group::output,
            .help = "{spread}: factor by which people's low-speed sigma differs (default 2)",

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Writes what the manual says of options from their table; the prose stays.
 
-* An entry such as ".It Fl -soa Ar S" with a line ".br" gets its head, and after that line range, default and commands.
+* An entry such as ".It Fl -soa Ar S", or ".It Cm slope Ar A" of an option that only a file sets, with a line ".br" gets its head, and after that
+  line range, default and commands.
 * The comment ".\\" Common options" stands over a list of the options that the page's command shares with others, by group.
 """
 import re
@@ -60,7 +61,8 @@ def facts(row, with_commands):
     lines += sentence("Default: " + usual(row)) if usual(row) else []
     lines += sentence("Not with {" + about["rival"] + "}") if about["rival"] else []
     lines += sentence("Needs " + about["needs"].replace("|", " or ")) if about["needs"] else []
-    return lines + ["Commands:", f".Cm {' , '.join(about['commands'])} ."] * with_commands
+    commands = f".Cm {' , '.join(about['commands'])} ."
+    return lines + ([".Cm [defaults]", "of a file sets it, for", commands] if about["file_only"] else ["Commands:", commands] * with_commands)
 
 
 def written(page, text, *, rows):
@@ -71,14 +73,15 @@ def written(page, text, *, rows):
     def entry(found):
         row = by_name[found[1].replace("-", "_")]
         letter = f"{row['manual']['letter']} , " * bool(row["manual"]["letter"])
-        head = f".It Fl {letter}-{found[1]} {form(row['manual']['type'])}".rstrip()
+        name = f"Cm {found[1]}" if row["manual"]["file_only"] else f"Fl {letter}-{found[1]}"
+        head = f".It {name} {form(row['manual']['type'])}".rstrip()
         return "\n".join([head, found[2] + ".br", *facts(row, command == "options")]) + "\n"
 
-    text = re.sub(r"^\.It Fl (?:\w , )?-([a-z-]+)(?: .*)?\n((?:(?!\.It |\.El|\.br$).*\n)*)\.br\n(?:(?!\.It |\.El).*\n)*", entry, text, flags=re.M)
+    text = re.sub(r"^\.It (?:Fl (?:\w , )?-|Cm )([a-z-]+)(?: .*)?\n((?:(?!\.It |\.El|\.br$).*\n)*)\.br\n(?:(?!\.It |\.El).*\n)*", entry, text, flags=re.M)
     groups = {}
     for row in by_name.values():
         about = row["manual"]
-        if command in about["commands"] and len(about["commands"]) > 1:
+        if command in about["commands"] and len(about["commands"]) > 1 and not about["file_only"]:
             groups.setdefault(about["group"], []).extend([about["letter"]] * bool(about["letter"]) + ["-" + row["name"].replace("_", "-")])
     common = "".join(f".It {group}\n.Fl {' , '.join(names)}\n" for group, names in groups.items())
     return re.sub(rf"^{re.escape(COMMON)}(?:.*\n)*?\.El\n", lambda m: f'{COMMON}.Bl -tag -width "Real time" -compact\n{common}.El\n', text, flags=re.M)

@@ -225,6 +225,7 @@ py::dict manual_entry(const option& o)
         if ((o.where & c.bit) != 0)
             takers.append(c.name);
     return py::dict("group"_a = o.in, "letter"_a = o.letter, "commands"_a = takers,
+                    "file_only"_a = (o.where & options::file_only) != 0,
                     "type"_a = o.what == options::kind::flag ? "" : options::type_text(o),
                     "range"_a = options::range_text(o), "default"_a = o.to.get(options::option_values{}),
                     "help"_a = o.help, "rival"_a = o.rival, "needs"_a = o.needs);

@@ -288,17 +288,46 @@ void put_options(stroke& k, const options::option_values& s)
     put(k.sound.am, "am", p.am, usual.am);
 }
 
-// Returns " --array palm-3x3 --level-dbfs -15": the arguments with which a command of the tool does the same.
+// Options with which a command of the tool does the same.
+struct command_options {
+    std::string words = {};                 ///< " --array palm-3x3 --level-dbfs -15"
+    std::vector<std::string> defaults = {}; ///< lines of [defaults], for options that only a file sets
+};
+
 // `file_says`: put_options() has written its part.
-std::string option_words(const options::option_values& w, options::place command, bool file_says)
+command_options find_options(const options::option_values& w, options::place command, bool file_says)
 {
-    std::string words;
+    command_options all;
     for (const option& o : options::all()) {
         const options::value v = o.to.get(w);
-        if ((o.where & command) != 0 && !(file_says && is_in_file(o, w)) && is_needed(o, w, v))
-            words += fmt::format(" --{}{}", options::dashed(o), value_text(v));
+        if ((o.where & command) == 0 || (file_says && is_in_file(o, w)) || !is_needed(o, w, v))
+            continue;
+        if ((o.where & options::file_only) != 0)
+            all.defaults.push_back(fmt::format("{} ={}", options::dashed(o), value_text(v)));
+        else
+            all.words += fmt::format(" --{}{}", options::dashed(o), value_text(v));
     }
-    return words;
+    return all;
+}
+
+// Returns the command that writes an array file with these lines of [defaults], and names it as the array.
+std::string write_defaults(options::option_values& w, const std::string& file,
+                           const std::vector<std::string>& lines)
+{
+    std::vector<std::string> text;
+    if (w.array_name) {
+        const auto presets = array_presets();
+        const bool is_preset = std::find(presets.begin(), presets.end(), *w.array_name) != presets.end();
+        text = {"[array]",
+                fmt::format("{} = {}", is_preset ? "preset" : "file", detail::toml_string(*w.array_name))};
+    }
+    text.emplace_back("[defaults]");
+    text.insert(text.end(), lines.begin(), lines.end());
+    std::string command = "printf '%s\\n'";
+    for (const std::string& line : text)
+        command += " " + quote_word(line);
+    w.array_name = file;
+    return fmt::format("{} > {} && ", command, quote_word(file));
 }
 
 // Kind of a file, and the command of the tool that makes or plays it.
@@ -414,9 +443,14 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
 std::string command_line(const service_options& o, const file_kind& kind, const std::string& name,
                          const options::option_values& s)
 {
-    return fmt::format("tactor {} {}{} {} {}", kind.command,
+    options::option_values w = for_command(s, o);
+    const bool file_says = kind.reads == "toml";
+    std::string before;
+    if (const auto lines = find_options(w, kind.place, file_says).defaults; !lines.empty())
+        before = write_defaults(w, name + ".array.toml", lines);
+    return fmt::format("{}tactor {} {}{} {} {}", before, kind.command,
                        quote_word(fmt::format("{}.{}", name, kind.reads)),
-                       option_words(for_command(s, o), kind.place, kind.reads == "toml"), kind.into,
+                       find_options(w, kind.place, file_says).words, kind.into,
                        quote_word(fmt::format("{}.{}", name, kind.writes)));
 }
 

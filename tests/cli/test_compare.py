@@ -22,7 +22,7 @@ FIGURES = (
     ("park2016-3 --phantom barycentric", ((1.434269, 2.474896, 0.339043, 0, 0, 0), (7.240158, 12.555396, 1.736321, 0.143869, 0, 0.827701), (0,) * 6)),
     ("track.csv", ((1.541041, 4.6, 0.719288, 0.224585, 0, 0), (6.314212, 12.484269, 1.697252, 0.276346, 0, 0), (0, 0, 0.603690, 0.214470, 0, 0))),
     ("park2016-3 --observer low-speed", ((1.056065, 1.805183, 72.609458, 75.320732, 0.964004), (19.427591, 26.545642, 64.627637, 41.707524, 1.549544))),
-    ("park2016-1 --observer low-speed --sigma-mm 8.5 --sigma-v-mm-s 60",
+    ("park2016-1 --observer low-speed --sigma-mm 8.5 --config slower.toml",
      ((1.793879, 3.714679, 39.636210, 50.213821, 0.789349), (14.894353, 21.876509, 31.661132, 22.644365, 1.398190))),
 )
 
@@ -52,6 +52,7 @@ class CompareTest(PlotTest):
 class Table(CompareTest):
     def test_figures_of_each_algorithm_and_observer(self):
         self.write("track.csv", TRACK)
+        self.write("slower.toml", "[defaults]\nsigma-v-mm-s = 60\n")
         for args, rows in FIGURES:
             for result, algorithm, wanted in zip(self.compare(*args.split())["results"], ALGORITHMS, rows):
                 self.assertEqual(result["algorithm"], algorithm)
@@ -119,7 +120,7 @@ class Table(CompareTest):
         self.assertEqual(self.ok("compare", "two.toml").stdout.count("error mm"), 2)
 
     def test_every_output_names_the_observer_and_what_it_cannot_predict(self):
-        args = ("park2016-1", *ASK, "--sigma-mm", "7.5", "--sigma-v-mm-s", "120")
+        args = ("park2016-1", *ASK, "--sigma-mm", "7.5", *self.defaults(sigma_v_mm_s=120))
         told, svg = self.compare(*args), self.picture(*args)
         self.assertEqual(told["observer"], {"name": "low-speed", "sigma_mm": 7.5, "sigma_v_mm_s": 120, "built_for": "taps"})
         text = self.ok("compare", *args).stdout
@@ -222,18 +223,20 @@ class Refusals(CompareTest):
         self.refused(2, "compare")
         for args in ("park2016-2", "--algorithms park2017", "--algorithms=", "--algorithms park2016,", "--phantoms log,log",
                      "--phantoms log --phantom log", "--format xml", "--soa 0.08", "--duration 3601", "--observer fast",
-                     "--observer low-speed --sigma-mm 0", "--observer low-speed --sigma-v-mm-s 1e9", "--observer low-speed --sigma-mm 5mm",
-                     "--sigma-mm 5", "--sigma-v-mm-s 5", "--spread 1", "--spread 2.5", "--spread 1e9", "--spread many",
-                     "--spread 5 --spread-seed=-1", "--spread 5 --spread-sigma=0.5", "--spread 5 --spread-threshold-db=nan",
-                     "--spread 5 --spread-place-mm=-2", "--spread-seed 2", "--spread-sigma 2", "--spread-threshold-db 2", "--spread-place-mm 2",
+                     "--observer low-speed --sigma-mm 0", "--observer low-speed --sigma-mm 5mm",
+                     "--sigma-mm 5", "--spread 1", "--spread 2.5", "--spread 1e9", "--spread many",
+                     "--spread 5 --spread-sigma=0.5", "--spread 5 --spread-threshold-db=nan",
+                     "--spread 5 --spread-place-mm=-2", "--spread-sigma 2", "--spread-threshold-db 2", "--spread-place-mm 2",
                      "--duration 3600 --spread 100000 -o c.svg --algorithms park2016"):
             with self.subTest(args):
                 self.refused(2, "compare", "park2016-1", *args.split())
+        for key, value in (("sigma_v_mm_s", 1e9), ("spread_seed", -1)):
+            self.refused(2, "compare", "park2016-1", *self.defaults(**{key: value}))
 
 
 class Spread(CompareTest):
     def test_intervals_are_those_of_the_people_drawn(self):
-        told = self.compare("park2016-1", "--algorithms", "park2016", *ASK, "--spread", "60", "--spread-seed", "11", "--spread-sigma", "3",
+        told = self.compare("park2016-1", "--algorithms", "park2016", *ASK, "--spread", "60", *self.defaults(spread_seed=11), "--spread-sigma", "3",
                             "--spread-threshold-db", "4", "--spread-place-mm", "1.5")
         self.assertEqual(told["spread"], {"people": 60, "seed": 11, "sigma_factor": 3, "threshold_db": 4, "place_mm": 1.5,
                                           "parts": [0.05, 0.95]})
@@ -261,8 +264,8 @@ class Spread(CompareTest):
         narrow, wide = interval("--spread-place-mm", "0.5", "--spread-threshold-db", "1"), interval()
         for name in ("rms_error_mm", "speed_cv", "intensity_cv"):
             self.assertLess(narrow[name][1] - narrow[name][0], wide[name][1] - wide[name][0])
-        self.assertEqual(wide, interval("--spread-seed", "1"))
-        self.assertNotEqual(wide, interval("--spread-seed", "2"))
+        self.assertEqual(wide, interval(*self.defaults(spread_seed=1)))
+        self.assertNotEqual(wide, interval(*self.defaults(spread_seed=2)))
 
     def test_text_and_picture_hold_the_same_and_state_the_ranges(self):
         for observer, figures in (("centroid", CENTROID[2:4]), ("low-speed", ("felt_length_mm", "length_ratio"))):

@@ -27,6 +27,8 @@ NO_METHOD = {"intensity-max": "a key of the method's own file, as of a motion's"
 # Options that a stroke file may give for one stroke. The other options of planning hold for the piece: its strokes share one
 # clock and one array.
 IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "soa", "burst", "waveform", "noise-seed", "texture", "texture-mm", "fit"}
+# Options that commands use and only [defaults] of a file sets: about a place on the body, a person or an observer.
+FILE_ONLY = {"slope", "intercept", "min-duration", "sigma-v-mm-s", "stevens-exponent", "spread-seed"}
 # Other differences between front ends, and their reasons:
 # - Configuration: Python's Player and devices() read its [defaults]; plan(), Score() and live() read those of the array file alone, so that a
 #   plan is the same on each machine. marker_channel is [sync]'s on the command line, beside the wires.
@@ -37,7 +39,7 @@ IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "s
 #   place count on one device; serve waits as long as it runs.
 # - Python: intensity_max is an argument of load(), parse() and Stroke.timed(), which read recordings; the service takes it from its clients
 #   alone, since [defaults] would weaken what they draw themselves.
-# - Bounds: calibrate's seed and --spread-seed are of 32 bits. ALSA has 1024 channels at most, a rendered score may have more. A file's strokes lie within a day.
+# - Bounds: calibrate's seed and spread-seed are of 32 bits. ALSA has 1024 channels at most, a rendered score may have more. A file's strokes lie within a day.
 # - One name for two things, in two commands: --power, --log, --method, --page, --seed. The manual says so at each.
 # - /tactor/drive of OSC has its intensity always, as OSC's arguments have places, not names; levels_hz is a page's, which has a WebSocket.
 # - drive (one tactor) is for finding wires from a program; a person has check --walk.
@@ -50,7 +52,7 @@ def options_of_the_manual():
     groups = {}
     for title, body in zip(parts[1::2], parts[2::2]):
         if title in GROUPS:
-            entries = re.findall(r"^\.It Fl (?:\w , )?-([a-z-]+) ?(.*)\n((?:(?!\.It |\.El$).*\n)*)", body, re.M)
+            entries = re.findall(r"^\.It (?:Fl (?:\w , )?-|Cm )([a-z-]+) ?(.*)\n((?:(?!\.It |\.El$).*\n)*)", body, re.M)
             groups[title] = {name: (head, plain(text)) for name, head, text in entries}
     return groups
 
@@ -81,14 +83,33 @@ class Options(ToolTest):
         return self.told[name]
 
     def every(self):
-        return sorted(set().union(*map(self.list_options, COMMANDS)))
+        return sorted(FILE_ONLY.union(*map(self.list_options, COMMANDS)))
 
     def test_help_names_the_commands_that_take_an_option(self):
         takes = {command: self.list_options(command) for command in COMMANDS}
         self.assertGreater(len(self.every()), 60)
-        for name in self.every():
+        for name in set(self.every()) - FILE_ONLY:
             said = self.about(name)["Commands"].split(", ")
             self.assertEqual(said, [c for c in COMMANDS if name in takes[c]], name)
+
+    def test_only_a_file_sets_what_describes_a_place_a_person_or_an_observer(self):
+        value = {"slope": 0.4, "intercept": 0.03, "min-duration": 0.069, "sigma-v-mm-s": 80, "stevens-exponent": 0.9, "spread-seed": 2}
+        plain = {"plan": ("--timing", "fit", "--compensate", "low-speed", "--intensity-scale", "stevens"), "compare": ("--spread", "20")}
+        for name in FILE_ONLY:
+            about = self.about(name)
+            self.assertEqual((about["[defaults]"], "Commands" in about), (name, False))
+            for command in about["Used by"].split(", "):
+                self.assertNotIn(name, self.list_options(command))
+                required = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg")}.get(command, ())
+                stroke = () if command == "check" else ("soft.csv",)
+                said = self.refused(2, command, *stroke, *required, f"--{name}", str(value[name])).stderr
+                self.assertIn(f"--{name}: only a file sets it (put {name} into [defaults] of a file for --array)", said)
+            # The cure works.
+            self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,5,5,0.4\n0.51,35,35,0.4\n")
+            self.write("felt.toml", f'[array]\npreset = "palm-3x3"\n[defaults]\n{name} = {value[name]}\n')
+            command = "compare" if name == "spread-seed" else "plan"
+            args = (command, "soft.csv", *plain[command], "--format", "json")
+            self.assertNotEqual(self.run_tool(*args, "--array", "felt.toml").stdout, self.ok(*args).stdout, name)
 
     def test_the_manual_lists_each_option_in_its_group_in_the_order_of_help(self):
         page = options_of_the_manual()
@@ -105,7 +126,8 @@ class Options(ToolTest):
                 if re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", form):
                     self.assertEqual(head, f"Cm {form.replace('|', ' | ')}")
                 self.assertEqual(bool(head), bool(form))
-                self.assertIn(f"Commands: {self.about(name)['Commands']}.", body)
+                takers = f"[defaults] of a file sets it, for {self.about(name)['Used by']}." if name in FILE_ONLY else f"Commands: {self.about(name)['Commands']}."
+                self.assertIn(takers, body)
                 if "Range" in self.about(name):
                     self.assertIn(f"Range: {self.about(name)['Range']}.", body)
                 if usual := re.search(r"\(default:? ([^);]+)", help_line):
@@ -138,7 +160,7 @@ class Options(ToolTest):
 
     def test_a_prediction_takes_no_option_that_only_sounds(self):
         compare = self.list_options("compare")
-        self.assertLessEqual({"carrier", "sl", "intensity-scale", "stevens-exponent"}, compare)
+        self.assertLessEqual({"carrier", "sl", "intensity-scale"}, compare)
         for name in ("level-dbfs", "ramp", "phase", "envelope", "attack", "release", "am", "waveform", "rate", "sample-format"):
             self.assertIn(name, self.list_options("plan"))
             self.assertNotIn(name, compare)

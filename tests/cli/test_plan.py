@@ -167,7 +167,7 @@ class Options(PlanTest):
             said = self.both(command[0], "park2016-1", *MOVE, *command[1:])
             for word in ("low-speed", "sigma 5 mm", "sigma_v 100 mm/s", "built for taps"):
                 self.assertIn(word, said, command)
-        edge = ("--path", "M 0 0 L 40 40 L 0 40", "--speed", "150", "--phantom", "barycentric", "--sigma-mm", "8", "--sigma-v-mm-s", "150", *MOVE)
+        edge = ("--path", "M 0 0 L 40 40 L 0 40", "--speed", "150", "--phantom", "barycentric", "--sigma-mm", "8", *self.defaults(sigma_v_mm_s=150), *MOVE)
         p = self.plan(*edge)
         c = p["compensation"]
         self.assertEqual((c["sigma_mm"], c["sigma_v_mm_s"], c["built_for"]), (8, 150, "taps"))
@@ -182,11 +182,13 @@ class Options(PlanTest):
 
     def test_impossible_options_are_refused(self):
         for options in ("--soa 0.0473", "--soa 0.0701", "--soa -1", "--burst 0", "--burst 11", "--burst x", "--burst 0.08", "--compensate more",
-                        "--sigma-mm 4", "--compensate low-speed --algorithm continuous", "--compensate low-speed --sigma-mm 1000 --sigma-v-mm-s 0.001",
+                        "--sigma-mm 4", "--compensate low-speed --algorithm continuous",
                         "--faces nearest --phantom gaussian", "--faces neerest", "--fit-margin 1", "--fit --fit-margin -1", "--fit --fit-margin 20",
                         "--timing fit --duration 0.1 --path M0,0L4,0", "--duration 1 --speed 2", "--level-dbfs -12 --sl 7"):
             with self.subTest(options):
                 self.refused(2, "plan", *(() if "--path" in options else ("park2016-1",)), *options.split())
+        self.refused(2, "plan", "park2016-1", *MOVE, "--sigma-mm", "1000", *self.defaults(sigma_v_mm_s=0.001))
+        self.refused(2, "plan", "park2016-1", "--timing", "fit", *self.defaults(min_duration=5))
         self.refused(2, "plan", "--path", "M 0 0 V 5", "--array", ARM, "--fit")
         self.refused(2, "plan", ROOT / "examples/strokes/several.toml", "--array", ARM, "--fit")
         self.ok("plan", "park2016-1", "--soa", "0.0474")

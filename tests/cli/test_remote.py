@@ -95,7 +95,7 @@ class Remote(ServeTest):
     def test_a_server_s_refusal_names_options_and_lines(self):
         s = self.serve()
         self.write("bad.toml", '[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
-        for args in (("--soa", "3"), ("--level-dbfs", "-1"), ("--sl", "7"), ("--timing", "fit", "--min-duration", "5"), ("--sigma-mm", "8")):
+        for args in (("--soa", "3"), ("--level-dbfs", "-1"), ("--sl", "7"), ("--sigma-mm", "8")):
             said = self.refused(2, "play", "park2016-1", *args, "--socket", s.where["socket"]).stderr
             self.assertNotIn("options.", said)
         for args in (("--path", "M 0 0 L 400 0"), ("nonsense",)):

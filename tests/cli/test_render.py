@@ -23,6 +23,7 @@ class RenderTest(ToolTest):
         for name, text in (("pair.toml", PAIR), ("strokes.toml", STROKES), ("slow.toml", ROW + SLOW), ("curved.toml", ROW + CURVED),
                            ("grid.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'),
                            ("rise.toml", STROKE + "carrier_profile = [[0, 90], [0.4, 90], [1, 300]]\n"),
+                           ("squares.toml", "[defaults]\nstevens-exponent = 2\n"),
                            ("soft.csv", "t_s,x_mm,y_mm,intensity\n0,10,30,0.4\n1,45,10,0.4\n"),
                            ("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,0.5\n")):
             self.write(name, text)
@@ -46,7 +47,7 @@ class Samples(RenderTest):
         (SINE, (*BRUSH, "--phase", "burst", *RATE)),
         (SINE, (*BRUSH, "--overlap", "max", "--carrier", "243", *RATE)),
         (SINE, (*BRUSH, "--overlap", "sum", *RATE)),
-        (SINE, (*BRUSH[:4], "soft.csv", "--intensity-scale", "stevens", "--stevens-exponent", "2", *RATE)),
+        (SINE, (*BRUSH[:4], "soft.csv", "--intensity-scale", "stevens", "--config", "squares.toml", *RATE)),
         (SINE, ("park2016-1", "--algorithm", "continuous", "--carrier", "251", "--phantom", "gaussian", *RATE)),
         (SINE, ("strokes.toml", "--array", "pair.toml", "--level-dbfs", "-20", *RATE)),
         (SINE, ("strokes.toml", "--array", "pair.toml", "--sl", "7", "--phase", "burst", "--rate", "11025")),
@@ -217,11 +218,11 @@ class Sound(RenderTest):
                         "--waveform still.wav", "--waveform pipe.wav", "--am x", "--am 30:", "--am 30:2", "--am -3", "--am 23900",
                         "--noise-seed 3", "--waveform noise:50-500 --noise-seed -1", "--texture time", "--texture x", "--texture-mm 3",
                         "--envelope round", "--envelope linear:3", "--envelope tukey:3", "--envelope tukey --attack 0.01", "--attack 10ms",
-                        "--release -1", "--intensity-scale log", "--intensity-scale sl", "--stevens-exponent 0.6",
-                        "--intensity-scale stevens --stevens-exponent 0", "--phase continuous", "--carrier 24000",
+                        "--release -1", "--intensity-scale log", "--intensity-scale sl", "--phase continuous", "--carrier 24000",
                         "--rate 8000 --carrier 5000", "--level-dbfs 0.5"):
             with self.subTest(options):
                 self.refused(2, "render", *LINE[:2], *options.split(), "-o", "bad.wav", says=[options.split()[-2]])
+        self.refused(2, "render", *LINE[:2], *self.defaults(stevens_exponent=0), "-o", "bad.wav", says=["stevens-exponent: 0 is out of range"])
         for options in ("--sl 7", "--array curved.toml --carrier 100 --sl 21"):
             self.refused(2, "render", *LINE[:2], *options.split(), "-o", "bad.wav")
         self.assertFalse((self.dir / "bad.wav").exists())

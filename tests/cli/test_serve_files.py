@@ -5,6 +5,7 @@ import itertools
 import json
 import math
 import shlex
+import subprocess
 
 from harness import ROOT, Wav, main
 from serving import ServeTest
@@ -150,6 +151,8 @@ class Export(ServeTest):
 
     def run_line(self, line):
         """Runs a command line of the tool as a shell does, and returns the bytes of the file that it writes."""
+        before, _, line = line.rpartition(" && ")
+        subprocess.run(before or "true", shell=True, cwd=self.dir, check=True)
         words = shlex.split(line)
         self.assertEqual(words[0], "tactor")
         if ">" in words:
@@ -211,6 +214,12 @@ class Export(ServeTest):
         self.assertEqual(toml.decode(), '[stroke]\nname = "path"\npath = "M 0 0 L 40 40"\nspeed_mm_s = 60\n'
                                         'algorithm = "continuous"\nsoa_s = 0.06\n')
         self.assertEqual(line, "tactor render up.toml --array palm-3x3 --outside error --level-dbfs -15 -o up.wav")
+        # Options that only a file sets are in an array file, which the command writes.
+        wav, line = self.export(c, "wav", path="M 0 0 L 40 40", name="an up", options={"slope": 0.4, "intercept": 0.03, "soa": 0.05, "intensity_scale": "linear"})
+        self.assertEqual(line, "printf '%s\\n' '[array]' 'preset = \"palm-3x3\"' '[defaults]' 'slope = 0.4' 'intercept = 0.03' > 'an up.array.toml' && "
+                               "tactor render 'an up.toml' --array 'an up.array.toml' --intensity-scale linear --level-dbfs -12 -o 'an up.wav'")
+        self.export(c, "toml", path="M 0 0 L 40 40", name="an up", options={"soa": 0.05, "slope": 0.4, "intercept": 0.03})
+        self.assertEqual(self.run_line(line), wav)
         # A stroke's own key comes first.
         toml, _ = self.export(c, "toml", toml='[stroke]\npath = "M 0 0 L 40 40"\nalgorithm = "park2016"\n',
                               options={"algorithm": "continuous"})

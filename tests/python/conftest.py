@@ -30,6 +30,13 @@ class Tool:
         return r.stdout if status == 0 else r.stderr
 
 
+def in_file(folder, arguments):
+    """Moves "key = value" among the tool's arguments into [defaults] of a configuration."""
+    keys = [a for a in arguments if " = " in a]
+    (folder / "defaults.toml").write_text("\n".join(["[defaults]", *keys]))
+    return [a for a in arguments if a not in keys] + ["--config", folder / "defaults.toml"] * bool(keys)
+
+
 def without_preloaded():
     """Environment for foreign programs: with a sanitizer loaded before them they would fail by their own leaks."""
     return {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tactor
-from conftest import refused
+from conftest import in_file, refused
 from tactor import _tactor
 
 
@@ -58,7 +58,7 @@ CASES = [
      dict(algorithm="continuous", phantom="gaussian", overlap="max")),
     (["park2016-4", "--soa", "0.06", "--burst", "0.05", "--timing", "fit", "--duration", "2.5", "--carrier", "200"],
      dict(soa=0.06, burst=0.05, timing="fit", duration=2.5, carrier=200)),
-    (["park2016-4", "--slope", "0.4", "--intercept", "0.03", "--soa", "0.05", "--speed", "30"], dict(slope=0.4, intercept=0.03, soa=0.05, speed=30)),
+    (["park2016-4", "slope = 0.4", "intercept = 0.03", "--soa", "0.05", "--speed", "30"], dict(slope=0.4, intercept=0.03, soa=0.05, speed=30)),
     (["wave-2x4", "--fit", "--fit-margin", "1.5", "--phase", "burst", "--ramp", "0.003", "--level-dbfs", "-20", "--rate", "44100"],
      dict(fit=True, fit_margin=1.5, phase="burst", ramp=0.003, level_dbfs=-20, rate=44100)),
     (["round-2x4", "--outside", "clamp"], dict(outside="clamp")),
@@ -68,9 +68,9 @@ CASES = [
 
 
 @pytest.mark.parametrize("arguments,options", CASES)
-def test_the_record_is_the_tool_s(tool, palm, arguments, options):
+def test_the_record_is_the_tool_s(tool, tmp_path, palm, arguments, options):
     plan = tactor.plan(palm, tactor.Stroke.preset(arguments[0]), **options)
-    printed = json.loads(tool("plan", *arguments, "--format", "json"))
+    printed = json.loads(tool("plan", *in_file(tmp_path, arguments), "--format", "json"))
     assert plan.to_dict() == printed
     again = tactor.Plan.from_dict(printed)
     assert again == plan and hash(again) == hash(plan)

@@ -9,7 +9,7 @@ import xml.etree.ElementTree
 import pytest
 
 import tactor
-from conftest import refused
+from conftest import in_file, refused
 
 # A stroke, and the same as a file of the tool.
 RISING = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=1.0, intensity=[(0, 0.2), (1, 1)], name="rising")
@@ -21,17 +21,17 @@ RISING_TOML = '[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 1.0\nintensity = 
     (["--phantoms", "linear,log"], dict(phantoms=["linear", "log"])),
     (["--algorithms", "continuous", "--phantom", "gaussian", "--duration", "2"], dict(algorithms="continuous", phantom="gaussian", duration=2)),
     (["--faces", "nearest"], dict(faces="nearest")),
-    (["--observer", "low-speed", "--sigma-v-mm-s", "80"], dict(observer="low-speed", sigma_v_mm_s=80)),
+    (["--observer", "low-speed", "sigma-v-mm-s = 80"], dict(observer="low-speed", sigma_v_mm_s=80)),
     (["--algorithm", "park2016", "--soa", "0.06", "--fit"], dict(algorithm="park2016", soa=0.06, fit=True)),
     (["--spread", "20"], dict(spread=20)),
-    (["--spread", "20", "--spread-seed", "7", "--spread-sigma", "3", "--observer", "low-speed", "--spread-threshold-db", "4", "--spread-place-mm", "1"],
+    (["--spread", "20", "spread-seed = 7", "--spread-sigma", "3", "--observer", "low-speed", "--spread-threshold-db", "4", "--spread-place-mm", "1"],
      dict(spread=20, spread_seed=7, spread_sigma=3, observer="low-speed", spread_threshold_db=4, spread_place_mm=1)),
-    (["--intensity-scale", "stevens", "--stevens-exponent", "0.9"], dict(intensity_scale="stevens", stevens_exponent=0.9)),
+    (["--intensity-scale", "stevens", "stevens-exponent = 0.9"], dict(intensity_scale="stevens", stevens_exponent=0.9)),
     (["--phantoms", "linear,log", "--algorithm", "continuous"], dict(phantoms=iter(["linear", "log"]), algorithm="continuous")),
 ])
 def test_comparisons_are_those_of_the_tool(tool, tmp_path, palm, arguments, options):
     (tmp_path / "rising.toml").write_text(RISING_TOML)
-    printed = json.loads(tool("compare", "rising.toml", *arguments, "--format", "json"))
+    printed = json.loads(tool("compare", "rising.toml", *in_file(tmp_path, arguments), "--format", "json"))
     compared = tactor.compare(palm, RISING, **options)
     assert compared == printed["results"] and compared.record == printed and isinstance(compared[0], dict)
     assert pickle.loads(pickle.dumps(compared)) == compared == copy.copy(compared)
