@@ -19,6 +19,7 @@
 
 #include <tactor/path.hpp>
 
+#include "cli/file_keys.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/split.hpp"
@@ -101,48 +102,6 @@ std::string describe_row(const options::option& o)
     const std::string python = places_text(python_names, o.where);
     line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
     return text;
-}
-
-// A key of array and configuration files that is not an option, or a table of such keys.
-struct file_key {
-    std::string_view name;
-    std::string_view type;
-    std::string_view table;
-    std::string_view help;
-};
-constexpr std::array file_keys{
-    file_key{"max_dbfs", "DB", "[array], [[tactor]]",
-             "highest peak of all tactors, or of one, -200 to 0 dBFS (default 0); check --walk --max-dbfs "
-             "writes it"},
-    file_key{"gain_db", "DB", "[[tactor]]",
-             "added to --level-dbfs for this tactor, -200 to 60 dB (default 0)"},
-    file_key{
-        "threshold_dbfs", "DB", "[[tactor]]",
-        "weakest vibration that the participant feels; --sl is relative to it; tactor calibrate measures it"},
-    file_key{"max_level_dbfs", "DB", "[serve]",
-             "highest level that clients may use, -200 to 0 dBFS (default: level-dbfs of [defaults], else "
-             "-12); serve --max-level-dbfs is lower"},
-    file_key{"token_file", "FILE", "[serve]", "file with the token that TCP and HTTP need"},
-    file_key{"osc_peers", "[...]", "[serve]", "other machines that may send OSC"},
-    file_key{"allow_hosts", "[...]", "[serve]", "other names by which browsers may call the service"},
-    file_key{"limits", "", "[limits]",
-             "power_dbfs, max_drive_s and window_s: limits on all tactors together, and on each one"},
-};
-
-// Returns a page about a key of files, "max_dbfs" or "[limits]"; nothing for other words.
-std::string describe_key(std::string_view word)
-{
-    if (word.starts_with('[') && word.ends_with(']'))
-        word = word.substr(1, word.size() - 2);
-    std::string name(word);
-    std::replace(name.begin(), name.end(), '-', '_');
-    const auto* found = std::find_if(file_keys.begin(), file_keys.end(),
-                                     [&name](const file_key& k) { return k.name == name; });
-    if (found == file_keys.end())
-        return {};
-    return fmt::format("{}\n  {}\n  {:<18}{}, see tactor.toml(5)\n",
-                       with_type(std::string(found->name), std::string(found->type)), found->help,
-                       "In files:", found->table);
 }
 
 // Returns usage, arguments and examples.
@@ -579,30 +538,39 @@ option_help::option_help(const std::string& word)
 {
     if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
         row_ = nullptr;
-    text_ = row_ != nullptr ? describe_row(*row_) : describe_key(name_);
+    // An option's own page names it in these.
+    constexpr std::array<std::string_view, 2> tables{"[stroke]", "[[method]]"};
+    const std::string keys =
+        row_ == nullptr
+            ? describe_key(name_)
+            : describe_key(name_, std::span(tables).subspan((row_->where & options::in_stroke) != 0 ? 0 : 1));
+    text_ = row_ == nullptr ? keys : describe_row(*row_) + (keys.empty() ? "" : "\n" + keys);
+    std::replace(name_.begin(), name_.end(), '_', '-');
 }
 
 void option_help::add(const CLI::App& command)
 {
     for (const CLI::Option* o : command.get_options())
-        for (const std::string& name : o->get_lnames()) {
+        for (const std::string& name : o->get_lnames())
             if (name == name_ && (row_ == nullptr || o->get_group() != row_->in))
                 text_ +=
-                    fmt::format("tactor {}: {}\n  {}\n", command.get_name(),
+                    fmt::format("{}tactor {}: {}\n  {}\n", text_.empty() ? "" : "\n", command.get_name(),
                                 with_type("--" + name, o->get_type_name()), spelled(o->get_description()));
-            if (name.find(name_) != std::string::npos)
+            else if (name.find(name_) != std::string::npos)
                 similar_.emplace(name, describe_line(*o));
-        }
 }
 
 std::string option_help::text(const CLI::App& app) const
 {
-    if (!text_.empty())
-        return text_;
-    if (similar_.empty() || name_.empty())
+    constexpr std::size_t short_name = 3; // other words contain it by chance
+    const bool lists = !similar_.empty() && !name_.empty() && (text_.empty() || name_.size() > short_name);
+    std::string text = text_.empty() ? describe_mention(name_) : text_;
+    if (row_ != nullptr || (!lists && !text.empty()))
+        return text;
+    if (!lists)
         throw no_such_command(app, word_);
-    std::string text =
-        fmt::format("Options with \"{}\" in their names; tactor help OPTION explains one:\n", name_);
+    text += fmt::format("{}Options with \"{}\" in their names; tactor help OPTION explains one:\n",
+                        text.empty() ? "" : "\n", name_);
     for (const auto& [name, line] : similar_)
         text += line;
     return text;

@@ -29,8 +29,9 @@ std::string help_page(const CLI::App& app, bool whole);
 /// Returns the lines with the commands to try first.
 std::string first_steps();
 
-/// Help about an option: its values, where it may be set, and its name there. For an option of a few
-/// commands, the line of their help. If no option has this name, the options whose names contain it.
+/// Help about an option: its values, where it may be set, and its name there; for an option of a few
+/// commands, the line of their help. For a key of files, what the manual says. If no option or key has this
+/// name, the options whose names contain it.
 class option_help {
 public:
     /// `word`: the name, which may begin with dashes.

@@ -193,6 +193,38 @@ class Options(ToolTest):
             self.assertEqual(read_range(said), read_range(self.about(key)["Range"]), key)
 
 
+# The readers of files, and what their lists of keys look like.
+READERS = {
+    "files/setup.cpp": r"only\(\s*\{([^}]*)\}", "files/stroke/toml.cpp": r"(?:only\(|(?:_keys|kinds)\[\] = )\{([^}]*)\}",
+    "options/serve.cpp": r"\bkey\{(\"\w+\")", "study/experiment/page_words.cpp": r"page_word\{(\"\w+\")",
+    "study/experiment/questionnaire.cpp": r"only\(\{([^}]*)\}", "study/experiment/definition.cpp": r"only\(\{([^}]*)\}",
+}
+
+
+class Keys(ToolTest):
+    def test_help_explains_each_key_that_a_reader_accepts(self):
+        for file, lists in READERS.items():
+            names = set(re.findall(r'"(\w+)"', " ".join(re.findall(lists, (ROOT / "src" / file).read_text(encoding="utf-8")))))
+            self.assertGreater(len(names), 5, file)
+            for name in names - {"experiment"}:  # a command
+                self.assertRegex(self.ok("help", name).stdout, r"In files: |: see tactor|Stroke files: ", f"{file}: {name}")
+
+    def test_it_names_each_table_and_says_what_the_manual_says(self):
+        for word, tables in (("max_dbfs", ["[array]", "[[tactor]]"]), ("pulse-ms", ["[sync]", "[sync]"]), ("level_dbfs", ["[masking]"]),
+                             ("slope", ["[[run]]"]), ("pitch_mm", ["[array]"]), ("chip", ["[amplifier]", "[sync]", "[sync]"])):
+            self.assertEqual(re.findall(r"^  In files: +(\S+),", self.ok("help", word).stdout, re.M), tables, word)
+        for word in ("limits", "[limits]"):
+            self.assertIn("[limits]: see tactor.toml(5); tactor help KEY explains a key\n  power_dbfs, max_drive_s, window_s\n", self.ok("help", word).stdout)
+        said = self.ok("help", "rest_s").stdout
+        self.assertIn('A list of two times, as rest_s = [2, 4], draws', " ".join(said.split()))
+        self.assertIn("see tactor-experiment(5)", said)
+        self.assertIn("  Range:            -200 to 60 dB\n  Default:          0\n", self.ok("help", "gain_db").stdout)
+        for word in ("gain_db", "rest_s", "code", "[page]"):
+            self.assertLessEqual(max(map(len, self.ok("help", word).stdout.splitlines())), 80)
+        self.assertIn("--max-dbfs DB", self.ok("help", "max_dbfs").stdout)
+        self.refused(2, "help", "nothing_like_it")
+
+
 RANGE = r"(-?[\d.e+]+) to ([\d.e+^]+)"
 SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "FILES", "EXIT STATUS", "EXAMPLES", "SEE ALSO"]
 

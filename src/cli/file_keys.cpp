@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "cli/file_keys.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/say.hpp"
+#include "core/split.hpp"
+
+namespace tactor::cli {
+namespace {
+
+struct file_key {
+    std::string_view table;
+    std::string_view name; ///< "out.pulse_ms": pulse_ms of the table out in it
+    std::string_view page;
+    std::string_view range;
+    std::string_view usual;
+    std::string_view text;
+    std::string_view mentions; ///< keys in the text, with blanks between them
+};
+
+constexpr file_key all_keys[] = {
+#include "cli/file_keys.inc"
+};
+
+std::string with_underscores(std::string_view word)
+{
+    std::string name(word);
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+bool has_name(const file_key& k, std::string_view name)
+{
+    const std::string own = with_underscores(k.name);
+    return own == name || own.substr(own.rfind('.') + 1) == name;
+}
+
+std::string_view bare_table(std::string_view table)
+{
+    const std::size_t begin = std::min(table.find_first_not_of('['), table.size());
+    return table.substr(begin, table.find(']') - begin);
+}
+
+std::string describe_entry(const file_key& k)
+{
+    std::string text = fmt::format("{}\n{}", k.name, wrapped("  ", k.text));
+    for (const auto& [title, said] : {std::pair("Range:", k.range), {"Default:", k.usual}})
+        if (!said.empty())
+            text += fmt::format("  {:<18}{}\n", title, said);
+    return text + fmt::format("  {:<18}{}, see {}\n", "In files:", k.table, k.page);
+}
+
+// Returns a line or two about a table; empty if there is none.
+std::string describe_table(std::string_view name)
+{
+    std::vector<std::string_view> names;
+    const file_key* first = nullptr;
+    for (const file_key& k : all_keys)
+        if (bare_table(k.table) == name) {
+            first = first == nullptr ? &k : first;
+            names.push_back(k.name);
+        }
+    return first == nullptr
+               ? ""
+               : fmt::format("{}: see {}; tactor help KEY explains a key\n{}", first->table, first->page,
+                             wrapped("  ", fmt::format("{}", fmt::join(names, ", "))));
+}
+
+void append_block(std::string& text, const std::string& more)
+{
+    text += (text.empty() || more.empty() ? "" : "\n") + more;
+}
+
+} // namespace
+
+std::string describe_key(std::string_view word, std::span<const std::string_view> besides)
+{
+    std::string text;
+    const std::string name = with_underscores(word);
+    for (const file_key& k : all_keys)
+        if (has_name(k, name) && std::find(besides.begin(), besides.end(), k.table) == besides.end())
+            append_block(text, describe_entry(k));
+    append_block(text, describe_table(bare_table(word)));
+    return text;
+}
+
+std::string describe_mention(std::string_view word)
+{
+    std::string text;
+    const std::string name = with_underscores(word);
+    for (const file_key& k : all_keys) {
+        const auto words = detail::split(k.mentions, ' ');
+        if (std::find(words.begin(), words.end(), name) != words.end())
+            append_block(text, describe_entry(k));
+    }
+    return text;
+}
+
+} // namespace tactor::cli
