@@ -13,6 +13,7 @@
 #include "files/setup_text.hpp"
 #include "folder.hpp"
 #include "has.hpp"
+#include "rounds.hpp"
 
 namespace setup_array_test {
 
@@ -367,8 +368,12 @@ TEST_CASE("an error of a file has its place and the key, as parts")
 TEST_CASE("a file of more than 16 MB is refused, an endless one too")
 {
     const folder f;
-    const fs::path full = f.write("full.toml", "#" + std::string((std::size_t{16} << 20) - 1, ' '));
-    CHECK(file_complaint(full).empty());
+    // Shows by a fault that a file of 16 MB is parsed: a comment as long takes the parser a second.
+    const std::string full(std::size_t{16} << 20, '#');
+    CHECK(file_complaint(f.write("full.toml", "=" + full.substr(1))).find("full.toml:1:1: ") !=
+          std::string::npos);
+    if (test::whole())
+        CHECK(file_complaint(f.write("full.toml", full)).empty());
     const fs::path more = f.write("more.toml", "#" + std::string(std::size_t{16} << 20, ' '));
     CHECK(file_complaint(more) == more.string() + ": longer than 16 MB (check that it is the right file)");
     CHECK(file_complaint("/dev/zero") == "/dev/zero: longer than 16 MB (check that it is the right file)");
