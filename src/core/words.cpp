@@ -83,6 +83,12 @@ std::string in_small_letters(std::string text)
     return text;
 }
 
+std::string too_large_text(std::uint64_t bytes)
+{
+    return fmt::format("its {} MB are too many: {} MB are held in memory at most", bytes >> 20,
+                       most_own_bytes >> 20);
+}
+
 std::string recording_name(const recording& r)
 {
     return r.file.empty() ? "recording" : r.file;

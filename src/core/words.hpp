@@ -27,6 +27,9 @@ namespace tactor {
 /// Returns the text with A to Z in lower case, for names that ignore case.
 [[nodiscard]] std::string in_small_letters(std::string text);
 
+/// Returns the reason against samples of one's own above most_own_bytes: "its 3072 MB are too many: ...".
+[[nodiscard]] std::string too_large_text(std::uint64_t bytes);
+
 /// Returns the recording's file, or "recording" if it has none.
 [[nodiscard]] std::string recording_name(const recording& r);
 

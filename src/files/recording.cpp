@@ -304,9 +304,7 @@ own_samples load_samples(const std::filesystem::path& file)
     std::error_code unknown;
     const std::uintmax_t size = std::filesystem::file_size(file, unknown);
     if (!unknown && size > most_bytes)
-        throw error(error_kind::bad_input, source_place{file.string()},
-                    fmt::format("its {} MB are too many: {} MB are held in memory at most", size >> 20,
-                                most_own_bytes >> 20),
+        throw error(error_kind::bad_input, source_place{file.string()}, too_large_text(size),
                     "cut it into pieces, such as by: sox IN OUT trim 0 600");
     const detail::whole_text bytes = detail::read_text_file(file, most_bytes);
     return detail::parse_samples(bytes, file.string());

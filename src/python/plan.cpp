@@ -365,9 +365,7 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
     const score made = [&] {
         const without_lock free;
         if (bytes.size() > most_own_bytes) // before they are copied
-            throw error(error_kind::bad_input, "samples",
-                        fmt::format("{} MB are too many: {} MB are held in memory at most",
-                                    bytes.size() >> 20, most_own_bytes >> 20),
+            throw error(error_kind::bad_input, "samples", too_large_text(bytes.size()),
                         "play them in pieces");
         own_samples s{.rate = o.rate, .channels = channels, .format = f};
         s.bytes.assign(bytes.begin(), bytes.end());

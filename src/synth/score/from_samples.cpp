@@ -50,10 +50,7 @@ void check_shape(const own_samples& x, const render_options& o, unsigned channel
             x, fmt::format("{} bytes are no whole number of frames of {}", x.bytes.size(), frame_bytes),
             "give whole frames");
     if (x.bytes.size() > most_own_bytes)
-        throw bad_samples(x,
-                          fmt::format("its {} MB are too many: {} MB are held in memory at most",
-                                      x.bytes.size() >> 20, most_own_bytes >> 20),
-                          "play it in pieces");
+        throw bad_samples(x, too_large_text(x.bytes.size()), "play it in pieces");
 }
 
 /// Refuses the channel that is the farthest above what it may have, if any.
