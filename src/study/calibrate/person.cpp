@@ -163,12 +163,14 @@ calibration_answer person::choose(const calibration_trial& t)
                      .playing = shown + 1});
         }
     };
-    std::optional<noise_around> noise(stage_);
-    const given_stimulus p = play(t, s, [&](double at_s) {
-        show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
-    });
-    show_until(2); // if the process was too slow to look
-    noise.reset();
+    const given_stimulus p = [&] {
+        const noise_around noise(stage_);
+        const given_stimulus given = play(t, s, [&](double at_s) {
+            show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
+        });
+        show_until(2); // where the process was too slow to look
+        return given;
+    }();
     keys_.drop_keys();
     on_page({.name = "question", .question = words_["calibrate_which"], .choices = {"", ""}, .keys = "12"});
     session::show(" which? ");
