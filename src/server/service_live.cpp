@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Live strokes: their begin, their points and their end.
+#include "server/service.hpp"
+
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/bounds.hpp"
+#include "server/faults.hpp"
+
+namespace tactor::server {
+namespace {
+
+using net::json;
+using net::reply_json;
+
+// Farthest place, mm. The stroke clamps or refuses nearer places outside the array.
+constexpr double farthest_mm = 1e6;
+
+} // namespace
+
+void service::begin(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"options", "timeout_s", "smooth_s"});
+    live_options o;
+    options::option_values s = options_.plans.owner;
+    s.plan.algorithm = o.plan.algorithm;
+    s.plan.outside = o.plan.outside;
+    if (const json* chosen = member(params, "options"))
+        s = with_options(s, *chosen, options_for::live);
+    check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
+    o.plan = s.plan;
+    o.render = s.render;
+    o.longest_s = options_.limits.max_stroke_s;
+    o.timeout_s = number_or(params, "timeout_s", detail::bounds_of::timeout_s, o.timeout_s);
+    o.smooth_s = number_or(params, "smooth_s", detail::bounds_of::smooth_s, o.smooth_s);
+    check_free_place(c);
+    if (c.live >= options_.limits.max_live_strokes)
+        limit_reached("max_live_strokes",
+                      fmt::format("you have {} live strokes already", options_.limits.max_live_strokes),
+                      "end one of them first");
+    if (ending_ || stream_.is_out())
+        no_stream(stream_.reason());
+    ++c.coming;
+    ++c.live;
+    const double intensity_max = s.intensity_max.value_or(1.0);
+    once_ready(to, "options", [this, number = c.number, o, to, intensity_max] {
+        if (client* then = find(number)) {
+            --then->live;
+            begin_now(*then, o, intensity_max, to);
+        }
+    });
+}
+
+void service::begin_now(client& c, const live_options& o, double intensity_max, const answer& to)
+{
+    player* out = stream_.current();
+    if (ending_ || out == nullptr || out->ended())
+        no_stream(ending_ ? "the server ends" : stream_.reason());
+    if (const char* ended_by = stop_reason_since(to)) { // stopped while the stream was being started
+        const auto numbers = end_unbegun(c.number, 1, ended_by);
+        return to.result({{"stroke", numbers.front()}}, numbers);
+    }
+    live_stroke live = out->begin(o);
+    stroke_record& r = add_record(c.number);
+    r.player = stream_.number();
+    add_submission(r, live.id());
+    r.live = live;
+    r.intensity_max = intensity_max;
+    note_sound(r, "live", o.render);
+    if (r.level_db != 0.0)
+        out->set_level(live.id(), r.level_db);
+    ++c.live;
+    if (c.input_over)
+        live.end();
+    to.result({{"stroke", r.number}}, {r.number});
+}
+
+service::stroke_record& service::own_live(client& c, std::uint32_t number)
+{
+    stroke_record& r = own_stroke(c, number);
+    if (!r.live)
+        no_such_stroke(number, "it is not a live stroke");
+    return r;
+}
+
+void service::to(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"stroke", "x_mm", "y_mm", "intensity"});
+    if (const double most = options_.limits.max_points_per_s; !c.points.take(1.0, most, options_.now_ns()))
+        limit_reached("max_points_per_s", fmt::format("a client may send at most {} points a second", most));
+    const std::uint32_t n = need_stroke(params);
+    const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
+    const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
+    stroke_record& r = own_live(c, n);
+    const double intensity =
+        number_or(params, "intensity", {0.0, std::numeric_limits<double>::max()}, r.intensity_max);
+    try {
+        if (!r.live->to(x, y, intensity / r.intensity_max))
+            no_such_stroke(n, "it has ended");
+    } catch (const error& e) {
+        throw fault_error(library_fault(e, "x_mm"));
+    }
+    r.touched = point{x, y};
+    touch(r);
+    to.result(reply_json::object());
+}
+
+void service::end(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"stroke"});
+    const std::uint32_t n = need_stroke(params);
+    if (const stroke_record& r = own_stroke(c, n); r.rounds.again || r.rounds.last)
+        end_request(r);
+    else
+        own_live(c, n).live->end();
+    to.result(reply_json::object());
+}
+
+} // namespace tactor::server
