@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Definitions with one run, and a test of counts, for tests of orders.
+// Definitions with one run, a test of counts, and an array, for tests of orders and their stimuli.
 #pragma once
 
 #include <string>
@@ -7,6 +7,8 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
+
+#include <tactor/array.hpp>
 
 #include "study/experiment/definition.hpp"
 
@@ -35,6 +37,15 @@ inline double p_of_equal(const std::vector<double>& counts)
         chi2 += (c - expected) * (c - expected) / expected;
     const boost::math::chi_squared d(static_cast<double>(counts.size() - 1));
     return boost::math::cdf(boost::math::complement(d, chi2));
+}
+
+// Returns an array whose tactors are all felt from one level on.
+inline array felt_array()
+{
+    array a = preset_array("palm-3x3");
+    for (tactor_spec& t : a.tactors)
+        t.threshold_dbfs = -40.0;
+    return a;
 }
 
 } // namespace tactor::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Random draws, orders of trials, simulated observers, and the power of studies with them.
+// Random draws, orders of trials, and their stimuli.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <boost/math/distributions/normal.hpp>
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -23,11 +22,8 @@
 #include "folder.hpp"
 #include "has.hpp"
 #include "sequences.hpp"
-#include "study/analysis/analysis.hpp"
-#include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
-#include "study/statistics/bradley_terry.hpp"
 
 namespace tactor::study::test_sequence {
 namespace {
@@ -408,162 +404,6 @@ TEST_CASE("normal numbers have mean 0 and variance 1")
     CHECK(std::abs(squares / n - 1.0) < 0.03);
 }
 
-// Returns an array whose tactors are all felt from one level on.
-array felt_array()
-{
-    array a = preset_array("palm-3x3");
-    for (tactor_spec& t : a.tactors)
-        t.threshold_dbfs = -40.0;
-    return a;
-}
-
-struct rig {
-    experiment_definition d = load_definition("park2016");
-    stimulus_set stimuli{d, felt_array(), {}};
-
-    simulated_observer observer(std::size_t run, const std::string& spec) const
-    {
-        return {simulation_ = parse_simulation(spec), d, d.runs[run], stimuli, "01"};
-    }
-    mutable simulation simulation_ = {};
-};
-
-TEST_CASE("a choice takes the larger -ln cost plus noise, as often as the normal distribution says")
-{
-    const rig r;
-    const simulated_observer o = r.observer(0, "seed=3,sigma=1");
-    const double brush = *r.stimuli.at(0, 0).felt.rms_error_mm;
-    const double park = *r.stimuli.at(0, 1).felt.rms_error_mm;
-    const double p =
-        boost::math::cdf(boost::math::normal(), (std::log(brush) - std::log(park)) / std::sqrt(2.0));
-    constexpr unsigned n = 20000;
-    unsigned chosen = 0;
-    for (unsigned i = 1; i <= n; ++i)
-        chosen += o.answer({0, 0, 1}, i, 1, false).response == 2 ? 1 : 0;
-    CHECK(chosen / static_cast<double>(n) == doctest::Approx(p).epsilon(0.03));
-}
-
-TEST_CASE("an observer judges what simulate_as says, and refuses an attribute that it does not know")
-{
-    rig r;
-    r.d.runs[0].attribute = "pleasantness";
-    r.d.runs[0].simulate_as = "uniformity";
-    r.d.runs[0].outline.name = r.d.runs[1].outline.name; // a part of the seed
-    const auto answer = [&](std::size_t run) {
-        return r.observer(run, "sigma=0").answer({0, 0, 1}, 1, 1, false).response;
-    };
-    CHECK(answer(0) == answer(1));
-    r.d.runs[0].simulate_as.clear();
-    has(caught_message([&] { answer(0); }), "cannot judge \"pleasantness\" (add simulate_as = ");
-}
-
-TEST_CASE("without noise the better one is chosen, in either place")
-{
-    const rig r;
-    const simulated_observer o = r.observer(1, "sigma=0");
-    const bool second = *r.stimuli.at(0, 1).felt.speed_cv < *r.stimuli.at(0, 0).felt.speed_cv;
-    CHECK(o.answer({0, 0, 1}, 1, 1, false).response == (second ? 2 : 1));
-    CHECK(o.answer({0, 1, 0}, 1, 1, false).response == (second ? 1 : 2));
-}
-
-TEST_CASE("without noise a rating is the middle plus the advantage of the cost over the mean")
-{
-    const rig r;
-    double mean = 0.0;
-    for (std::size_t m = 0; m < 4; ++m)
-        for (std::size_t k = 0; k < 2; ++k)
-            mean -= std::log(std::max(1e-3, *r.stimuli.at(m, k).felt.rms_error_mm)) / 8.0;
-    const simulated_observer o = r.observer(2, "sigma=0");
-    for (std::size_t m = 0; m < 4; ++m)
-        for (std::size_t k = 0; k < 2; ++k) {
-            const double u = -std::log(*r.stimuli.at(m, k).felt.rms_error_mm);
-            const double rating = std::min(5.0, std::max(1.0, std::round(3.0 + u - mean)));
-            CHECK(o.answer({m, k}, 1, 1, false).response == static_cast<unsigned>(rating));
-        }
-}
-
-TEST_CASE("ratings stay on the scale, and noise uses all of it")
-{
-    rig r;
-    const auto range = [&](const std::string& spec) {
-        const simulated_observer o = r.observer(3, spec);
-        unsigned low = 1000;
-        unsigned high = 0;
-        for (unsigned i = 1; i <= 500; ++i) {
-            const unsigned a = o.answer({0, 0}, i, 1, false).response;
-            low = std::min(low, a);
-            high = std::max(high, a);
-        }
-        return std::pair(low, high);
-    };
-    CHECK(range("sigma=3") == std::pair(1U, 5U));
-    r.d.runs[3].outline.scale = 100;
-    r.d.runs[3].outline.visual = true;
-    CHECK(range("sigma=60") == std::pair(0U, 100U));
-}
-
-TEST_CASE("an identification names the nearest target: the right one without noise, any with much")
-{
-    const std::string text = "[experiment]\nname = \"i\"\nlevel = { dbfs = -12 }\n"
-                             "[[motion]]\nname = \"right\"\npath = \"M0 20H40\"\n"
-                             "[[motion]]\nname = \"down\"\npath = \"M20 0V40\"\n"
-                             "[[motion]]\nname = \"left\"\npath = \"M40 20H0\"\n"
-                             "[[method]]\nname = \"park\"\n"
-                             "[[run]]\nname = \"which\"\ntask = \"identify\"\ntrials = 9\n";
-    const experiment_definition d = read_definition(text, "i.toml", {});
-    const stimulus_set stimuli(d, felt_array(), {});
-    const simulation exact = parse_simulation("sigma=0");
-    const simulation blurred = parse_simulation("sigma=5000");
-    const simulated_observer sharp(exact, d, d.runs[0], stimuli, "01");
-    const simulated_observer dull(blurred, d, d.runs[0], stimuli, "01");
-    unsigned right = 0;
-    for (std::size_t m = 0; m < 3; ++m)
-        for (unsigned i = 1; i <= 100; ++i) {
-            CHECK(sharp.answer({m, 0}, i, 1, false).response == m + 1);
-            right += dull.answer({m, 0}, i, 1, false).response == m + 1 ? 1 : 0;
-        }
-    CHECK(right > 50);
-    CHECK(right < 250);
-}
-
-TEST_CASE("an answer depends on its place and attempt alone")
-{
-    const rig r;
-    const simulated_observer o = r.observer(0, "seed=1,sigma=1");
-    const simulated_answer a = o.answer({0, 0, 1}, 7, 1, false);
-    o.answer({1, 1, 0}, 8, 1, false);
-    const simulated_answer b = o.answer({0, 0, 1}, 7, 1, false);
-    CHECK(a.response == b.response);
-    CHECK(a.response_time_ms == b.response_time_ms);
-    CHECK(o.answer({0, 0, 1}, 7, 2, false).response_time_ms != a.response_time_ms);
-    CHECK(o.answer({0, 0, 1}, 7, 1, true).response_time_ms != a.response_time_ms);
-}
-
-TEST_CASE("a given share of the trials is void, and no practice")
-{
-    const rig r;
-    const simulated_observer o = r.observer(0, "void=0.25");
-    unsigned voids = 0;
-    for (unsigned i = 1; i <= 4000; ++i) {
-        voids += o.answer({0, 0, 1}, i, 1, false).is_void ? 1 : 0;
-        CHECK(!o.answer({0, 0, 1}, i, 1, true).is_void);
-    }
-    CHECK(voids > 900);
-    CHECK(voids < 1100);
-}
-
-TEST_CASE("impossible simulations are refused")
-{
-    const auto refusal = [](const char* text) { return caught_message([&] { parse_simulation(text); }); };
-    has(refusal("sigma=-1"), "sigma is \"-1\"");
-    has(refusal("sigma=nan"), "sigma is \"nan\"");
-    has(refusal("noise=1"), "\"noise\" is unknown");
-    has(refusal("seed=1,seed=2"), "occurs twice");
-    has(refusal("seed=1,"), "\"\" is unknown");
-    CHECK(parse_simulation("sigma=2") == simulation{1, 2.0, 0.0});
-    CHECK(to_text(parse_simulation("void=0.1,sigma=0.5,seed=9")) == "seed=9,sigma=0.5,void=0.1");
-}
-
 TEST_CASE("a stimulus that cannot be planned or played is refused with its motion and method")
 {
     const auto refusal = [](const std::string& motion, const std::string& level,
@@ -670,142 +510,6 @@ TEST_CASE("methods that make the same stimulus are named")
     std::vector<std::string> named = stimulus_set(d, felt_array(), {}).warnings();
     std::erase_if(named, [](const std::string& w) { return w.find("same stimulus") == w.npos; });
     CHECK(named == std::vector<std::string>{"motion \"m\": methods \"a\" and \"b\" make the same stimulus"});
-}
-
-struct power_rig {
-    explicit power_rig(const std::string& second, const std::string& runs)
-        : d(read_definition("[experiment]\nname = \"p\"\n"
-                            "[[motion]]\nname = \"right\"\npath = \"M0 20H40\"\nduration = 0.7\n"
-                            "[[motion]]\nname = \"down\"\npath = \"M20 0V40\"\nduration = 0.7\n"
-                            "[[method]]\nname = \"a\"\nalgorithm = \"tactile-brush\"\n"
-                            "[[method]]\nname = \"b\"\nalgorithm = \"" +
-                                second + "\"\n" + runs,
-                            "p.toml", {})),
-          stimuli(d, felt_array(), {})
-    {
-    }
-
-    std::vector<run_power> tell(const power_request& r) const
-    {
-        return simulate_power(d, stimuli, r, [] { return true; }).value();
-    }
-
-    experiment_definition d;
-    stimulus_set stimuli;
-};
-
-constexpr const char* choose = "[[run]]\nname = \"pick\"\ntask = \"choose\"\nattribute = \"similarity\"\n"
-                               "trials = 12\n";
-constexpr const char* rate = "[[run]]\nname = \"mark\"\ntask = \"rate\"\nattribute = \"uniformity\"\n"
-                             "trials = 12\n";
-
-// A better method after the second, for power_rig.
-constexpr const char* third = "park2016\"\n[[method]]\nname = \"c\"\nalgorithm = \"continuous\"\n"
-                              "phantom = \"gaussian";
-
-TEST_CASE("choices among three methods have the worths that their costs imply")
-{
-    const power_rig r(third, choose);
-    const simulation s{.seed = 2, .sigma = 1.0};
-    const boost::math::normal noise(0.0, std::sqrt(2.0) * s.sigma);
-    dataset all;
-    all.experiment = r.d.outline;
-    std::vector<std::vector<double>> expected(3, std::vector<double>(3, 0.0));
-    for (unsigned i = 1; i <= 40; ++i) {
-        all.participants.push_back(fmt::format("{:02}", i));
-        const simulated_observer who(s, r.d, r.d.runs[0], r.stimuli, all.participants.back());
-        run_data data;
-        for (const planned_trial& t : make_run(r.d, 0, all.participants.back(), 7).trials) {
-            const auto place = static_cast<unsigned>(data.trials.size() + 1);
-            const auto cost = [&](std::size_t method) {
-                return *r.stimuli.at(t.motion, method).felt.rms_error_mm;
-            };
-            const double p = boost::math::cdf(noise, std::log(cost(*t.method_2) / cost(t.method_1)));
-            expected[t.method_1][*t.method_2] += p;
-            expected[*t.method_2][t.method_1] += 1.0 - p;
-            data.trials.push_back(
-                {.place = place,
-                 .motion = t.motion,
-                 .method_1 = t.method_1,
-                 .method_2 = *t.method_2,
-                 .response = static_cast<unsigned>(who.answer(t, place, 1, false).response)});
-        }
-        all.data.push_back({data});
-    }
-    const run_analysis found = analyse(all).runs[0];
-    const std::vector<worth> truth = bradley_terry(expected);
-    REQUIRE(found.worths.size() == 3);
-    for (const std::size_t m : {1U, 2U}) {
-        CHECK(*truth[m].log_worth > *truth[m - 1].log_worth + 0.5);
-        CHECK(*found.worths[m].log_worth > *found.worths[m - 1].log_worth);
-        CHECK(std::abs(*found.worths[m].log_worth - *truth[m].log_worth) < 4.0 * *found.worths[m].se);
-    }
-    const power_at at = r.tell({s, {6}, 40})[0].at[0];
-    CHECK(at.for_last == at.significant);
-    CHECK(at.significant > 32);
-}
-
-TEST_CASE("where both methods are equal, one study in twenty is significant")
-{
-    const power_rig r("tactile-brush", std::string(choose) + rate);
-    const std::vector<run_power> powers = r.tell({{.seed = 1, .sigma = 1.0}, {8}, 3000});
-    REQUIRE(powers.size() == 2);
-    for (const run_power& p : powers) {
-        CHECK(p.at[0].significant > 90); // counts are coarse, and so is their t: not 0.05 exactly
-        CHECK(p.at[0].significant < 210);
-        CHECK(static_cast<double>(p.at[0].for_last) ==
-              doctest::Approx(static_cast<double>(p.at[0].significant) / 2.0).epsilon(0.25));
-    }
-}
-
-TEST_CASE("less noise and more people find more")
-{
-    const power_rig r("park2016", rate);
-    const auto power = [&](double sigma, std::size_t n) {
-        return r.tell({{.seed = 5, .sigma = sigma}, {n}, 300})[0].at[0].significant;
-    };
-    CHECK(power(8.0, 6) < power(4.0, 6));
-    CHECK(power(8.0, 6) < power(8.0, 24));
-}
-
-TEST_CASE("smaller studies are the first people of larger ones, in any given order")
-{
-    const power_rig r("park2016", std::string(choose) + rate);
-    const simulation s{.seed = 3, .sigma = 4.0, .voids = 0.2};
-    const auto both = r.tell({s, {9, 4}, 50});
-    const auto less = r.tell({s, {4}, 50});
-    for (std::size_t run = 0; run < 2; ++run) {
-        CHECK(both[run].at[1].participants == 4);
-        CHECK(both[run].at[1].significant == less[run].at[0].significant);
-        CHECK(both[run].at[1].for_last == less[run].at[0].for_last);
-    }
-}
-
-TEST_CASE("without noise nobody differs, so nothing is tested")
-{
-    const power_rig r("park2016", choose);
-    const power_at at = r.tell({{.sigma = 0.0}, {5}, 20})[0].at[0];
-    CHECK(at.untested == 20);
-    CHECK(at.significant == 0);
-}
-
-TEST_CASE("ratings of one method have nothing to compare, identifications chance")
-{
-    const power_rig r("park2016", std::string(rate) + "methods = [\"b\"]\n[[run]]\nname = \"what\"\n"
-                                                      "task = \"identify\"\ntrials = 8\n");
-    const auto powers = r.tell({{.sigma = 30.0}, {6}, 20});
-    CHECK(powers[0].at.empty());
-    REQUIRE(powers[1].at.size() == 1);
-    CHECK(powers[1].at[0].significant > 0);
-}
-
-TEST_CASE("the computation asks before each study whether to go on, and gives nothing when stopped")
-{
-    const power_rig r("park2016", choose);
-    int asked = 0;
-    const auto powers = simulate_power(r.d, r.stimuli, {{}, {3}, 100}, [&] { return ++asked < 4; });
-    CHECK_FALSE(powers.has_value());
-    CHECK(asked == 4);
 }
 
 } // namespace
