@@ -43,7 +43,7 @@ USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "
 INSIDE = {
     "cli": {"core/kind_names.hpp", "core/members.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "rt/system_files.hpp", "rt/thread.hpp", "sink/wav/wav.hpp", "synth/score/score_view.hpp"},
     "study": {"amplifier/line.hpp", "core/baud_rates.hpp", "core/marks.hpp", "core/owned.hpp", "core/path/shape.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/system_files.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp", "synth/score/joined.hpp"},
-    "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/score/score_view.hpp"},
+    "plot": {"core/owned.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/score/score_view.hpp"},
     "server": {"core/bounds.hpp", "core/kind_names.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/trajectory/recorded_points.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp"},
     "python": {"core/access.hpp", "core/path/impl.hpp", "core/trajectory/impl.hpp", "core/trajectory/recorded_points.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "plan/curve_impl.hpp", "sink/wav/wav.hpp"},
 }
@@ -58,7 +58,6 @@ ONLY_IN = {
     "boost/asio": ["src/engine/", "src/net/", "src/server/", "include/tactor/asio.hpp"],
     "CLI/": ["src/cli/"],
     "pybind11/": ["src/python/"],
-    "cairo": ["src/plot/"],
     "lo/": ["src/net/osc.cpp"],
     "kainjow/": ["src/study/"],
     "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/python/", "src/server/", "src/session/", "src/study/"],

@@ -24,7 +24,6 @@ LIBRARIES = (
     ("nlohmann-json", "nlohmann-json3-dev", None, "nlohmann_json", "nlohmann/json.hpp"),
     ("ALSA", "libasound2-dev", "alsa", "alsa", "alsa/asoundlib.h"),
     ("libgpiod", "libgpiod-dev", "gpio", "libgpiod", "gpiod.h"),
-    ("Cairo", "libcairo2-dev", "plots", "cairo", "cairo/cairo.h"),
 )
 
 

@@ -190,6 +190,7 @@ class Files(PlotTest):
         self.write("old.png", b"old")
         os.symlink("/dev/full", self.dir / "full.svg")
         self.refused(1, "plot", "park2016-1", "-o", "full.svg")
+        self.refused(1, "plot", "park2016-1", "-o", "x.pdf", env={"PATH": "/nonexistent"})
         self.refused(2, "plot", "nothing", "-o", "old.png")
         self.assertEqual((self.dir / "old.png").read_bytes(), b"old")
         self.assertEqual(sorted(p.name for p in self.dir.iterdir()), ["alsa.conf", "folder.svg", "full.svg", "old.png"])

@@ -64,36 +64,9 @@ class Install(FolderTest):
 
     def test_the_tool_has_the_library_within_and_shows_nothing_of_it(self):
         # Libraries that the linker would otherwise look for at each start.
-        painter, = self.libdir.glob("tactor/painter-*.so")
-        for file in (self.prefix / "bin/tactor", painter):
-            self.assertNotIn("libtactor", run("ldd", file, env=self.env), file)
-            exported = run("nm", "-D", "-C", "--defined-only", file)
-            self.assertNotIn("tactor::", exported, file)
-        self.assertEqual([line.split()[2] for line in exported.splitlines()], ["tactor_painter"])
-
-    def test_the_painter_is_loaded_from_beside_the_tool_and_only_for_pictures(self):
         tool = self.prefix / "bin/tactor"
-        (painter,) = self.libdir.glob("tactor/painter-*.so")
-        self.assertNotIn("cairo", run("ldd", tool, env=self.env))
-        self.assertIn("cairo", run("ldd", painter, env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)}))
-        elsewhere = self.env | {"LD_DEBUG": "files", "LD_DEBUG_OUTPUT": str(self.dir / "loaded")}
-        run(tool, "plot", "park2016-1", "-o", self.dir / "a.svg", env=elsewhere)
-        run(tool, "plot", "park2016-1", "-o", self.dir / "a.png", env=elsewhere)
-        run(tool, "plot", "park2016-1", "-o", self.dir / "a.pdf", env=elsewhere)
-        loaded = ["cairo" in log.read_text(errors="replace") for log in self.dir.glob("loaded.*")]
-        self.assertEqual(sorted(loaded), [False, True, True])
-        self.assertEqual((self.dir / "a.png").read_bytes()[:4], b"\x89PNG")
-        self.assertEqual((self.dir / "a.pdf").read_bytes()[:4], b"%PDF")
-
-        away = painter.rename(self.dir / painter.name)
-        try:  # neither the working folder nor the environment gives the place
-            r = subprocess.run([tool, "plot", "park2016-1", "-o", self.dir / "b.png"], capture_output=True, text=True, check=False,
-                               cwd=self.dir, env=self.env | {"LD_LIBRARY_PATH": str(self.dir)})
-        finally:
-            away.rename(painter)
-        self.assertEqual(r.returncode, 1)
-        self.assertRegex(r.stderr, r"^tactor: picture: the module for PNG and PDF cannot be loaded: .*painter-.*\(write SVG, or install tactor again\)\n$")
-        self.assertFalse((self.dir / "b.png").exists())
+        self.assertNotIn("libtactor", run("ldd", tool, env=self.env))
+        self.assertNotIn("tactor::", run("nm", "-D", "-C", "--defined-only", tool))
 
     def test_nothing_remembers_where_it_was_built_or_installed(self):
         options = {o["name"]: o["value"] for o in json.loads(run("meson", "introspect", BUILD, "--buildoptions"))}
@@ -168,13 +141,12 @@ class Install(FolderTest):
         if options["b_sanitize"] != "none":
             self.skipTest("a sanitizer's build is not hardened")
         (library,) = (p for p in self.libdir.glob("libtactor.so.*") if not p.is_symlink())
-        (painter,) = self.libdir.glob("tactor/painter-*.so")
-        for file in (library, self.prefix / "bin/tactor", painter):
+        for file in (library, self.prefix / "bin/tactor"):
             dynamic, names = run("readelf", "-dlW", file), run("nm", "-D", file)
             self.assertRegex(dynamic, r"BIND_NOW|FLAGS_1.*NOW", file)
             self.assertIn("GNU_RELRO", dynamic, file)
             self.assertIn("__stack_chk_fail", names, file)
-            if options["optimization"] not in ("0", "plain") and file != painter:  # the painter calls nothing that has a checked twin
+            if options["optimization"] not in ("0", "plain"):
                 self.assertRegex(names, r"__\w+_chk\b", file)
 
     def test_the_library_brings_few_others(self):

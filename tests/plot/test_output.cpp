@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <clocale>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -8,6 +11,8 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
+#include "folder.hpp"
 #include "has.hpp"
 #include "plot/paint/output.hpp"
 
@@ -69,13 +74,41 @@ TEST_CASE("more pixels than an image may have are refused")
     CHECK_THROWS_AS(to_png(c, 2400), error);
 }
 
-TEST_CASE("a PDF is one, without the time of day")
+TEST_CASE("a PDF is one, of the page's size")
 {
     const std::string pdf = to_pdf(page());
     CHECK(pdf.starts_with("%PDF-1."));
     CHECK(pdf.find("%%EOF") != std::string::npos);
-    CHECK(pdf.find("/CreationDate") == std::string::npos);
+    const std::size_t at = pdf.find("/MediaBox [");
+    REQUIRE(at != std::string::npos);
+    double width = 0.0;
+    double height = 0.0;
+    REQUIRE(std::sscanf(pdf.c_str() + at, "/MediaBox [ 0 0 %lf %lf ]", &width, &height) == 2);
+    CHECK(width == doctest::Approx(144.0));
+    CHECK(height == doctest::Approx(72.0));
     CHECK(to_pdf(page()) == pdf);
+}
+
+TEST_CASE("rsvg-convert gets no date, and an error has its package or its own message")
+{
+    const folder programs;
+    const std::string before = std::getenv("PATH");
+    const auto install = [&](const char* script) {
+        std::filesystem::permissions(programs.write("rsvg-convert", script),
+                                     std::filesystem::perms::owner_all);
+    };
+    ::setenv("PATH", programs.path().c_str(), 1);
+    constexpr const char* missing = "another kind: picture: rsvg-convert is missing, which makes PNG and PDF "
+                                    "(install librsvg2-bin, or write SVG)";
+    CHECK(caught_message([] { to_png(page(), 300); }) == missing);
+    CHECK(caught_message([] { to_pdf(page()); }) == missing);
+    install("#!/bin/sh\necho 'no font' >&2\nexit 1\n");
+    CHECK(caught_message([] { to_pdf(page()); }) == "another kind: rsvg-convert: no font (write SVG)");
+    install("#!/bin/sh\necho \"$SOURCE_DATE_EPOCH $*\"\n");
+    ::setenv("SOURCE_DATE_EPOCH", "1234567890", 1);
+    CHECK(to_pdf(page()) == "0 --unlimited --format=pdf\n");
+    ::unsetenv("SOURCE_DATE_EPOCH");
+    ::setenv("PATH", before.c_str(), 1);
 }
 
 TEST_CASE("the format follows the name, in upper or lower case")

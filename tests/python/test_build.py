@@ -27,7 +27,7 @@ def test_a_bare_machine_gets_all_missing_parts_in_one_line(backend, monkeypatch,
         backend.get_requires_for_build_wheel()
     said = capsys.readouterr().err
     assert e.value.code == 1 and said.count("\n") == 1 and said.startswith("tactor: build: missing a C++ compiler")
-    for word in ("g++", "libboost-dev", "libasound2-dev", "libgpiod-dev", "libcairo2-dev", "setup-args=-Dgpio=disabled"):
+    for word in ("g++", "libboost-dev", "libasound2-dev", "libgpiod-dev", "setup-args=-Dgpio=disabled"):
         assert word in said
     assert {package for _, package, _ in backend.missing({"setup-args": ["-Dalsa=disabled", "-Dgpio=disabled"]})} \
         == {package for _, package, _ in backend.missing()} - {"libasound2-dev", "libgpiod-dev"}
@@ -74,9 +74,9 @@ def test_its_packages_are_those_of_the_list_and_of_the_guide(backend, root):
     assert "--system-site-packages" in guide and all(f" {package}" in guide for package in needed)
 
 
-def test_libraries_for_playing_and_painting_are_required(root):
+def test_libraries_for_playing_are_required(root):
     setup = (root / "pyproject.toml").read_text()
-    assert all(f'"-D{option}"' in setup for option in ("alsa=enabled", "gpio=enabled", "plots=enabled"))
+    assert all(f'"-D{option}"' in setup for option in ("alsa=enabled", "gpio=enabled"))
 
 
 def test_the_build_takes_as_much_as_memory_allows_and_what_the_user_sets(backend):

@@ -207,7 +207,7 @@ constexpr double cap_height(double size) noexcept
     return 0.73 * size;
 }
 
-/// Returns valid UTF-8 without control characters: U+FFFD replaces bytes that XML or Cairo refuse.
+/// Returns valid UTF-8 without control characters: U+FFFD replaces bytes that XML refuses.
 std::string clean(std::string_view text);
 
 /// Returns the text, or its beginning and an ellipsis if it is wider than `width` pt.

@@ -36,10 +36,10 @@ std::string make_chunk(const std::string& name_and_content);
 std::string to_svg(const canvas& c);
 
 /// Returns an image in 8-bit RGB on white, with its resolution. \throws error: bad_input for more pixels than
-/// an image may have, runtime for a failure of the drawing library.
+/// an image may have, runtime if rsvg-convert is missing or fails.
 std::string to_png(const canvas& c, unsigned dpi);
 
-/// Returns a page of the picture's size. \throws error (runtime).
+/// Returns a page of the picture's size. \throws error (runtime) as to_png().
 std::string to_pdf(const canvas& c);
 
 /// Returns the bytes of a file in a format; `dpi` is for PNG. \throws error as above.

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// PNG and PDF: rsvg-convert makes them of the SVG. With Cairo linked in, each start of the tool would take
+// three times as long as one of aplay (tests/bench/start.py).
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "core/owned.hpp"
+#include "plot/paint/output.hpp"
+
+namespace tactor::plot {
+namespace {
+
+constexpr const char* program = "rsvg-convert";
+
+// Throws error (runtime) unless `code`, an errno, is 0.
+void check(int code)
+{
+    if (code != 0)
+        throw error(error_kind::runtime, program, std::strerror(code));
+}
+
+// A file in memory: with files, unlike with pipes, no side waits for the other.
+class memory_file {
+public:
+    memory_file() : descriptor_(::memfd_create("picture", MFD_CLOEXEC)) { check(descriptor_ ? 0 : errno); }
+
+    int descriptor() const noexcept { return descriptor_.get(); }
+    void write(std::string_view bytes) const
+    {
+        if (::pwrite(descriptor_.get(), bytes.data(), bytes.size(), 0) != std::ssize(bytes))
+            check(errno != 0 ? errno : EFBIG);
+    }
+    std::string read() const
+    {
+        struct stat of = {};
+        check(::fstat(descriptor_.get(), &of) == 0 ? 0 : errno);
+        std::string bytes(static_cast<std::size_t>(of.st_size), '\0');
+        if (::pread(descriptor_.get(), bytes.data(), bytes.size(), 0) != of.st_size)
+            check(errno != 0 ? errno : EFBIG);
+        return bytes;
+    }
+
+private:
+    detail::owned_fd descriptor_;
+};
+
+// Starts the program with three files as its standard ones, and no others.
+pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>& files)
+{
+    posix_spawn_file_actions_t actions;
+    check(::posix_spawn_file_actions_init(&actions));
+    const std::unique_ptr<posix_spawn_file_actions_t, detail::deleter<posix_spawn_file_actions_destroy>>
+        owner(&actions);
+    for (int i = 0; i < 3; ++i)
+        check(::posix_spawn_file_actions_adddup2(&actions, files.at(static_cast<std::size_t>(i)).descriptor(),
+                                                 i));
+    check(::posix_spawn_file_actions_addclosefrom_np(&actions, 3));
+    std::vector<char*> argv;
+    for (std::string& a : arguments)
+        argv.push_back(a.data());
+    argv.push_back(nullptr);
+    std::string no_date = "SOURCE_DATE_EPOCH=0"; // the same picture must be the same file
+    std::vector<char*> environment{no_date.data()};
+    for (char** e = environ; *e != nullptr; ++e)
+        if (!std::string_view(*e).starts_with("SOURCE_DATE_EPOCH="))
+            environment.push_back(*e);
+    environment.push_back(nullptr);
+    pid_t child = -1;
+    const int failed = ::posix_spawnp(&child, program, &actions, nullptr, argv.data(), environment.data());
+    if (failed == ENOENT)
+        throw error(error_kind::runtime, "picture",
+                    fmt::format("{} is missing, which makes PNG and PDF", program),
+                    "install librsvg2-bin, or write SVG");
+    check(failed);
+    return child;
+}
+
+// Returns what the program makes of the SVG.
+// \throws error (runtime) if it is missing or fails.
+std::string convert(const canvas& c, std::initializer_list<std::string> options)
+{
+    const std::array<memory_file, 3> files; // input, output, messages
+    files[0].write(to_svg(c));
+    std::vector<std::string> arguments{program, "--unlimited"};
+    arguments.insert(arguments.end(), options);
+    const pid_t child = start(std::move(arguments), files);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0)
+        check(errno == EINTR ? 0 : errno);
+    if (status != 0) {
+        const std::string messages = files[2].read();
+        throw error(error_kind::runtime, program,
+                    messages.empty() ? fmt::format("it ended with status {:#x}", status)
+                                     : clean(messages.substr(0, messages.find('\n'))),
+                    "write SVG");
+    }
+    return files[1].read();
+}
+
+constexpr double most_pixels = 32767; // rsvg-convert's limit to a side
+constexpr double most_area = 400e6;   // 1.6 GB of memory
+
+// Adds the size of a pixel and the mark in chunks after the header (8 + 25 bytes): the program writes
+// neither.
+void add_resolution_and_mark(std::string& png, unsigned dpi)
+{
+    constexpr std::size_t after_header = 33;
+    const auto per_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
+    std::string resolution = "pHYs";
+    add_big_endian(resolution, per_metre);
+    add_big_endian(resolution, per_metre);
+    resolution += '\1';
+    png.insert(after_header, make_chunk(resolution) + make_chunk(std::string(png_mark)));
+}
+
+} // namespace
+
+std::string to_png(const canvas& c, unsigned dpi)
+{
+    const double scale = dpi / 72.0;
+    const double width = std::round(c.width * scale);
+    const double height = std::round(c.height * scale);
+    if (width > most_pixels || height > most_pixels || width * height > most_area)
+        throw error(error_kind::bad_input, "--dpi",
+                    fmt::format("{} dpi make {:.0f} x {:.0f} pixels", dpi, width, height),
+                    "use fewer dpi or a smaller --width, or SVG or PDF");
+    std::string png = convert(c, {"--format=png", "--background-color=white",
+                                  fmt::format("--width={}", width), fmt::format("--height={}", height)});
+    add_resolution_and_mark(png, dpi);
+    return png;
+}
+
+std::string to_pdf(const canvas& c)
+{
+    std::string pdf = convert(c, {"--format=pdf"});
+    // Adds the mark as a comment before "startxref", so that no reference moves.
+    if (const std::size_t at = pdf.rfind("\nstartxref"); at != std::string::npos)
+        pdf.replace(at, std::string_view("\nstartxref").size(), pdf_mark);
+    return pdf;
+}
+
+} // namespace tactor::plot
