@@ -52,14 +52,12 @@ struct key {
     char answer;
 };
 
-constexpr key others[] = {
+constexpr key other_keys[] = {
     {KEY_KP1, '1'},     {KEY_KP2, '2'},   {KEY_KP3, '3'},   {KEY_KP4, '4'},       {KEY_KP5, '5'},
     {KEY_KP6, '6'},     {KEY_KP7, '7'},   {KEY_KP8, '8'},   {KEY_KP9, '9'},       {KEY_KPPLUS, '+'},
     {KEY_KPMINUS, '-'}, {KEY_MINUS, '-'}, {KEY_UP, '+'},    {KEY_DOWN, '-'},      {KEY_RIGHT, '>'},
     {KEY_LEFT, '<'},    {KEY_A, 'a'},     {KEY_ENTER, 'a'}, {KEY_KPENTER, 'a'},   {KEY_N, 'n'},
     {KEY_0, 'n'},       {KEY_KP0, 'n'},   {KEY_B, 'b'},     {KEY_BACKSPACE, 'b'}, {KEY_KPDOT, '.'}};
-
-constexpr std::uint16_t digit_keys = 9;
 
 // A key that answered a question and comes again sooner, or is still held, begins no number and no text.
 constexpr std::int64_t first_key_ns = 1'000'000'000;
@@ -98,11 +96,9 @@ void echo(const std::string& typed, std::size_t bytes_before)
 
 std::optional<char> find_answer(std::uint16_t code) noexcept
 {
-    // Keys in a row. To the kernel a button box is a joystick, or has buttons without a purpose.
-    for (const std::uint16_t first : {std::uint16_t{KEY_1}, std::uint16_t{BTN_0}, std::uint16_t{BTN_TRIGGER}})
-        if (code >= first && code < first + digit_keys)
-            return static_cast<char>('1' + (code - first));
-    for (const key& k : others)
+    if (code >= KEY_1 && code <= KEY_9)
+        return static_cast<char>('1' + (code - KEY_1));
+    for (const key& k : other_keys)
         if (k.code == code)
             return k.answer;
     return {};
@@ -170,7 +166,7 @@ keypad::keypad(std::string device)
               ((keys[code / 8] >> (code % 8) & 1U) != 0 && find_answer(static_cast<std::uint16_t>(code)));
     if (!any)
         throw error(error_kind::bad_input, device_, "it has no key for an answer",
-                    "use a keypad, a button box, or buttons with the codes of the digits");
+                    "use a keypad, or a box whose buttons send the keys 1 to 9");
     if (::ioctl(descriptor_.get(), EVIOCGRAB, 1) < 0)
         throw error(error_kind::not_available, device_, std::strerror(errno), "another program holds it");
 }

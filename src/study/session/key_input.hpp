@@ -21,8 +21,8 @@
 namespace tactor::study {
 
 /// Returns the answer of an input device's key (a code of linux/input-event-codes.h) as a terminal's key: 1
-/// to 9 for digits, a keypad, a button box or a joystick; + - > < or the arrows; a or Enter, n or 0, b or
-/// Backspace, a keypad's dot. Returns nothing for other keys.
+/// to 9 for digits; + - > < or the arrows; a or Enter, n or 0, b or Backspace, a keypad's dot. Returns
+/// nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
 /// Greatest number of answers that have a key each.
