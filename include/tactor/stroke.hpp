@@ -227,8 +227,8 @@ struct stroke {
 /// \throws error (bad_input) that lists the shapes.
 [[nodiscard]] TACTOR_API stroke shape_stroke(std::string_view name);
 
-/// Reads one or more strokes from a file. The extension decides the format: .toml, .csv or .svg; see
-/// tactor.toml(5). May block on the file system.
+/// Reads one or more strokes from a file. The extension decides the format, see tactor.toml(5). May block on
+/// the file system.
 ///
 /// `intensity_max`, here and below: value of an intensity in CSV and of a timed point in TOML that means 1,
 /// such as 255. A greater value is refused.
@@ -255,7 +255,7 @@ parse_strokes_toml(std::string_view text, const std::string& name, double intens
 /// unit is 1 mm, unless the document's width or height has a physical unit.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text,
                                                                const std::string& name);
-/// Guesses the format from the text: SVG if it starts with '<', CSV if its first line names t_s, else TOML.
+/// Reads strokes in the format that the beginning of the text shows; TOML if it shows none.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name,
                                                            double intensity_max = 1.0);
 

@@ -21,6 +21,7 @@
 #include "core/refused.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
+#include "files/stroke_format.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -76,6 +77,15 @@ bool looks_like_csv(std::string_view line)
 {
     return line.find_first_of("=[{") == std::string_view::npos &&
            (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
+}
+
+// Returns a caller's hint, or else that for a file of any kind.
+std::string_view choose_hint(std::string_view given)
+{
+    static const std::string kinds =
+        fmt::format("strokes are {}, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"",
+                    list_stroke_formats());
+    return given.empty() ? std::string_view(kinds) : given;
 }
 
 [[noreturn]] void refuse(std::string_view name, int code)
@@ -217,8 +227,9 @@ whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kin
     return read_text(in.get(), file.string(), max_bytes);
 }
 
-void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint)
+void refuse_no_text(std::string_view text, const std::string& name, std::string_view given)
 {
+    const std::string_view hint = choose_hint(given);
     refuse_other_kind(text, name, hint);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
@@ -237,35 +248,27 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
                     "is binary, not text", hint);
 }
 
-std::string_view find_text_form(std::string_view text)
+text_form find_text_form(std::string_view text)
 {
     const std::string_view line = find_first_line(without_mark(text));
     if (line.starts_with('<'))
-        return "svg";
+        return text_form::xml;
     if (line.starts_with('{'))
-        return "json";
-    return looks_like_csv(line) ? "csv" : "toml";
+        return text_form::json;
+    return looks_like_csv(line) ? text_form::table : text_form::toml;
 }
 
-std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file)
+void refuse_other_form(std::string_view text, const std::string& name, text_form wanted,
+                       std::string_view given)
 {
-    const std::string extension = in_small_letters(file.extension().string());
-    for (const std::string_view format : {"svg", "csv", "toml"})
-        if (extension == fmt::format(".{}", format))
-            return format;
-    const std::string_view form = find_text_form(text);
-    return form == "json" ? "toml" : form; // the reader of TOML explains the fault
-}
-
-void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,
-                       std::string_view hint)
-{
+    const std::string_view hint = choose_hint(given);
     refuse_no_text(text, name, hint);
-    constexpr std::pair<std::string_view, std::string_view> forms[] = {
-        {"svg", "SVG, or other XML"}, {"csv", "a table (CSV)"}, {"json", "JSON"}};
+    constexpr std::pair<text_form, std::string_view> forms[] = {{text_form::xml, "SVG, or other XML"},
+                                                                {text_form::table, "a table (CSV)"},
+                                                                {text_form::json, "JSON"}};
     if (without_blanks(without_mark(text)).empty())
         throw error(error_kind::bad_input, source_place{name}, "is empty", hint);
-    const std::string_view form = find_text_form(text);
+    const text_form form = find_text_form(text);
     for (const auto& [other, words] : forms)
         if (other == form && other != wanted)
             throw error(

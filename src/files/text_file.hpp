@@ -72,27 +72,23 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
                           owner_kind owner = owner_kind::user);
 
-/// Hint for a file that a user named for an array, a configuration or strokes.
-inline constexpr std::string_view text_kinds_hint =
-    "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"";
-
 /// Refuses sound, pictures, archives, UTF-16 (which some editors save) and other bytes that are not text.
+/// `hint`, here and below: empty for a file that a user named for an array, a configuration or strokes.
 /// \throws error (bad_input) that names the kind; a reader's own error would be about bytes.
-void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = text_kinds_hint);
+void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = {});
 
-/// Returns "svg", "csv", "json" or "toml": the form of a text by its first line.
-std::string_view find_text_form(std::string_view text);
-/// Explains why a text cannot be read as `wanted`, a form of find_text_form(). Returns if it may be.
+/// Syntax of a text.
+enum class text_form { toml, table, xml, json };
+
+/// Returns the form of a text by its first line.
+text_form find_text_form(std::string_view text);
+/// Explains why a text cannot be read as `wanted`. Returns if it may be.
 /// \throws error (bad_input) for bytes that are not text, an empty text, and another form.
-void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,
-                       std::string_view hint = text_kinds_hint);
+void refuse_other_form(std::string_view text, const std::string& name, text_form wanted,
+                       std::string_view hint = {});
 
 /// Longest stroke file: ten million timed points with all their digits. A longer one is the wrong file.
 inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;
-
-/// Returns "svg", "csv" or "toml": the format of a text with strokes by the extension of its file's name, in
-/// upper or lower case, else by its first line.
-std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file);
 
 /// Longest text that is kept as a tree while it is read. TOML takes some 40 bytes of memory for a byte of
 /// text, so a million timed points fit into 2 GB.

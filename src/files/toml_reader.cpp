@@ -153,7 +153,7 @@ toml::table parse_toml(std::string_view text, const std::string& name, const tom
     try {
         return toml::parse(text, std::string_view(name));
     } catch (const toml::parse_error& e) {
-        refuse_other_form(text, name, "toml", hints.kinds);
+        refuse_other_form(text, name, text_form::toml, hints.kinds);
         const auto& at = e.source().begin;
         const masked_text masked = mask_strings(text);
         if (const auto open = masked.open_string) {

@@ -23,7 +23,7 @@ namespace tactor::detail {
 /// Hints for a document that is not TOML.
 struct toml_hints {
     std::string_view manual = "tactor.toml(5)";
-    std::string_view kinds = text_kinds_hint; ///< for other kinds of text
+    std::string_view kinds = {}; ///< for other kinds of text; empty: as refuse_no_text()
 };
 
 /// Parses a document. `name` stands for the file in messages.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Writes from the table of options: python3 src/options/write.py, where tactor can be imported.
+"""Writes from the tables of options and of stroke formats: python3 src/options/write.py, where tactor can be imported.
 
 * In src/python/tactor: options in the signatures and docstrings of functions that take them, and the types of options.
-* $defs/options of the protocol's schema.
-* In man: heads and ranges of options, and the options that commands share (write_manual.py).
+* $defs/options of the protocol's schema, and its parameters for the formats of stroke files.
+* In man: heads and ranges of options, and the options that commands share (write_manual.py); the formats in tactor.toml(5).
 
 tests/python/test_package.py holds all of them current.
 """
@@ -19,6 +19,7 @@ from tactor import _tactor
 
 WIDTH = 160
 ROWS = _tactor.option_rows()
+FORMATS = _tactor.stroke_formats()
 
 
 def literal(row):
@@ -129,15 +130,29 @@ def make_schema(row):
 
 
 def schema(text):
-    """The text of the protocol's schema with the options of this table."""
+    """The text of the protocol's schema with the options and formats of the tables."""
     options = ",\n".join(f'        "{r["name"]}": {json.dumps(make_schema(r))}' for r in ROWS if "client" in r["places"])
-    return re.sub(r'("options": \{\n      "type": "object",.*?"properties": \{\n).*?(\n      \})', lambda m: m[1] + options + m[2], text, count=1, flags=re.S)
+    text = re.sub(r'("options": \{\n      "type": "object",.*?"properties": \{\n).*?(\n      \})', lambda m: m[1] + options + m[2], text, count=1, flags=re.S)
+    sources = "".join(f'                "{f["name"]}": {{ "type": "string" }},\n' for f in FORMATS)
+    text = re.sub(r'("points": \{\n(?:.*\n){3} *\},\n)(?: *"\w+": \{ "type": "string" \},\n)+', lambda m: m[1] + sources, text)
+    one_of = ",\n".join(f'                {{ "required": ["{f["name"]}"] }}' for f in FORMATS)
+    text = re.sub(r'(\{ "required": \["points"\] \},\n)(?: *\{ "required": \["\w+"\] \},?\n)+', lambda m: f"{m[1]}{one_of}\n", text)
+    written = "".join(f'"{f["name"]}", ' for f in FORMATS if f["written"])
+    return re.sub(r'("as": \{ "enum": \[).*?("svg", "wav")', lambda m: m[1] + written + m[2], text)
+
+
+def formats(text):
+    """The text of tactor.toml(5) with its table of formats."""
+    rows = "".join(f"{f['title']}\t{', '.join(f['extensions'])}\t{f['name']}\t{f['media_type']}\t{'yes' if f['written'] else 'no'}\n" for f in FORMATS)
+    return re.sub(r"(format\textension\tparameter.*\n)(?:.*\t.*\n)*", lambda m: m[1] + rows, text)
 
 
 SRC = pathlib.Path(__file__).parents[1]
 WRITTEN = {SRC / "python/tactor/_plan.py": plan, SRC / "python/tactor/_tool.py": compare, SRC / "python/tactor/_score.py": score,
            SRC / "python/tactor/_player.py": player, SRC / "cli/schemas/tactor-protocol-1.schema.json": schema}
 WRITTEN |= {page: functools.partial(write_manual.written, page.name, rows=ROWS) for page in (SRC.parent / "man").glob("*.[1-8]")}
+PAGE = SRC.parent / "man/tactor.toml.5"
+WRITTEN[PAGE] = lambda text: formats(write_manual.written(PAGE.name, text, rows=ROWS))
 
 if __name__ == "__main__":
     for file, write in WRITTEN.items():

@@ -19,6 +19,7 @@
 #include "core/trajectory/recorded_points.hpp"
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
+#include "files/stroke_format.hpp"
 #include "files/text_file.hpp"
 #include "options/resolve.hpp"
 #include "options/serve.hpp"
@@ -167,6 +168,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke, name, motion, start_s, anchor, speed_
 
 namespace tactor::python {
 namespace {
+
+using namespace py::literals;
 
 template <class T>
 py::bytes write_state(const T& value)
@@ -395,8 +398,23 @@ py::dict choices_dict(const stroke& s)
     return d;
 }
 
+// Returns the formats of stroke files, for src/options/write.py and tests.
+py::list list_formats()
+{
+    py::list rows;
+    for (const detail::stroke_format* f : detail::stroke_formats()) {
+        py::list extensions;
+        for (const std::string_view e : f->extensions)
+            extensions.append(e);
+        rows.append(py::dict("name"_a = f->name, "title"_a = f->title, "extensions"_a = extensions,
+                             "media_type"_a = f->media_type, "written"_a = f->write != nullptr));
+    }
+    return rows;
+}
+
 void bind_stroke(py::module_& m)
 {
+    m.def("stroke_formats", &list_formats);
     py::class_<stroke>(m, "Stroke")
         .def_static("along", &along)
         .def_static("timed", &timed)

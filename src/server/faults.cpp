@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -112,16 +113,18 @@ rpc_fault current_fault(const std::string& source, const std::string& named)
     }
 }
 
-void allow_only(const json& params, std::initializer_list<std::string_view> known)
+void allow_only(const json& params, std::initializer_list<std::string_view> known,
+                std::span<const std::string_view> sources)
 {
     if (!params.is_object())
         bad_param("params", "they are a list, not an object", "send an object with named parameters");
+    std::vector<std::string_view> all(sources.begin(), sources.end());
+    all.insert(all.end(), known);
     for (const auto& [name, value] : params.items())
-        if (std::find(known.begin(), known.end(), name) == known.end())
+        if (std::find(all.begin(), all.end(), name) == all.end())
             bad_param(name.empty() ? "params" : name,
                       name.empty() ? "one parameter has no name" : "it is unknown",
-                      known.size() == 0 ? "the method has no parameters"
-                                        : detail::choice_hint(name, {known.begin(), known.size()}));
+                      all.empty() ? "the method has no parameters" : detail::choice_hint(name, all));
 }
 
 const json* member(const json& params, const char* name)
@@ -165,14 +168,15 @@ double whole(const json& v, const std::string& what, detail::bounds b)
     return n;
 }
 
-const char* find_one(const json& params, std::initializer_list<const char*> names)
+std::string_view find_one(const json& params, std::span<const std::string_view> names)
 {
-    const char* found = nullptr;
-    for (const char* name : names) {
+    std::string_view found;
+    for (const std::string_view name : names) {
         if (!params.contains(name))
             continue;
-        if (found != nullptr)
-            bad_param(name, fmt::format("it cannot be combined with \"{}\"", found), "give one of them");
+        if (!found.empty())
+            bad_param(std::string(name), fmt::format("it cannot be combined with \"{}\"", found),
+                      "give one of them");
         found = name;
     }
     return found;

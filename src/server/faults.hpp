@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <exception>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,8 +46,9 @@ net::rpc_fault library_fault(const error& e, const std::string& source, const st
 /// Returns the fault of the current exception. Call it in catch (...).
 net::rpc_fault current_fault(const std::string& source, const std::string& named = {});
 
-/// Refuses unknown parameters, and params that are a list.
-void allow_only(const net::json& params, std::initializer_list<std::string_view> known);
+/// Refuses unknown parameters, and params that are a list. `sources`: more that are known.
+void allow_only(const net::json& params, std::initializer_list<std::string_view> known,
+                std::span<const std::string_view> sources = {});
 /// Returns a member; null if there is none.
 const net::json* member(const net::json& params, const char* name);
 /// Returns a number within bounds. \throws fault_error.
@@ -57,9 +59,9 @@ double number_or(const net::json& params, const char* name, detail::bounds b, do
 double need_number(const net::json& params, const char* name, detail::bounds b);
 /// Returns a whole number within bounds. \throws fault_error.
 double whole(const net::json& v, const std::string& what, detail::bounds b);
-/// Returns the name that `params` has; null for none.
+/// Returns the name that `params` has; empty for none.
 /// \throws fault_error for several.
-const char* find_one(const net::json& params, std::initializer_list<const char*> names);
+std::string_view find_one(const net::json& params, std::span<const std::string_view> names);
 /// Returns a member that is true or false; false if there is none. \throws fault_error.
 bool flag(const net::json& params, const char* name);
 std::uint32_t need_stroke(const net::json& params);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <iterator>
 #include <new>
 #include <optional>
@@ -24,7 +23,7 @@
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "files/setup_text.hpp"
-#include "files/text_file.hpp"
+#include "files/stroke_format.hpp"
 #include "net/rpc.hpp"
 #include "options/option.hpp"
 #include "plot/figure.hpp"
@@ -72,9 +71,8 @@ std::string content(const std::string& source, const json& v)
 
 bool is_plan(std::string_view bytes, const std::string& name)
 {
-    const std::string extension = in_small_letters(std::filesystem::path(name).extension().string());
-    const bool is_stroke = extension == ".toml" || extension == ".csv" || extension == ".svg";
-    return extension == ".json" || (!is_stroke && files::holds_plans(bytes));
+    return files::is_plan_file(in_small_letters(name)) ||
+           (detail::find_format_by_extension(name) == nullptr && files::holds_plans(bytes));
 }
 
 // Returns the method of a plan. A burst as long as its SOA counts as that of the timing law.
@@ -107,10 +105,9 @@ read_file read_bytes(std::string bytes, const std::string& name, double intensit
 {
     if (is_plan(bytes, name))
         return {read_plan_strokes(bytes, name)};
-    const std::string_view format = detail::find_stroke_format(bytes, name);
-    std::vector<stroke> strokes =
-        session::read_strokes(format, bytes, name, {.intensity_max = intensity_max});
-    if (format != "toml" || intensity_max != 1.0)
+    const detail::stroke_format& format = detail::find_stroke_format(bytes, name);
+    std::vector<stroke> strokes = format.parse({bytes, name, intensity_max});
+    if (format.name != "toml" || intensity_max != 1.0)
         bytes.clear(); // other programs would read other intensities
     return {std::move(strokes), std::move(bytes)};
 }
@@ -330,7 +327,7 @@ std::string write_defaults(options::option_values& w, const std::string& file,
     return fmt::format("{} > {} && ", command, quote_word(file));
 }
 
-// Kind of a file, and the command of the tool that makes or plays it.
+// Kind of a file, and the command of the tool that makes or plays it. `strokes`: the format of a stroke file.
 struct file_kind {
     std::string_view extension;
     std::string_view mime;
@@ -340,11 +337,10 @@ struct file_kind {
     std::string_view into;  ///< arguments before the file that it writes
     std::string_view writes;
     std::optional<plot::file_format> picture = {};
+    const detail::stroke_format* strokes = nullptr;
 };
 
-constexpr std::array file_kinds{
-    file_kind{"toml", "application/toml", "render", options::on_render, "toml", "-o", "wav"},
-    file_kind{"csv", "text/csv", "render", options::on_render, "csv", "-o", "wav"},
+constexpr std::array other_kinds{
     file_kind{"wav", "audio/wav", "render", options::on_render, "toml", "-o", "wav"},
     file_kind{"json", "application/json", "plan", options::on_plan, "toml", "--format json >", "json"},
     file_kind{"svg", "image/svg+xml", "plot", options::on_plot, "toml", "-o", "svg", plot::file_format::svg},
@@ -352,18 +348,34 @@ constexpr std::array file_kinds{
     file_kind{"pdf", "application/pdf", "plot", options::on_plot, "toml", "-o", "pdf",
               plot::file_format::pdf}};
 
+// Returns all kinds of file: the formats of strokes that are written come first.
+const std::vector<file_kind>& file_kinds()
+{
+    static const std::vector<file_kind> kinds = [] {
+        std::vector<file_kind> all;
+        for (const detail::stroke_format* f : detail::stroke_formats())
+            if (f->write != nullptr)
+                all.push_back({f->name, f->media_type, "render", options::on_render, f->name, "-o", "wav",
+                               std::nullopt, f});
+        all.insert(all.end(), other_kinds.begin(), other_kinds.end());
+        return all;
+    }();
+    return kinds;
+}
+
 const file_kind& find_kind(const json& params)
 {
     const json* as = member(params, "as");
     std::vector<std::string_view> known;
-    for (const file_kind& k : file_kinds)
+    const std::vector<file_kind>& kinds = file_kinds();
+    for (const file_kind& k : kinds)
         known.push_back(k.extension);
     if (as == nullptr)
         bad_param("as", "it is missing", detail::choice_hint("", known));
     const std::string name = text(*as, "as");
-    const auto* found = std::find_if(file_kinds.begin(), file_kinds.end(),
-                                     [&name](const file_kind& k) { return k.extension == name; });
-    if (found == file_kinds.end())
+    const auto found =
+        std::find_if(kinds.begin(), kinds.end(), [&name](const file_kind& k) { return k.extension == name; });
+    if (found == kinds.end())
         bad_param("as", fmt::format("there is no \"{}\"", name), detail::choice_hint(name, known));
     return *found;
 }
@@ -407,18 +419,6 @@ std::vector<stroke> read_again(const std::string& toml, const std::string& sourc
     return strokes;
 }
 
-std::string csv_text(const std::vector<stroke>& strokes)
-{
-    if (strokes.size() != 1)
-        bad_param("as", fmt::format("a CSV file has one stroke, but there are {}", strokes.size()),
-                  "use toml");
-    std::string out = "t_s,x_mm,y_mm,intensity\n";
-    for (const timed_point& p : detail::sample_points(strokes.front().motion))
-        fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", p.t_s, p.position.x_mm, p.position.y_mm,
-                       p.intensity);
-    return out;
-}
-
 std::string file_bytes(const service_options& o, const file_kind& kind, const planned& p,
                        const options::option_values& s)
 {
@@ -460,16 +460,21 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
                        const std::string& source, const std::string& name, std::vector<stroke> strokes,
                        const options::option_values& s, const go_on_check& go_on)
 {
-    if (kind.extension == "csv")
-        return csv_text(strokes);
+    if (kind.strokes != nullptr && kind.strokes->only_points) {
+        if (strokes.size() != 1)
+            bad_param("as",
+                      fmt::format("a {} file has one stroke, but there are {}", kind.strokes->title,
+                                  strokes.size()),
+                      "use toml");
+        return kind.strokes->write(strokes);
+    }
     if (kind.extension != "json") {
         place_by_plans(o, faces, s, strokes, go_on);
         for (stroke& k : strokes)
             put_options(k, s);
-        std::string toml = detail::strokes_text(strokes);
-        if (kind.extension == "toml")
-            return toml;
-        strokes = read_again(toml, source, strokes);
+        if (kind.strokes != nullptr)
+            return kind.strokes->write(strokes);
+        strokes = read_again(detail::strokes_text(strokes), source, strokes);
     }
     planned p{{name, std::move(strokes)}, s.render};
     plan_strokes(o.plans, faces, p, s, source, go_on);
@@ -481,10 +486,10 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
 std::string import_strokes(const planning& with, const layout& faces, const json& params)
 {
     allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
-    const char* found = find_one(params, {"stroke", "text", "base64"});
-    if (found == nullptr)
+    constexpr std::array<std::string_view, 3> sources{"stroke", "text", "base64"};
+    const std::string source(find_one(params, sources));
+    if (source.empty())
         bad_param("text", "there is nothing to read", "give one of text, base64, stroke");
-    const std::string source = found;
     const std::string named = read_name(params);
     const std::string name = source == "stroke" ? source : named;
     const double intensity_max = number_or(params, "intensity_max", detail::bounds_of::intensity_max, 1.0);
@@ -504,14 +509,14 @@ std::string import_strokes(const planning& with, const layout& faces, const json
 std::string export_strokes(const service_options& o, const layout& faces, const json& params,
                            const go_on_check& go_on)
 {
-    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
+    allow_only(params, {"options", "fit", "as", "name"}, session::source_names());
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
     const options::option_values s = resolve_options(o.plans.owner, params);
     try {
         std::vector<stroke> strokes =
             prepare_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
-        if (kind.extension == "toml" || kind.extension == "csv") // these need no plan
+        if (kind.strokes != nullptr) // these need no plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);
         const std::string bytes = make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);

@@ -348,12 +348,13 @@ std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, s
     return std::move(p.strokes);
 }
 
-const char* find_source(const json& params)
+std::string find_source(const json& params)
 {
-    const char* found = find_one(params, {"stroke", "path", "points", "toml", "csv", "svg"});
-    if (found == nullptr)
-        bad_param("stroke", "there is no stroke", "give one of stroke, path, points, toml, csv, svg");
-    return found;
+    const std::vector<std::string_view>& names = session::source_names();
+    const std::string_view found = find_one(params, names);
+    if (found.empty())
+        bad_param("stroke", "there is no stroke", fmt::format("give one of {}", fmt::join(names, ", ")));
+    return std::string(found);
 }
 
 void check_level(const planning& with, const options::option_values& s, double intensity, double carrier_hz,

@@ -95,9 +95,9 @@ std::vector<stroke> read_strokes(const std::string& source, const net::json& v,
 std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
                                     options::option_values s, bool fit);
 
-/// Returns the parameter that contains strokes: "stroke", "path", "points", "toml", "csv" or "svg".
+/// Returns the parameter that contains strokes, one of session::source_names().
 /// \throws fault_error for none or several.
-const char* find_source(const net::json& params);
+std::string find_source(const net::json& params);
 
 /// Refuses more bursts than the service plans at once.
 /// \throws fault_error.

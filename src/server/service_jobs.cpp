@@ -72,11 +72,11 @@ void service::read_job(plan_job& j) const
 {
     const json& params = j.params;
     if (j.plays())
-        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
-                            "repeat", "round_s", "pause_s", "held"});
+        allow_only(params, {"options", "start", "gain_db", "repeat", "round_s", "pause_s", "held"},
+                   session::source_names());
     else if (!j.is_file())
-        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
-                            "draft", "bins", "observer"});
+        allow_only(params, {"options", "start", "view", "draft", "bins", "observer"},
+                   session::source_names());
     else
         return;
     static_cast<void>(find_source(params));

@@ -19,6 +19,7 @@
 
 #include "core/suggest.hpp"
 #include "core/words.hpp"
+#include "files/stroke_format.hpp"
 #include "rt/clock.hpp"
 #include "server/faults.hpp"
 
@@ -33,6 +34,20 @@ constexpr double first_wrong_token_s = 0.2; // delay of the first answer; double
 constexpr double longest_wrong_token_s = 10.0;
 constexpr std::size_t most_addresses = 1024;
 constexpr std::array<std::string_view, 5> event_names{"strokes", "levels", "stream", "touches", "stops"};
+
+// Returns a row for each format of stroke files.
+reply_json formats_json()
+{
+    reply_json rows = reply_json::array();
+    for (const detail::stroke_format* f : detail::stroke_formats())
+        rows.push_back({{"name", f->name},
+                        {"title", f->title},
+                        {"extensions", f->extensions},
+                        {"media_type", f->media_type},
+                        {"written", f->write != nullptr},
+                        {"only_points", f->only_points}});
+    return rows;
+}
 
 // Compares in constant time, so that the time does not show how much is right.
 bool same_secret(const std::string& a, const std::string& b)
@@ -76,6 +91,7 @@ reply_json service::hello_result(const client& c)
               {"pcm", s.name}}},
             {"presets", stroke_presets()},
             {"shapes", stroke_shapes()},
+            {"formats", formats_json()},
             {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(rt::unix_ns())}}},
             {"max_level_dbfs", options_.plans.max_level_dbfs},
             {"client", c.number}};

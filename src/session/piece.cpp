@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "files/stroke_format.hpp"
 
 namespace tactor::session {
 namespace {
@@ -42,19 +43,25 @@ void set_pace(stroke& s, const options::option_values& o)
 
 } // namespace
 
+const std::vector<std::string_view>& source_names()
+{
+    static const std::vector<std::string_view> names = [] {
+        std::vector<std::string_view> all{"stroke", "path", "points"};
+        for (const detail::stroke_format* f : detail::stroke_formats())
+            all.push_back(f->name);
+        return all;
+    }();
+    return names;
+}
+
 std::vector<stroke> read_strokes(std::string_view kind, const std::string& text, const std::string& named,
                                  const options::option_values& o)
 {
-    const double intensity_max = o.intensity_max.value_or(1.0);
     if (kind == "stroke")
         return {named_stroke(text)};
     if (kind == "path")
         return {stroke_of_path(text, o)};
-    if (kind == "toml")
-        return parse_strokes_toml(text, named, intensity_max);
-    if (kind == "csv")
-        return parse_strokes_csv(text, named, intensity_max);
-    return parse_strokes_svg(text, named);
+    return detail::find_format_by_name(kind)->parse({text, named, o.intensity_max.value_or(1.0)});
 }
 
 void place_strokes(piece& p, const layout& faces, const options::option_values& o)

@@ -17,8 +17,11 @@ namespace tactor::session {
 
 using files::piece;
 
-/// Reads strokes from a text of one of these kinds: "stroke" (the name of a preset or a shape), "path" (SVG
-/// path data), "toml", "csv" or "svg". `named` stands for the text in errors.
+/// Returns the names of sources of strokes: "stroke" (a preset or a shape), "path" (SVG path data), "points",
+/// and each format of stroke files.
+const std::vector<std::string_view>& source_names();
+
+/// Reads strokes from the text of a source, except points. `named` stands for the text in errors.
 /// \throws error (bad_input).
 std::vector<stroke> read_strokes(std::string_view kind, const std::string& text, const std::string& named,
                                  const options::option_values& o);

@@ -189,7 +189,7 @@ class Protocol(ServeTest):
         palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\nplace = [1, -56]\nturn = 15\n'
                           'body = 180\npreset = "palm-3x3"\n')
         r = self.serve("--array", palm).client().ok("hello")
-        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "shapes", "clock", "max_level_dbfs", "client"])
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "shapes", "formats", "clock", "max_level_dbfs", "client"])
         self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
         self.assertEqual([r["array"].pop(k) for k in ("site", "up", "place", "turn", "body")], ["left palm", "fingers", [1, -56], 15, 180])
         self.assertEqual(r["array"], self.plan("park2016-1", "--array", palm)["array"])

@@ -11,6 +11,7 @@
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
+#include "files/stroke_format.hpp"
 #include "folder.hpp"
 #include "has.hpp"
 
@@ -102,6 +103,36 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
           }).find("-:1:6: unknown column 'x' (did you mean 'x_mm'?)") == 0);
     CHECK_FALSE(caught_message([] { return tactor::parse_strokes("", "-"); }).empty());
     CHECK_FALSE(caught_message([] { return tactor::parse_strokes("\xff\xfe", "-"); }).empty());
+}
+
+TEST_CASE("each format is told by its name, its extensions and what it writes")
+{
+    const folder f;
+    const std::vector<stroke> one = parse_strokes(csv, "a");
+    std::string titles;
+    for (const detail::stroke_format* k : detail::stroke_formats()) {
+        CAPTURE(k->name);
+        CHECK(detail::find_format_by_name(k->name) == k);
+        REQUIRE_FALSE(k->extensions.empty());
+        CHECK(k->extensions.front() == "." + std::string(k->name)); // export writes it
+        for (const std::string_view extension : k->extensions)
+            CHECK(detail::find_format_by_extension(fmt::format("A{}", extension)) == k);
+        CHECK(k->media_type.find('/') != k->media_type.npos);
+        titles += fmt::format("{} ", k->title);
+        if (k->write == nullptr)
+            continue;
+        const std::string text = k->write(one);
+        CHECK(detail::find_format_by_content(text) == k);
+        CHECK(length(tactor::load_strokes(f.write(fmt::format("b{}", k->extensions.back()), text))) == 6.0);
+        CHECK(length(tactor::parse_strokes(text, "-")) == 6.0);
+    }
+    CHECK(titles == "TOML CSV SVG ");
+    CHECK(detail::list_stroke_formats() == "TOML, CSV or SVG");
+    CHECK(detail::find_format_by_name("json") == nullptr);
+    CHECK(detail::find_format_by_extension("a.json") == nullptr);
+    CHECK(detail::find_format_by_content("{\"plans\": []}") == nullptr); // plans
+    CHECK(&detail::find_stroke_format("{}", "a") ==
+          detail::find_format_by_name("toml")); // says that it is JSON
 }
 
 TEST_CASE("what is no stroke file is named for what it is")

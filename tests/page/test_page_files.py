@@ -314,7 +314,7 @@ class Files(StudioTest):
         p, _ = self.ready(self.serve())
         self.choose_files(p, {"a.toml": "[[stroke]]\npath = 'M 5 5 L 35 5'\ncolour = 3\n", "b.csv": LINE, "c.jpg": b"\xff\xd8\xff\xe0\0\x10JFIF",
                               "d.csv": "t_s,x_mm,y_mm\n0,zero,0\n"})
-        self.banner(p, "“a.toml” was not opened: line 3: unknown key 'colour' in [[stroke]]. “c.jpg” was not opened: it is not text; strokes are SVG, CSV, TOML or a plan. "
+        self.banner(p, "“a.toml” was not opened: line 3: unknown key 'colour' in [[stroke]]. “c.jpg” was not opened: it is not text; strokes are TOML, CSV, SVG or a plan. "
                        "“d.csv” was not opened: line 2")
         self.assertEqual(self.names(p), ["b"])
 

@@ -144,6 +144,14 @@ def test_written_files_are_current(writer):
         assert text == write(text), f"{file.name}: run python3 src/options/write.py, where tactor can be imported"
 
 
+def test_each_stroke_format_has_its_section_in_the_manual(writer):
+    page = writer.PAGE.read_text(encoding="utf-8")
+    strokes = page[page.index(".Sh STROKES"):page.index(".Sh FILES")]
+    for row in writer.FORMATS:
+        assert f"\n.Ss {row['title']}\n" in strokes, f"{row['title']}: man/{writer.PAGE.name} does not describe it"
+        assert f"\n{row['title']}\t{row['extensions'][0]}\t{row['name']}\t" in strokes
+
+
 def test_signatures_and_docstrings_have_each_option(writer):
     calls = {"plan": tactor.plan, "compare": tactor.compare, "score": tactor.Score, "player": tactor.Player}
     for row in map(writer.in_seconds, writer.ROWS):

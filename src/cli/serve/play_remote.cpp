@@ -2,7 +2,6 @@
 #include "cli/play/play.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <string_view>
@@ -21,6 +20,7 @@
 #include "cli/serve/rpc_client.hpp"
 #include "cli/settings.hpp"
 #include "files/plan/plan_json.hpp"
+#include "files/stroke_format.hpp"
 #include "files/text_file.hpp"
 #include "session/live_remarks.hpp"
 #include "session/process.hpp"
@@ -43,7 +43,7 @@ void refuse_owners(const settings& s)
 // Rewords an error of the server about its parameter: names the stroke that was sent, and the place in it.
 error name_argument(const error& e, const std::string& argument)
 {
-    constexpr std::array sources{"stroke", "path", "toml", "csv", "svg"};
+    const std::vector<std::string_view>& sources = session::source_names();
     if (std::find(sources.begin(), sources.end(), e.subject()) == sources.end())
         return e;
     const source_place at{argument, e.place().line, e.place().column};
@@ -54,9 +54,9 @@ error name_argument(const error& e, const std::string& argument)
 std::vector<std::string> name_in(std::vector<std::string> warnings, const std::string& stroke)
 {
     for (std::string& w : warnings)
-        for (const std::string_view kind : {"toml:", "csv:", "svg:"})
-            if (w.starts_with(kind))
-                w.replace(0, kind.size() - 1, shown_name(stroke));
+        for (const detail::stroke_format* f : detail::stroke_formats())
+            if (w.starts_with(fmt::format("{}:", f->name)))
+                w.replace(0, f->name.size(), shown_name(stroke));
     return warnings;
 }
 
@@ -80,7 +80,8 @@ net::json make_params(const std::string& argument)
     if (files::holds_plans(text))
         throw error(error_kind::bad_input, shown_name(argument),
                     "it is a plan, which a server does not accept", "give the stroke");
-    return {{std::string(detail::find_stroke_format(text, piped ? "" : argument)), std::string_view(text)}};
+    const detail::stroke_format& format = detail::find_stroke_format(text, piped ? "" : argument);
+    return {{std::string(format.name), std::string_view(text)}};
 }
 
 // Returns the name of each STROKE and its parameter.

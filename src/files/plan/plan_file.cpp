@@ -20,6 +20,7 @@
 #include "core/kind_names.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
+#include "files/stroke_format.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::files {
@@ -318,7 +319,7 @@ plan_file read_from(Input&& in, const std::string& name, recordings_kind recordi
                 return r.event(depth, what, parsed);
             });
     } catch (const ordered_json::exception& e) {
-        detail::refuse_other_form(begin(), name, "json", how_to_make);
+        detail::refuse_other_form(begin(), name, detail::text_form::json, how_to_make);
         refuse_json(e.what(), name);
     }
     return std::move(r).result();
@@ -351,9 +352,10 @@ plan_file read_plans(std::string_view text, const std::string& name, recordings_
     return read_from(text, name, recordings, [text] { return text; });
 }
 
-bool holds_plans(std::string_view text) noexcept
+bool holds_plans(std::string_view text)
 {
-    return detail::find_text_form(text) == "json";
+    return detail::find_text_form(text) == detail::text_form::json &&
+           detail::find_format_by_content(text) == nullptr;
 }
 
 void check_same_array(const std::string& file, const array& made_for, const array& in_use)

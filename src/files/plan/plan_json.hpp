@@ -94,8 +94,8 @@ plan_file load_plans(const std::string& file);
 plan_file read_plans(std::string_view text, const std::string& name,
                      recordings_kind recordings = recordings_kind::read);
 
-/// Returns true if a text can only be plans: no stroke file begins with a brace.
-bool holds_plans(std::string_view text) noexcept;
+/// Returns true if a text can only be plans: JSON that is no format of strokes.
+bool holds_plans(std::string_view text);
 
 /// Compares arrays.
 /// \throws error (bad_input) if places, channels or polarities differ.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,7 +21,9 @@
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/recorded_points.hpp"
+#include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
+#include "files/stroke_format.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor {
@@ -325,10 +328,39 @@ std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& 
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "check that it is the right file");
     if (!without_blanks(text).empty())
-        detail::refuse_other_form(text, name, "csv");
+        detail::refuse_other_form(text, name, detail::text_form::table);
     refuse_other_columns(detail::without_mark(text), name);
     return csv_reader(text, name, intensity_max).read();
 }
 
 } // namespace v0
 } // namespace tactor
+
+namespace tactor::detail {
+namespace {
+
+std::string write_csv(std::span<const stroke> one)
+{
+    std::string out = "t_s,x_mm,y_mm,intensity\n";
+    for (const timed_point& p : sample_points(one.front().motion))
+        fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", p.t_s, p.position.x_mm, p.position.y_mm,
+                       p.intensity);
+    return out;
+}
+
+constexpr std::string_view csv_extensions[] = {".csv"};
+
+} // namespace
+
+extern const stroke_format csv_strokes{
+    .name = "csv",
+    .title = "CSV",
+    .extensions = csv_extensions,
+    .media_type = "text/csv",
+    .begins = [](std::string_view text) { return find_text_form(text) == text_form::table; },
+    .parse = [](const stroke_file_text& s) { return parse_strokes_csv(s.text, s.name, s.intensity_max); },
+    .write = write_csv,
+    .only_points = true,
+};
+
+} // namespace tactor::detail

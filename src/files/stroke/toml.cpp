@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stroke files: the reader of each format, and that of TOML, [stroke] or [[stroke]].
+// Stroke files in TOML, [stroke] or [[stroke]].
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
@@ -21,6 +21,8 @@
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
+#include "files/setup_text.hpp"
+#include "files/stroke_format.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
@@ -31,12 +33,6 @@ constexpr std::size_t most_strokes = 100'000; // more are the wrong file, or a s
 constexpr unsigned most_repeats = 10'000;
 constexpr unsigned deepest_group = 8;
 constexpr double longest_soa_s = 10.0;
-
-/// Circumstances of a text.
-struct reading {
-    const std::filesystem::path* folder; ///< folder of its WAV files; null for a text without a file
-    double intensity_max;                ///< value of a timed point that means 1
-};
 
 constexpr std::string_view kinds[] = {"path", "points", "timed", "arc", "preset"};
 constexpr std::string_view order_keys[] = {"name", "start_s", "start_from", "repeat", "pause_s"};
@@ -500,7 +496,7 @@ file_entry repeat_entry(const toml_table& t, file_entry e)
     return e;
 }
 
-file_entry read_one(const toml_table& t, std::string name, const reading& r)
+file_entry read_one(const toml_table& t, std::string name, const stroke_file_text& r)
 {
     t.only(join_keys(kinds, movement_keys, placing_keys, order_keys, fit_keys, choice_keys, sound_keys));
     stroke s = read_drawing(t, std::move(name), r.intensity_max);
@@ -514,10 +510,11 @@ file_entry read_one(const toml_table& t, std::string name, const reading& r)
     return repeat_entry(t, {.strokes = {std::move(s)}});
 }
 
-file_entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth);
+file_entry read_entry(const toml_table& t, const std::string& name, const stroke_file_text& r,
+                      unsigned depth);
 
 file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const std::string& name,
-                    const reading& r, unsigned depth)
+                    const stroke_file_text& r, unsigned depth)
 {
     sequence all(in_group);
     std::size_t number = 0;
@@ -527,7 +524,7 @@ file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const 
 }
 
 // Reads strokes that are placed, weakened and repeated together.
-file_entry read_group(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
+file_entry read_group(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth)
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
@@ -550,48 +547,51 @@ file_entry read_group(const toml_table& t, const std::string& name, const readin
     return repeat_entry(t, std::move(e));
 }
 
-file_entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
+file_entry read_entry(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth)
 {
     const bool group = t.has("stroke") && std::none_of(std::begin(kinds), std::end(kinds),
                                                        [&t](auto kind) { return t.has(kind); });
     return group ? read_group(t, name, r, depth) : read_one(t, name, r);
 }
 
-std::vector<stroke> read_strokes(std::string_view text, const std::string& name, const reading& r)
+std::vector<stroke> read_strokes(const stroke_file_text& r)
 {
-    check_size(text, name, max_tree_bytes, "put millions of timed points into a CSV file");
-    const toml::table document = parse_toml(text, name);
-    const toml_table root(document, "a stroke file", name);
+    check_size(r.text, r.name, max_tree_bytes, "put millions of timed points into a CSV file");
+    const toml::table document = parse_toml(r.text, r.name);
+    const toml_table root(document, "a stroke file", r.name);
     for (const char* key : {"array", "output", "defaults"})
         if (root.has(key))
             root.fail(key, "this is an array or configuration file, not a stroke",
                       "give it as {array=FILE} or {config=FILE}");
     root.only({"stroke"});
     if (!root.has("stroke"))
-        fail_at({name, 0, 0}, "it has no stroke", "add [stroke] or [[stroke]]");
+        fail_at({r.name, 0, 0}, "it has no stroke", "add [stroke] or [[stroke]]");
 
     if (root.node("stroke")->is_table()) {
         sequence one(false);
         const toml_table t = *root.table("stroke", "[stroke]", "[stroke]");
-        one.add(t, read_entry(t, stem(name), r, 0));
+        one.add(t, read_entry(t, stem(r.name), r, 0));
         return std::move(one).take().strokes;
     }
     const std::vector<toml_table> tables = root.tables("stroke");
     if (tables.empty())
         root.fail("stroke", "it has no stroke", "add [stroke] or [[stroke]]");
-    return read_all(tables, false, stem(name), r, 0).strokes;
+    return read_all(tables, false, stem(r.name), r, 0).strokes;
 }
 
-// Reads strokes of a format that find_stroke_format() returned.
-std::vector<stroke> read_any(std::string_view format, std::string_view text, const std::string& name,
-                             const reading& r)
-{
-    return format == "svg"   ? parse_strokes_svg(text, name)
-           : format == "csv" ? parse_strokes_csv(text, name, r.intensity_max)
-                             : read_strokes(text, name, r);
-}
+constexpr std::string_view toml_extensions[] = {".toml"};
 
 } // namespace
+
+extern const stroke_format toml_strokes{
+    .name = "toml",
+    .title = "TOML",
+    .extensions = toml_extensions,
+    .media_type = "application/toml",
+    .begins = [](std::string_view text) { return find_text_form(text) == text_form::toml; },
+    .parse = read_strokes,
+    .write = strokes_text,
+};
 
 } // namespace tactor::detail
 
@@ -600,26 +600,7 @@ inline namespace v0 {
 
 std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max)
 {
-    return detail::read_strokes(text, name, {nullptr, intensity_max});
-}
-
-std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
-{
-    return detail::read_any(detail::find_stroke_format(text, {}), text, name, {nullptr, intensity_max});
-}
-
-std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
-{
-    const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
-    const std::string name = file.string();
-    const std::filesystem::path folder = file.parent_path();
-    return detail::read_any(detail::find_stroke_format(text, file), text, name, {&folder, intensity_max});
-}
-
-std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)
-{
-    detail::note_input(fmt::format("/dev/fd/{}", descriptor));
-    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name, intensity_max);
+    return detail::read_strokes({text, name, intensity_max});
 }
 
 } // namespace v0

@@ -305,7 +305,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
     if (r.status == pugi::status_out_of_memory)
         throw std::bad_alloc();
     if (!r) {
-        refuse_other_form(text_, name_, "svg");
+        refuse_other_form(text_, name_, text_form::xml);
         throw error(error_kind::bad_input,
                     place(static_cast<std::size_t>(std::max<std::ptrdiff_t>(r.offset, 0))), r.description(),
                     "the file is not well-formed XML");

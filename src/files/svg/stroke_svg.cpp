@@ -17,6 +17,7 @@
 #include "core/kind_names.hpp"
 #include "core/path/impl.hpp"
 #include "core/suggest.hpp"
+#include "files/stroke_format.hpp"
 #include "files/svg/document.hpp"
 #include "files/text_file.hpp"
 
@@ -479,3 +480,21 @@ std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& 
 
 } // namespace v0
 } // namespace tactor
+
+namespace tactor::detail {
+namespace {
+
+constexpr std::string_view svg_extensions[] = {".svg"};
+
+} // namespace
+
+extern const stroke_format svg_strokes{
+    .name = "svg",
+    .title = "SVG",
+    .extensions = svg_extensions,
+    .media_type = "image/svg+xml",
+    .begins = [](std::string_view text) { return find_text_form(text) == text_form::xml; },
+    .parse = [](const stroke_file_text& s) { return parse_strokes_svg(s.text, s.name); },
+};
+
+} // namespace tactor::detail

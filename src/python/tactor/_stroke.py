@@ -372,7 +372,7 @@ def _cores(strokes: _t.Any) -> list[_t.Any]:
 
 
 def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0) -> list[Stroke]:
-    """Reads a stroke file by its extension: .toml, .csv or .svg, see tactor.toml(5).
+    """Reads a stroke file by its extension, see tactor.toml(5).
 
     Parameters
     ----------
@@ -395,7 +395,7 @@ def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0) -> list[St
 
 
 def parse(text: str, name: str = "text", *, intensity_max: float = 1.0) -> list[Stroke]:
-    """Reads strokes from the text of a stroke file: SVG, CSV or TOML, which its beginning tells. `intensity_max` as for `load`."""
+    """Reads strokes from the text of a stroke file, whose beginning gives its format. `intensity_max` as for `load`."""
     _need(text, str, "text")
     _need(name, str, "name")
     return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name, _number("intensity_max", intensity_max))]

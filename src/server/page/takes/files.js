@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files that are opened and saved; the service reads and writes them as the tool does.
-import {state, changed, current_take, say} from "../state.js";
+import {state, changed, on_change, current_take, say} from "../state.js";
 import {by_id, make, show_only_if, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
 import {add_take, make_request} from "./takes.js";
@@ -10,10 +10,13 @@ import {is_own_host} from "./address.js";
 import {fault_text, fault_sentence} from "../words.js";
 
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
-const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv", "Timed points",
-  "a table: time, place, intensity"], ["svg", "Figure, SVG", "for a paper, to be edited"],
-  ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
-    ["json", "Plan", "all bursts as numbers"]];
+// Formats of strokes that the page writes without a connection, too, and their words.
+const OWN_FORMATS = [{name: "toml", written: true}, {name: "csv", written: true, only_points: true}];
+const FORMAT_WORDS = {toml: ["Stroke", "for the tool, a study and this page"], csv: ["Timed points", "a table: time, place, intensity"]};
+const OTHER_KINDS = [["svg", "Figure, SVG", "for a paper, to be edited"], ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""],
+  ["wav", "Samples", "exactly what each channel plays"], ["json", "Plan", "all bursts as numbers"]];
+const formats = () => state.hello?.formats ?? OWN_FORMATS;
+const has_only_points = kind => formats().some(f => f.name === kind && f.only_points);
 
 // Comment at the end of a figure of this page, with its stroke as TOML in base64, in one part or two.
 const STROKE_OF_FIGURE = /<!-- stroke of this figure: ([\w+/= ]+) -->\s*$/;
@@ -48,7 +51,7 @@ async function what_to_import(file) {
   const text = await file.text(), head = text.slice(0, 400), own = STROKE_OF_FIGURE.exec(text);
   if (own) return {name: "figure.toml", text: own[1].split(" ").map(part => new TextDecoder().decode(decoded(part))).join("")};
   if (head.includes("<!-- Drawn by tactor -->") || head.startsWith("%PDF") || head.slice(1).startsWith("PNG\r\n")) throw new Error(FIGURE);
-  if (text.includes("\0") || /^\ufffd\ufffd/.test(head)) throw new Error("it is not text; strokes are SVG, CSV, TOML or a plan");
+  if (text.includes("\0") || /^\ufffd\ufffd/.test(head)) throw new Error(`it is not text; strokes are ${formats().map(f => f.title ?? f.name).join(", ")} or a plan`);
   if (file.size > MOST_BYTES) throw new Error(`it is larger than ${MOST_BYTES >> 10} KiB`);
   return {name: file.name, text};
 }
@@ -78,7 +81,7 @@ function give(name, type, ...parts) {
 }
 export const give_toml = (name, text) => give(`${name}.toml`, "application/toml", text);
 // Requests a take as a file from the service. Its gain becomes a part of the file if the format has it, else of the level.
-const export_as = (take, as) => call("export", {...make_request(as === "csv" ? take : with_level(take)), as, name: file_name(take)});
+const export_as = (take, as) => call("export", {...make_request(has_only_points(as) ? take : with_level(take)), as, name: file_name(take)});
 const encoded = text => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
 const decoded = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
@@ -103,13 +106,19 @@ on_click("save-all", () => {
   for (const t of takes) give_toml(file_name(t), take_toml(t));
   say(`Saved ${takes.length} takes`);
 });
-by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
-  {class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
-  make("small", {}, why), make("span", {}, `.${kind}`))));
+function show_kinds() {
+  const strokes = formats().filter(f => f.written).map(f => [f.name, ...FORMAT_WORDS[f.name] ?? [f.title, ""]]);
+  by_id("save-list").replaceChildren(...[...strokes, ...OTHER_KINDS].map(([kind, name, why]) => make("button",
+    {class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
+    make("small", {}, why), make("span", {}, `.${kind}`))));
+}
+show_kinds();
+let shown = null; // the greeting whose formats the list has
+on_change(() => { if (state.hello !== shown) { shown = state.hello; show_kinds(); } }, "link");
 listen("p-save", "beforetoggle", async e => {
   if (e.newState !== "open") return;
   const take = current_take();
-  show_only_if(document.querySelector("#save-list [data-kind=csv]"), !(take?.strokes.length > 1));
+  all_of("#save-list [data-kind]").forEach(b => show_only_if(b, !(has_only_points(b.dataset.kind) && take?.strokes.length > 1)));
   // Breaks lines between words, not after dashes in them.
   const show_words = (id, line) => by_id(id).replaceChildren(...line.split(" ").flatMap((w, i) => [i > 0 && " ", make("span", {}, w)]).filter(Boolean));
   const show = (render, play = render) => { show_words("command", render); show_words("play-line", play); };

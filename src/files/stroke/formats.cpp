@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// The list of formats of stroke files, and files whose format follows from their name or content.
+#include "files/stroke_format.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "files/text_file.hpp"
+
+namespace tactor::detail {
+
+// Each is defined beside its reader.
+extern const stroke_format toml_strokes;
+extern const stroke_format csv_strokes;
+extern const stroke_format svg_strokes;
+
+namespace {
+
+constexpr const stroke_format* formats[] = {&toml_strokes, &csv_strokes, &svg_strokes};
+
+template <class Is>
+const stroke_format* find_format(Is is)
+{
+    const auto* const found = std::find_if(std::begin(formats), std::end(formats),
+                                           [&is](const stroke_format* f) { return is(*f); });
+    return found == std::end(formats) ? nullptr : *found;
+}
+
+} // namespace
+
+std::span<const stroke_format* const> stroke_formats() noexcept
+{
+    return formats;
+}
+
+const stroke_format* find_format_by_name(std::string_view name) noexcept
+{
+    return find_format([name](const stroke_format& f) { return f.name == name; });
+}
+
+const stroke_format* find_format_by_extension(const std::filesystem::path& file)
+{
+    const std::string extension = in_small_letters(file.extension().string());
+    return find_format([&extension](const stroke_format& f) {
+        return std::find(f.extensions.begin(), f.extensions.end(), extension) != f.extensions.end();
+    });
+}
+
+const stroke_format* find_format_by_content(std::string_view text)
+{
+    return find_format([text](const stroke_format& f) { return f.begins(text); });
+}
+
+const stroke_format& find_stroke_format(std::string_view text, const std::filesystem::path& file)
+{
+    const stroke_format* found = find_format_by_extension(file);
+    if (found == nullptr)
+        found = find_format_by_content(text);
+    return found == nullptr ? *formats[0] : *found;
+}
+
+std::string list_stroke_formats()
+{
+    std::string all;
+    for (const stroke_format* f : formats)
+        all += fmt::format("{}{}",
+                           f == formats[0]              ? ""
+                           : f == *std::rbegin(formats) ? " or "
+                                                        : ", ",
+                           f->title);
+    return all;
+}
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+
+std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
+{
+    return detail::find_stroke_format(text, {}).parse({text, name, intensity_max});
+}
+
+std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
+{
+    const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
+    const std::string name = file.string();
+    const std::filesystem::path folder = file.parent_path();
+    return detail::find_stroke_format(text, file).parse({text, name, intensity_max, &folder});
+}
+
+std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)
+{
+    detail::note_input(fmt::format("/dev/fd/{}", descriptor));
+    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name, intensity_max);
+}
+
+} // namespace v0
+} // namespace tactor

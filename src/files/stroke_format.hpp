@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Formats of stroke files. A format is a file with its reader and a stroke_format, and a row in
+/// stroke/formats.cpp; everything else that lists formats reads stroke_formats().
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/stroke.hpp>
+
+namespace tactor::detail {
+
+/// Text of a stroke file, and what its reader needs besides.
+struct stroke_file_text {
+    std::string_view text;
+    const std::string& name;                       ///< stands for the text in messages
+    double intensity_max = 1.0;                    ///< value of an intensity that means 1
+    const std::filesystem::path* folder = nullptr; ///< of files that it names; null: it must not name any
+};
+
+/// A format of stroke files.
+struct stroke_format {
+    std::string_view name;  ///< parameter of the service, and extension of the files that it writes
+    std::string_view title; ///< for people
+    std::span<const std::string_view> extensions; ///< with the dot, lower case; the first is for new files
+    std::string_view media_type;
+    /// Returns true for a text whose content shows this format.
+    bool (*begins)(std::string_view text);
+    /// Reads a text. \throws error (bad_input) with line and column.
+    std::vector<stroke> (*parse)(const stroke_file_text& s);
+    /// Returns the text of a file; null: the format is only read. \throws error (bad_input) for strokes that
+    /// it cannot hold.
+    std::string (*write)(std::span<const stroke> strokes) = nullptr;
+    /// A file has the points of one stroke: no second stroke, and no options.
+    bool only_points = false;
+};
+
+/// Returns all formats. The first, TOML, is for texts of no known format: its reader explains the fault.
+std::span<const stroke_format* const> stroke_formats() noexcept;
+
+/// Returns the format with this name; null for none.
+const stroke_format* find_format_by_name(std::string_view name) noexcept;
+
+/// Returns the format that has the extension of this file, in upper or lower case; null for none.
+const stroke_format* find_format_by_extension(const std::filesystem::path& file);
+
+/// Returns the format that the content of a text shows; null for none.
+const stroke_format* find_format_by_content(std::string_view text);
+
+/// Returns the format of a text with strokes: by the extension of its file, else by its content.
+const stroke_format& find_stroke_format(std::string_view text, const std::filesystem::path& file);
+
+/// Returns "TOML, CSV or SVG": the titles of all formats.
+std::string list_stroke_formats();
+
+} // namespace tactor::detail
