@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "python/binding.hpp"
-#include "study/analysis/analysis_json.hpp"
+#include "study/analysis/analysis.hpp"
 #include "study/data/dataset.hpp"
+#include "study/results/result_json.hpp"
 
 namespace tactor::python {
 namespace {

@@ -54,7 +54,7 @@ class Figures(AnalyzeTest):
         told = self.analysis(self.study("missing"))
         self.assertEqual([m["participant"] for m in told["runs"]["taste"]["left_out"]], ["C3", "Late"])
         self.assertEqual([m["participant"] for m in told["runs"]["marks"]["left_out"]], ["E5", "Late"])
-        said = self.ok("analyze", "missing")
+        said = self.ok("analyze", "missing", "--format", "tables")
         self.assertIn("marks: sub-E5 is left out: no trial counts in some of the cells", said.stderr)
         self.assertIn("taste: choose, 6 participants", said.stdout)
         self.assertEqual(sorted(told["warnings"]),
@@ -75,7 +75,7 @@ class Figures(AnalyzeTest):
         self.assertIn("marks: park2016, all: no variance within participants, so no interval within participants", told["warnings"])
         self.assertEqual({(p["difference"], p["t"], p["p_holm"]) for p in told["runs"]["which"]["pairs"]["park2016"]}, {(0, None, None)})
         self.assertIn("which: park2016, motion-1 - motion-2: no variance over participants, so no t test", told["warnings"])
-        said = self.ok("analyze", "same")
+        said = self.ok("analyze", "same", "--format", "tables")
         self.assertEqual(said.stderr, f"tactor: warning: {told['warnings'][0]} ({len(told['warnings']) - 1} more warnings: --format json)\n")
         self.assertIn("park2016 - tactile-brush: 0.00, signs 1.000", said.stdout)
 
@@ -100,13 +100,13 @@ class Figures(AnalyzeTest):
 
     def test_groups_are_compared_unless_one_only_took_part(self):
         # R 4.2.2, car: Anova(lm(values ~ group), type = 3) with contr.sum
-        self.assertIn("  groups compared:\n    group: F(1, 10) = 0.48, p = 0.503; eta squared partial 0.046, generalised\n           0.023\n", self.ok("analyze", self.study("grouped")).stdout)
+        self.assertIn("  Analysis of variance with the group as a factor between participants:\n    group: F(1, 10) = 0.48, p = 0.503; eta squared partial 0.046, generalised\n           0.023\n", self.ok("analyze", self.study("grouped"), "--format", "tables").stdout)
         self.assertIn("| group:motion | 3.584 | 2, 20 | 0.04674 | 0.6159 | 0.07584 |", self.ok("report", "grouped").stdout)
         told = self.analysis("grouped", "--participants", "01,02")
         self.assertEqual(told["runs"]["which"]["groups"]["palm"]["n"], 2)
         self.assertEqual({e["F"] for e in told["runs"]["which"]["group_anova"].values()}, {None})
         self.assertIn("which: groups: too few participants to compare them", told["warnings"])
-        self.assertNotIn("groups compared", self.ok("analyze", "grouped", "--participants", "01,02").stdout)
+        self.assertNotIn("as a factor", self.ok("analyze", "grouped", "--participants", "01,02", "--format", "tables").stdout)
 
     def test_folders_of_one_experiment_are_analysed_as_one(self):
         whole = self.analysis(self.study("missing"))
@@ -129,17 +129,40 @@ class Forms(AnalyzeTest):
     def test_no_printed_interval_is_beyond_a_per_cent_or_a_scale(self):
         beyond = 0
         for name in ("simulated", "few", "ties", "three-by-three", "among"):
-            text = self.ok("analyze", self.study(name)).stdout
+            text = self.ok("analyze", self.study(name), "--format", "tables").stdout
             beyond += sum(v < 0 or v > 100 for p, v in check_r.flat(self.analysis(name)["runs"]) if v is not None
                           and re.search(r"\.(preference|chosen|correct)\..*\.ci\.[01]$", p))
             shown = re.findall(r"^  \S.*? +[\d.]+ +[\d.]+ +(-?[\d.]+) \.\.\. (-?[\d.]+) ", text, re.M)
             self.assertTrue(all(0 <= float(low) <= float(high) <= 100 for low, high in shown), shown)
             self.assertEqual(bool(shown), "Columns: mean and se" in text, name)
-            rated = re.findall(r" all \S+ \(\S+\), 95 % (-?[\d.]+) \.\.\. (-?[\d.]+)$", text, re.M)
-            self.assertTrue(all(float(low) >= 1 for low, _ in rated), rated)
+            rated = re.findall(r"^  \S.*? +[\d.]+ +[\d.]+ +(-?[\d.]+) \.\.\. -?[\d.]+$", text, re.M)
+            self.assertEqual(bool(rated), "Mean rating" in text)
+            self.assertTrue(all(float(low) >= 1 for low in rated), rated)
             shown = re.findall(r"^\| \S.*? \| [\d.]+ \| [\d.]* \| (-?[\d.]+) to (-?[\d.]+) \|", self.ok("report", name).stdout, re.M)
             self.assertTrue(shown and all(0 <= float(low) <= float(high) <= 100 for low, high in shown), shown)
         self.assertGreater(beyond, 0)  # else nothing was tried
+
+    def test_a_summary_has_the_main_figure_of_each_run_in_ten_lines(self):
+        told = self.analysis(self.study("simulated"))["runs"]
+        text = self.ok("analyze", "simulated", "--exclude", "07:asleep,09").stdout
+        self.assertEqual(text.splitlines()[:3], ["park2016: 10 participants, SIMULATED: no person gave these answers", *text.splitlines()[1:2],
+                                                 "excluded: sub-07 (asleep), sub-09 (no reason was given)"])
+        text = self.ok("analyze", "simulated").stdout
+        self.assertTrue(self.ok("analyze", "simulated", "--format", "tables").stdout.startswith(text))
+        lines = dict(line.split(": ", 1) for line in text.splitlines()[2:])
+        self.assertEqual(list(lines), list(told))
+        for name, run in told.items():
+            rate = run["task"] == "rate"
+            all_motions = run["paired"] if rate else run["preference"]["all"]
+            mean, (low, high) = all_motions["difference" if rate else "mean"], all_motions["ci"]
+            self.assertEqual(lines[name], f"park2016 {'- tactile-brush' if rate else 'chosen (%)'} {mean:.2f} ({low:.2f} ... {min(high, 100):.2f}), "
+                                          f"t(11) = {all_motions['t']:.2f}, p < 0.001")
+        # Seven results fit, of four runs in three results each, seven fit.
+        text = studies.definition("many", studies.FOUR, studies.TWO, [studies.run(f"run {i}", "identify", 8) for i in range(4)], ["a", "b"])
+        studies.write_study(self.dir / "many", text, ["1", "2"], lambda _, r, cell, n: cell[0], groups={"1": "a", "2": "b"}, void=5)
+        lines = self.ok("analyze", "many").stdout.splitlines()
+        self.assertEqual((len(lines), lines[-1]), (10, "and 5 more results: --format tables"))
+        self.assertEqual(lines[2], "run 0: park2016 correct (%) 100.00")
 
     def test_each_trial_that_counts_has_a_line(self):
         notes, rows = self.trials(self.study("simulated"))
@@ -176,7 +199,7 @@ class Forms(AnalyzeTest):
             own = [r["chosen"] == str(int(r["method"] == name)) for r in rows if r["run"] == "all three" and r["motion"] == "motion-2"
                    and name in (r["method"], r["other"])]
             self.assertAlmostEqual(100 * sum(own) / len(own), cells["motion"]["motion-2"]["mean"], 9)
-        shown = self.ok("analyze", "among").stdout
+        shown = self.ok("analyze", "among", "--format", "tables").stdout
         self.assertLessEqual(max(map(len, shown.splitlines())), 80)
         worths = told["bradley_terry"]
         for name in ("park2016", "continuous"):
@@ -242,7 +265,7 @@ class Forms(AnalyzeTest):
         self.assertTrue(lines[4].endswith(f"subset(d, run == {json.dumps(name)}))"), lines[4])
 
     def test_text_fits_a_terminal_in_any_locale_and_gives_the_paper_s_result(self):
-        text = self.ok("analyze", self.study("simulated")).stdout
+        text = self.ok("analyze", self.study("simulated"), "--format", "tables").stdout
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
         self.assertIn("SIMULATED", text.splitlines()[0])
         self.assertIn("144 trials void, not counted", text)
@@ -258,11 +281,11 @@ class Forms(AnalyzeTest):
             for effect, found in run.get("anova", {}).items():
                 if found["F"] is not None:
                     self.assertRegex(every, rf"\b{effect}: F\([0-9, ]+\) = {found['F']:.2f}")
-        for form in ("text", "json", "tsv"):
+        for form in ("text", "tables", "json", "tsv"):
             self.assertEqual(*(self.ok("analyze", "simulated", "--format", form, env={"LC_ALL": locale}).stdout
                                for locale in ("C", "de_DE.UTF-8")))
-        self.assertNotIn("Park et al.", self.ok("analyze", self.study("ties")).stdout)
-        text = self.ok("analyze", self.study("three-by-three")).stdout
+        self.assertNotIn("Park et al.", self.ok("analyze", self.study("ties"), "--format", "tables").stdout)
+        text = self.ok("analyze", self.study("three-by-three"), "--format", "tables").stdout
         pair = self.analysis("three-by-three")["runs"]["which"]["pairs"]["tactile-brush"][1]
         self.assertIn(f"    motion-1 - motion-3 {pair['difference']:>7.2f} t = {pair['t']:>5.2f}, p = {pair['p']:.3f}, "
                       f"Holm {pair['p_holm']:.3f}\n", text)

@@ -354,7 +354,7 @@ class Simulated(ExperimentTest):
             ratings = [int(r["rating"]) for r in rows]
             self.assertRegex(range_text, rf"^{min(ratings)} to {max(ratings)}\b")
             self.assertEqual([r["response"] for r in rows], [r["rating"] for r in rows])
-            self.assertIn(f"mean rating (se), {range_text}\n", self.ok("analyze", folder).stdout)
+            self.assertIn(f"Mean rating of park, {range_text}:\n", self.ok("analyze", folder, "--format", "tables").stdout)
             self.assertIn(f"rated from {range_text}.", self.ok("report", folder).stdout)
             described = json.loads((self.dir / folder / "task-howgood_beh.json").read_text())
             self.assertEqual(described["response"]["Description"], f"The rating, {range_text}")

@@ -336,7 +336,7 @@ class ByLines(PersonTest):
         runs = self.analysis()["runs"]
         self.assertEqual((runs["pairs"]["early"], runs["marks"]["early"]), (2, 0))
         self.assertEqual([(t["run"], [*t.items()][-1]) for t in self.trials()[1]], [("pairs", ("early", "true"))] * 2 + [("marks", ("early", "false"))] * 2)
-        self.assertIn("2 answers early (sooner after the stimulus than min_response_s), counted", self.ok("analyze", "study").stdout)
+        self.assertIn("2 answers early (sooner after the stimulus than min_response_s), counted", self.ok("analyze", "study", "--format", "tables").stdout)
         text = self.ok("report", "study").stdout
         self.assertIn("Answers marked early, which count: 2.", text)
         self.assertIn("sooner after the stimulus than: 10 s", text)

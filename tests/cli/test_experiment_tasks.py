@@ -177,7 +177,7 @@ class Tasks(ExperimentTest):
                      "positive ~ signal + (1 + signal | participant), ",
                      "log(estimate) ~ I(value + 20) + (1 + I(value + 20) | participant), "):
             self.assertIn(line, tsv)
-        told = self.ok("analyze", "study", "-o", "a.svg")
+        told = self.ok("analyze", "study", "--format", "tables", "-o", "a.svg")
         self.assertIn("pse against -24", told.stdout)
         steps = [c for c, p in runs["words"]["psychometric"]["participants"].items() if p["jnd"] is None]
         self.assertNotEqual(steps, [])
@@ -194,7 +194,8 @@ class Tasks(ExperimentTest):
             one = sum(part(k, 20) for k in (hits, 20 - hits, alarms, 20 - alarms)) - sum(part(k, 40) for k in (hits + alarms, 40 - hits - alarms))
             g += 2 * one if hits > alarms else 0
         self.assertAlmostEqual(same["likelihood_ratio"]["value"], g, delta=1e-9)
-        self.assertIn(f", likelihood ratio {g:.2f}, p < 0.001", self.ok("analyze", "study").stdout)
+        for form in ("text", "tables"):
+            self.assertIn(f", likelihood ratio {g:.2f}, p < 0.001", self.ok("analyze", "study", "--format", form).stdout)
         self.assertIn(f"Likelihood ratio of d' against 0: 2 ln = {g:.4g}, p = ", self.ok("report", "study").stdout)
 
     def test_simulated_observers_lapse_to_either_key(self):
@@ -278,7 +279,7 @@ class Tasks(ExperimentTest):
             told = runs[run]["group_anova"]
             self.assertEqual((list(told), told["group"]["df1"], told["group"]["df2"]), (["group"], 1, 3))
             self.assertAlmostEqual(told["group"]["F"] / expected, 1, delta=1e-9)
-        self.assertIn("groups compared:\n", self.ok("analyze", "study").stdout)
+        self.assertIn("the group as a factor between participants:\n    group: F(1, 3)", self.ok("analyze", "study", "--format", "tables").stdout)
         self.assertIn("Analysis of variance with the group as a factor", self.ok("report", "study").stdout)
 
     def test_a_catch_trial_is_of_no_method(self):
@@ -365,8 +366,8 @@ class Tasks(ExperimentTest):
         for code in ("01", "02"):
             self.hold(text, code, spec=f"seed={code},pse=0.061,jnd=0.004")
         told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["taps"]["psychometric"]
-        said = self.ok("analyze", "study").stdout
-        self.assertRegex(said, rf"\n  pse against 0\.061 +{told['mean']['pse']:.4f} \(se 0\.\d{{4}}\), 95 % -?0\.\d{{4}} \.\.\. 0\.\d{{4}}")
+        said = self.ok("analyze", "study", "--format", "tables").stdout
+        self.assertRegex(said, rf"\n    pse against 0\.061 +{told['mean']['pse']:.4f} \(se 0\.\d{{4}}\), 95 % -?0\.\d{{4}} \.\.\. 0\.\d{{4}}")
         self.assertIn(f"jnd {told['participants']['01']['jnd']:.4f}", said)
 
     def test_the_shipped_studies_run_from_definition_to_figure(self):

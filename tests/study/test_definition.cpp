@@ -9,6 +9,7 @@
 #include "folder.hpp"
 #include "has.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study::test_definition {
 namespace {
@@ -43,7 +44,7 @@ TEST_CASE("the shipped experiment is the paper's")
         CHECK(r.methods == std::vector<std::size_t>{0, 1});
         CHECK(r.animation == (r.attribute == "similarity"));
     }
-    CHECK(d.runs[2].outline.task == task_kind::rate);
+    CHECK(d.runs[2].outline.task == &find_task("rate"));
     CHECK(d.runs[2].outline.scale == 5);
     CHECK(d.methods[0].options.plan.algorithm == algorithm_kind::tactile_brush);
     CHECK(d.text == park2016_text());
@@ -376,7 +377,7 @@ TEST_CASE("runs in order, motions and methods in the order of the definition")
     CHECK(e.runs[0].methods == std::vector<std::string>{"old", "other", "new"});
     CHECK(e.runs[0].scale == 7);
     CHECK(e.runs[0].trials == 12);
-    CHECK(e.runs[1].task == task_kind::choose);
+    CHECK(e.runs[1].task == &find_task("choose"));
     CHECK(e.runs[1].methods == std::vector<std::string>{"old", "new"});
     CHECK(e.runs[2].motions == std::vector<std::string>{"a", "b"});
 }

@@ -121,7 +121,7 @@ struct outcome {
     int hold_pse = 0;
     int hold_jnd = 0;
 
-    void add(const person_measures& m)
+    void add(const fitted_function& m)
     {
         ++people;
         if (m.pse) {
@@ -164,7 +164,7 @@ struct outcome {
     }
 };
 
-run_outline make_run(task_kind task)
+run_outline make_run(const task* task)
 {
     return {.name = "run",
             .file_name = "run",
@@ -204,15 +204,14 @@ std::vector<trial> hold_constant(second_observer& who, const std::vector<double>
 outcome constant_studies(const faults& f, std::size_t people, int studies, const std::vector<double>& offsets,
                          bool bootstrap = false)
 {
-    const run_outline run = make_run(task_kind::constant);
     outcome o;
     for (int study = 0; study < studies; ++study) {
         std::vector<double> pses;
         for (std::size_t i = 0; i < people; ++i) {
             second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
-            const person_measures m =
-                measure_trials(run, hold_constant(who, offsets), sigmoid::normal,
-                               bootstrap && i == 0 ? std::to_string(study) : std::string());
+            const fitted_function m =
+                fit_comparisons(hold_constant(who, offsets), sigmoid::normal,
+                                bootstrap && i == 0 ? std::to_string(study) : std::string());
             o.add(m);
             if (m.pse)
                 pses.push_back(*m.pse);
@@ -226,7 +225,7 @@ outcome constant_studies(const faults& f, std::size_t people, int studies, const
 run_definition make_adaptive(unsigned down, unsigned tracks)
 {
     run_definition r;
-    r.outline = make_run(task_kind::adaptive);
+    r.outline = make_run(&find_task("adaptive"));
     for (int i = -13; i <= 13; ++i)
         r.outline.values.push_back(pse + i);
     r.adaptive = {.down = down, .tracks = tracks, .steps = {4, 2, 1}, .lapses = {0.0, 0.02, 0.04}};
@@ -257,8 +256,8 @@ outcome adaptive_studies(const faults& f, const run_definition& r, std::size_t p
                 tracks.answer(track, more);
                 all.push_back({.value = x, .positive = more});
             }
-            const person_measures m = measure_trials(
-                r.outline, all, sigmoid::normal, bootstrap && i == 0 ? std::to_string(study) : std::string());
+            const fitted_function m = fit_comparisons(
+                all, sigmoid::normal, bootstrap && i == 0 ? std::to_string(study) : std::string());
             o.add(m);
             if (m.pse)
                 pses.push_back(*m.pse);
@@ -283,19 +282,17 @@ TEST_CASE("two answers of equal standing have lapses at both ends")
     CHECK(fit.parameters.lapse == doctest::Approx(0.08).epsilon(1e-4));
     CHECK(fit.deviance < 1e-3);
 
-    const run_outline run = make_run(task_kind::constant);
     std::vector<trial> trials;
     for (const answer_block& b : blocks)
         for (std::size_t i = 0; i < 1000; ++i)
             trials.push_back({.value = b.x, .positive = i < (b.k + 50000) / 100000});
-    const person_measures m = measure_trials(run, trials, sigmoid::normal, "");
+    const fitted_function m = fit_comparisons(trials, sigmoid::normal, "");
     CHECK(*m.pse == doctest::Approx(0.4).epsilon(0.01));
     CHECK(*m.jnd == doctest::Approx(0.6744897501960817 * 1.7).epsilon(0.01));
 }
 
 TEST_CASE("the interval of a jnd is that of the slope in the unit of the jnd")
 {
-    const run_outline run = make_run(task_kind::constant);
     const std::vector<std::size_t> answers{1, 2, 4, 10, 16, 18, 19}; // of 20 to the values -3 to 3
     std::vector<trial> trials;
     for (std::size_t k = 0; k < answers.size(); ++k)
@@ -304,7 +301,7 @@ TEST_CASE("the interval of a jnd is that of the slope in the unit of the jnd")
     // The distance from a half to three quarters, of the normal and of the logistic function.
     for (const auto& [kind, quartile] :
          {std::pair(sigmoid::normal, 0.6744897501960817), {sigmoid::logistic, 1.0986122886681098}}) {
-        const person_measures m = measure_trials(run, trials, kind, "jnd");
+        const fitted_function m = fit_comparisons(trials, kind, "jnd");
         REQUIRE(m.jnd_ci);
         CHECK(m.jnd_ci->first < *m.jnd);
         CHECK(m.jnd_ci->second > *m.jnd);
@@ -385,7 +382,7 @@ TEST_CASE("QUEST+ leaves the pse where it is: observers of a second kind")
 
 // Returns a participant's trials of detect, half of them without a stimulus, or of same-different. With
 // values: of detect, whose stimuli are felt more the greater they are.
-std::vector<trial> hold_signals(second_observer& who, task_kind task, double dprime, bool by_value,
+std::vector<trial> hold_signals(second_observer& who, const task* task, double dprime, bool by_value,
                                 double catches)
 {
     constexpr std::size_t trials = 120;
@@ -394,7 +391,7 @@ std::vector<trial> hold_signals(second_observer& who, task_kind task, double dpr
         const double part = static_cast<double>(k) / (trials - 1);
         trial t{.signal = who.unit() >= catches};
         t.value = by_value ? about_the_pse[static_cast<std::size_t>(who.unit() * 7.0)] : 0.0;
-        if (task == task_kind::same_different)
+        if (task == &find_task("same-different"))
             t.positive = who.tells_different(t.signal ? dprime : 0.0, 1.4, part);
         else
             t.positive = who.presses_second(
@@ -412,21 +409,19 @@ TEST_CASE("faults and d', thresholds, exponents and choices: observers of a seco
         double chosen = 0.0;
         for (int i = 0; i < people; ++i) {
             second_observer who(f, static_cast<std::uint64_t>(i));
-            run_outline run{.name = "run", .file_name = "run", .task = task_kind::detect};
-            run.catches = true;
-            const auto measure = [&](task_kind task, double dprime, bool by_value) {
-                run.task = task;
-                run.vary = by_value ? "length_mm" : "";
-                return measure_trials(run, hold_signals(who, task, dprime, by_value, 0.5), sigmoid::normal,
-                                      "");
-            };
-            const auto yes_no = measure(task_kind::detect, 1.5, false);
-            sums["detect, d' of 1.5"] += yes_no.detected->found.dprime / people;
-            sums["detect, c of 0"] += yes_no.detected->found.c / people;
-            const auto fit = measure(task_kind::detect, 0.0, true).fit;
+            const auto felt_or_not =
+                *measure_detection(hold_signals(who, &find_task("detect"), 1.5, false, 0.5), yes_no);
+            sums["detect, d' of 1.5"] += felt_or_not.found.dprime / people;
+            sums["detect, c of 0"] += felt_or_not.found.c / people;
+            const auto fit =
+                fit_answers(hold_signals(who, &find_task("detect"), 0.0, true, 0.5), {sigmoid::normal}, "")
+                    .fit;
             sums["detect, threshold of 0, in jnds"] += fit ? fit->parameters.threshold / jnd / people : 0.0;
             sums["same-different, d' of 2"] +=
-                measure(task_kind::same_different, 2.0, false).detected->found.dprime / people;
+                measure_detection(hold_signals(who, &find_task("same-different"), 2.0, false, 0.5),
+                                  same_different)
+                    ->found.dprime /
+                people;
             std::vector<double> values;
             std::vector<double> numbers;
             double last = 0.0;
@@ -459,8 +454,6 @@ TEST_CASE("faults and d', thresholds, exponents and choices: observers of a seco
 
 TEST_CASE("d' of detect leans below 0 where few trials have no stimulus: observers who feel nothing")
 {
-    run_outline run{.name = "run", .file_name = "run", .task = task_kind::detect};
-    run.catches = true;
     for (const double catches : {0.5, 0.2})
         for (const double yes : {0.02, 0.1, 0.3}) {
             const int studies = test::rounds(40, 1000);
@@ -475,7 +468,7 @@ TEST_CASE("d' of detect leans below 0 where few trials have no stimulus: observe
                         own[k].signal = static_cast<double>(k) >= catches * 40.0;
                         own[k].positive = who.unit() < yes;
                     }
-                    all.push_back(measure_trials(run, own, sigmoid::normal, "").detected->found.dprime);
+                    all.push_back(measure_detection(own, yes_no)->found.dprime);
                     sum += all.back();
                 }
                 const t_test t = quick_test_mean(all, 0.0);

@@ -12,10 +12,11 @@
 #include <fmt/format.h>
 
 #include "rounds.hpp"
-#include "study/analysis/measures.hpp"
 #include "study/random/random.hpp"
+#include "study/results/result.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/signal_detection.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study::test_psychometric {
 namespace {
@@ -167,22 +168,23 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
     constexpr std::size_t people = 12;
     constexpr std::size_t trials = 60;
     constexpr double exponent = 0.6;
-    for (const auto& [task, dprime] :
-         {std::pair(task_kind::detect, 1.5), {task_kind::same_different, 2.0}, {task_kind::estimate, 0.0}}) {
+    for (const auto& [task, dprime] : {std::pair(&find_task("detect"), 1.5),
+                                       {&find_task("same-different"), 2.0},
+                                       {&find_task("estimate"), 0.0}}) {
         run_outline run{.name = "run", .file_name = "run", .task = task, .motions = {"m"}, .methods = {"a"}};
-        run.catches = task == task_kind::detect;
-        if (task == task_kind::estimate)
+        run.catches = task == &find_task("detect");
+        if (task == &find_task("estimate"))
             run.values = {5.0, 10.0, 20.0, 40.0};
         const auto simulate = [&](trial& t, random_numbers& r) {
             const double apart = t.signal ? dprime : 0.0;
-            if (task == task_kind::estimate)
+            if (task == &find_task("estimate"))
                 t.estimate = 10.0 * std::pow(t.value, exponent) * std::exp(0.2 * r.normal());
-            else if (task == task_kind::detect)
+            else if (task == &find_task("detect"))
                 t.positive = apart + r.normal() > 0.5 * dprime;
             else
                 t.positive = std::abs(apart + r.normal() - r.normal()) > 1.4;
         };
-        random_numbers r(to_string(task));
+        random_numbers r(task->name());
         const int studies = test::rounds(200, 1000);
         int hold = 0;
         for (int study = 0; study < studies; ++study) {
@@ -197,11 +199,14 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
                 }
                 all.push_back({std::to_string(all.size()), &own});
             }
-            const t_test mean = measure_run(run, all, sigmoid::normal)[0].figures[0].second;
-            const double truth = task == task_kind::estimate ? exponent : dprime;
+            const std::vector<result> rows = task_in(run).analyse(run, {all}, sigmoid::normal);
+            const t_test mean = task == &find_task("estimate")
+                                    ? list_values<exponents>(rows)[0]->figures[0].test
+                                    : list_values<sensitivities>(rows)[0]->figures[0].test;
+            const double truth = task == &find_task("estimate") ? exponent : dprime;
             hold += mean.ci && mean.ci->first <= truth && truth <= mean.ci->second ? 1 : 0;
         }
-        fmt::print("{}, {} people of {} trials: of {} intervals {} hold the truth\n", to_string(task), people,
+        fmt::print("{}, {} people of {} trials: of {} intervals {} hold the truth\n", task->name(), people,
                    trials, studies, hold);
         CHECK(hold >= studies * (test::whole() ? 93 : 85) / 100);
         CHECK(hold <= studies * (test::whole() ? 97 : 100) / 100);

@@ -24,6 +24,7 @@
 #include "sequences.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study::test_sequence {
 namespace {
@@ -185,7 +186,7 @@ TEST_CASE("each motion and order comes equally often, and no motion four times i
                 ++cells[{s.trials[i].motion, s.trials[i].method_1}];
                 row = i > 0 && s.trials[i].motion == s.trials[i - 1].motion ? row + 1 : 1;
                 CHECK(row <= 3);
-                const bool pair = d.runs[s.run].outline.task == task_kind::choose;
+                const bool pair = d.runs[s.run].outline.task == &find_task("choose");
                 CHECK(s.trials[i].method_2.has_value() == pair);
                 CHECK((!pair || *s.trials[i].method_2 != s.trials[i].method_1));
             }

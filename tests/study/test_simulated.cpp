@@ -23,6 +23,7 @@
 #include "has.hpp"
 #include "sequences.hpp"
 #include "study/analysis/analysis.hpp"
+#include "study/analysis/power.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/statistics/bradley_terry.hpp"
 
@@ -238,11 +239,12 @@ TEST_CASE("choices among three methods have the worths that their costs imply")
     }
     const run_analysis found = analyse(all).runs[0];
     const std::vector<worth> truth = bradley_terry(expected);
-    REQUIRE(found.worths.size() == 3);
+    const std::vector<worth> worths = list_values<worth_list>(found.results)[0]->worths;
+    REQUIRE(worths.size() == 3);
     for (const std::size_t m : {1U, 2U}) {
         CHECK(*truth[m].log_worth > *truth[m - 1].log_worth + 0.5);
-        CHECK(*found.worths[m].log_worth > *found.worths[m - 1].log_worth);
-        CHECK(std::abs(*found.worths[m].log_worth - *truth[m].log_worth) < 4.0 * *found.worths[m].se);
+        CHECK(*worths[m].log_worth > *worths[m - 1].log_worth);
+        CHECK(std::abs(*worths[m].log_worth - *truth[m].log_worth) < 4.0 * *worths[m].se);
     }
     const power_at at = r.tell({s, {6}, 40})[0].at[0];
     CHECK(at.for_last == at.significant);

@@ -11,8 +11,10 @@
 #include <doctest/doctest.h>
 
 #include "study/analysis/analysis.hpp"
+#include "study/results/result.hpp"
 #include "study/statistics/bradley_terry.hpp"
 #include "study/statistics/tests.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study::test_statistics {
 namespace {
@@ -380,7 +382,7 @@ bool warns(const analysis& a, const std::string& text)
     return has(a.warnings) || has(a.no_figures);
 }
 
-run_outline run(const std::string& name, task_kind task, unsigned trials)
+run_outline run(const std::string& name, const task* task, unsigned trials)
 {
     run_outline r;
     r.name = name;
@@ -403,7 +405,7 @@ run_data chosen(unsigned trials)
 TEST_CASE("missing trials are reported with their participants")
 {
     dataset d;
-    d.experiment.runs = {run("pairs", task_kind::choose, 4)};
+    d.experiment.runs = {run("pairs", &find_task("choose"), 4)};
     d.participants = {"1", "2", "3", "4"};
     d.data = {{chosen(4)}, {chosen(3)}, {chosen(5)}, {chosen(0)}};
     const analysis a = analyse(d);
@@ -435,22 +437,23 @@ TEST_CASE("each of three methods has the per cent of its trials, and a worth or 
     compare(r, 2, 1, 3);
     compare(r, 2, 0, 3);
     dataset d;
-    d.experiment.runs = {run("pairs", task_kind::choose, 12)};
+    d.experiment.runs = {run("pairs", &find_task("choose"), 12)};
     d.experiment.runs[0].methods.emplace_back("c");
     d.participants = {"1", "2"};
     d.data = {{r}, {r}};
     const analysis a = analyse(d);
     const run_analysis& found = a.runs[0];
-    REQUIRE(found.cells.size() == 3);
+    const auto cells = list_values<cell_means>(found.results);
+    REQUIRE(cells.size() == 3);
     for (std::size_t m = 0; m < 3; ++m)
-        CHECK(*found.cells[m].all.mean == doctest::Approx(25.0 * static_cast<double>(m + 1)));
-    CHECK(*compared_value(found.run, *compute_cells(found.run, r.trials)) == doctest::Approx(75.0));
-    CHECK(*found.first_interval.mean == doctest::Approx(75.0));
+        CHECK(*cells[m]->means[0].test.mean == doctest::Approx(25.0 * static_cast<double>(m + 1)));
+    CHECK(*task_in(found.run).compare(found.run, r.trials).value == doctest::Approx(75.0));
+    CHECK(*list_values<interval_share>(found.results)[0]->test.mean == doctest::Approx(75.0));
     const std::vector<worth> worths = bradley_terry({{0, 2, 2}, {6, 0, 2}, {6, 6, 0}});
     for (std::size_t m = 0; m < 3; ++m)
-        CHECK(*found.worths[m].log_worth == *worths[m].log_worth);
-    CHECK(found.pairs.empty());
-    CHECK(!found.effects.second.f);
+        CHECK(*list_values<worth_list>(found.results)[0]->worths[m].log_worth == *worths[m].log_worth);
+    CHECK(list_values<tukey_list>(found.results).empty());
+    CHECK(list_values<effect_list>(found.results).empty());
     const std::string text = "pairs: worth of c: the choices between it and a, directly and through other "
                              "methods, all go one way or are missing, so it is not finite";
     CHECK_FALSE(warns(a, text));
@@ -461,7 +464,7 @@ TEST_CASE("each of three methods has the per cent of its trials, and a worth or 
     compare(always, 2, 0, 4);
     const analysis without = analyse(d);
     CHECK(warns(without, text));
-    CHECK(without.runs[0].worths[1].log_worth);
+    CHECK(list_values<worth_list>(without.runs[0].results)[0]->worths[1].log_worth);
 }
 
 TEST_CASE("response times are medians of the participants' medians, and missing ones are left out")
@@ -470,7 +473,7 @@ TEST_CASE("response times are medians of the participants' medians, and missing 
     CHECK(*median({3.0, 1.0, 2.0}) == 2.0);
     CHECK(*median({4.0, 1.0, 2.0, 30.0}) == 3.0);
     dataset d;
-    d.experiment.runs = {run("pairs", task_kind::choose, 4), run("marks", task_kind::rate, 4)};
+    d.experiment.runs = {run("pairs", &find_task("choose"), 4), run("marks", &find_task("rate"), 4)};
     d.participants = {"1", "2", "3"};
     run_data slow = chosen(4);
     run_data quick = chosen(4);
@@ -515,18 +518,19 @@ run_data rated(unsigned trials, unsigned fours)
 TEST_CASE("an effect too large for an interval is reported")
 {
     dataset d;
-    d.experiment.runs = {run("marks", task_kind::rate, 0)};
+    d.experiment.runs = {run("marks", &find_task("rate"), 0)};
     d.participants = {"1", "2"};
     const std::string text = "marks: methods: the effect is too large for an interval";
     d.data = {{rated(2000, 0)}, {rated(2000, 1)}}; // t = 16000
     analysis a = analyse(d);
     CHECK(warns(a, text));
-    CHECK(a.runs[0].paired.t);
-    CHECK_FALSE(a.runs[0].paired.d_ci);
+    const auto paired = [&a] { return list_values<method_difference>(a.runs[0].results)[0]->test; };
+    CHECK(paired().t);
+    CHECK_FALSE(paired().d_ci);
     d.data = {{rated(1000, 0)}, {rated(1000, 1)}}; // t = 8000
     a = analyse(d);
     CHECK_FALSE(warns(a, text));
-    CHECK(a.runs[0].paired.d_ci);
+    CHECK(paired().d_ci);
     d.data = {{rated(1000, 0)}, {rated(1000, 0)}}; // no t at all
     CHECK_FALSE(warns(analyse(d), text));
 }

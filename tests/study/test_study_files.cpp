@@ -23,6 +23,7 @@
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study::test_study_files {
 namespace {
@@ -71,7 +72,7 @@ TEST_CASE("text is appended, and a missing file is reported")
 
 TEST_CASE("a table of an older version has no column early")
 {
-    const run_outline none;
+    const run_outline none{.name = "r", .file_name = "r", .task = &find_task("choose")};
     trial_row row;
     row.trial = 1;
     row.early = true;

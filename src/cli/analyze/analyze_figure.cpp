@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,12 +16,9 @@
 
 #include "core/words.hpp"
 #include "options/option.hpp"
-#include "study/tasks/task.hpp"
 
 namespace tactor::cli {
 namespace {
-
-using study::task_kind;
 
 // Returns the ends of an error bar.
 std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind,
@@ -32,45 +30,34 @@ std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind
     return i ? std::optional(study::cut_to(*i, possible)) : std::nullopt;
 }
 
-plot::bar_series make_bars(const std::string& name, const study::by_motion& b, error_bars kind,
-                           const study::interval& possible)
+// Draws the means of a run's cells by motion. Nothing where it has none.
+std::optional<plot::bar_panel> make_panel(const study::run_analysis& r, error_bars kind)
 {
-    plot::bar_series s{name};
-    for (std::size_t m = 0; m < b.motion.size(); ++m)
-        s.bars.push_back({*b.motion[m].mean, find_ends(b.motion[m], kind, possible), b.motion_values[m]});
-    s.bars.push_back({*b.all.mean, find_ends(b.all, kind, possible), b.all_values});
-    return s;
-}
-
-plot::bar_panel make_panel(const study::run_analysis& r, error_bars kind)
-{
-    const study::interval possible = study::possible_values(r.run);
     plot::bar_panel p;
     p.title = fmt::format("{} (n = {})", r.run.name, r.n);
     p.groups = r.run.motions;
     p.groups.emplace_back("all");
     p.joined = r.run.motions.size();
-    if (r.run.task == task_kind::choose) {
-        p.y_title = has_worths(r.run) ? "chosen (% of its trials)"
-                                      : fmt::format("{} chosen (%)", r.run.methods.back());
-        p.level = 50.0;
-        p.y_to = 100.0;
-    } else if (r.run.task == task_kind::rate) {
-        p.y_title = "mean rating";
-        p.y_from = r.run.lowest_rating();
-        p.y_to = r.run.scale;
-    } else { // identify
-        p.y_title = "correct (%)";
-        p.level = study::chance(r.run);
-        p.y_to = 100.0;
+    for (const study::cell_means* v : study::list_values<study::cell_means>(r.results)) {
+        p.y_title = v->axis;
+        p.level = v->against;
+        std::tie(p.y_from, p.y_to) = v->possible;
+        plot::bar_series& s = p.series.emplace_back(plot::bar_series{v->method});
+        for (const study::cell_mean& m : v->means)
+            s.bars.push_back({*m.test.mean, find_ends(m.test, kind, v->possible), m.values});
+        std::ranges::rotate(s.bars, s.bars.begin() + 1); // "all" comes last
     }
-    if (r.run.task == task_kind::choose && !has_worths(r.run)) {
-        p.series.push_back(make_bars("", r.cells[0], kind, possible));
-        return p;
-    }
-    for (std::size_t m = 0; m < r.run.methods.size(); ++m)
-        p.series.push_back(make_bars(r.run.methods[m], r.cells[m], kind, possible));
-    return p;
+    return p.series.empty() ? std::nullopt : std::optional(p);
+}
+
+// Returns the conditions of a run, or all trials where there are none.
+template <class Values>
+std::vector<const Values*> list_conditions(const study::run_analysis& r)
+{
+    std::vector<const Values*> all = study::list_values<Values>(r.results);
+    if (all.size() > 1)
+        all.erase(all.begin());
+    return all;
 }
 
 // Draws d' of each condition, or of all trials. Nothing where no participant has one.
@@ -81,15 +68,14 @@ std::optional<plot::bar_panel> make_sensitivity_panel(const study::run_analysis&
     p.level = 0.0;
     plot::bar_series s;
     bool everybody = true;
-    for (std::size_t i = r.measures.size() > 1 ? 1 : 0; i < r.measures.size(); ++i) {
-        const study::measured_condition& c = r.measures[i];
-        const auto at = std::ranges::find(c.figures, "dprime", &decltype(c.figures)::value_type::first);
-        if (at == c.figures.end() || !at->second.mean)
+    for (const study::sensitivities* v : list_conditions<study::sensitivities>(r)) {
+        const study::t_test& t = v->figures.front().test;
+        if (!t.mean)
             continue;
-        plot::bar b{*at->second.mean, find_ends(at->second, kind, {-unbounded, unbounded})};
-        for (const study::person_measures& m : c.people)
-            if (m.detected)
-                b.values.push_back(m.detected->found.dprime);
+        plot::bar b{*t.mean, find_ends(t, kind, {-unbounded, unbounded})};
+        for (const std::optional<study::detection>& one : v->people)
+            if (one)
+                b.values.push_back(one->found.dprime);
         everybody = everybody && b.values.size() == r.n;
         std::vector<double> all = b.values;
         if (b.error)
@@ -97,7 +83,7 @@ std::optional<plot::bar_panel> make_sensitivity_panel(const study::run_analysis&
         const auto [low, high] = std::ranges::minmax(all);
         p.y_from = std::min(p.y_from, 1.1 * low);
         p.y_to = std::max(p.y_to, 1.1 * high);
-        p.groups.push_back(c.name.empty() ? "all" : c.name);
+        p.groups.push_back(v->condition.empty() ? "all" : v->condition);
         s.bars.push_back(std::move(b));
     }
     if (s.bars.empty())
@@ -152,44 +138,33 @@ std::vector<plot::spot> sample_function(const study::psychometric& p, const stud
     return line;
 }
 
+study::psychometric_family with_guess(study::psychometric_family f, double guess)
+{
+    f.guess = guess;
+    return f;
+}
+
 // Returns the function of the mean pse or threshold, and of the mean jnd.
-std::optional<plot::curve> make_mean_function(const study::run_analysis& r,
-                                              const study::measured_condition& c, const plot::curve_axis& x)
+std::optional<plot::curve> make_mean(const study::psychometric_functions& v, const plot::curve_axis& x,
+                                     const std::vector<plot::curve>&)
 {
     std::vector<double> slopes;
     std::vector<double> guesses;
-    for (const study::person_measures& m : c.people)
-        if (m.fit && !m.fit->step) {
-            slopes.push_back(m.fit->parameters.slope);
-            guesses.push_back(m.guess);
+    for (const study::fitted_function& f : v.people)
+        if (f.fit && !f.fit->step) {
+            slopes.push_back(f.fit->parameters.slope);
+            guesses.push_back(f.guess);
         }
     if (slopes.empty())
         return {};
     return plot::curve{.thick = true,
-                       .line =
-                           sample_function({*c.figures.front().second.mean, study::mean(slopes)},
-                                           study::find_family(r.run, r.function, study::mean(guesses)), x)};
-}
-
-plot::curve make_person_curve(const study::run_analysis& r, const study::person_measures& m,
-                              const plot::curve_axis& x)
-{
-    plot::curve one;
-    if (m.fit)
-        one.line = sample_function(m.fit->parameters, study::find_family(r.run, r.function, m.guess), x);
-    for (const study::answer_block& b : m.blocks)
-        one.dots.push_back(
-            {{b.x, 100.0 * static_cast<double>(b.k) / static_cast<double>(b.n)}, static_cast<double>(b.n)});
-    for (const study::value_estimate& e : m.estimates) {
-        const plot::spot at{x.logs ? std::log10(e.value) : e.value, std::log10(e.ratio)};
-        one.line.push_back(at);
-        one.dots.push_back({at, static_cast<double>(e.n)});
-    }
-    return one;
+                       .line = sample_function({*v.figures.front().test.mean, study::mean(slopes)},
+                                               with_guess(v.family, study::mean(guesses)), x)};
 }
 
 // Returns the geometric means of the participants' estimates, of which those of one place are its values.
-std::optional<plot::curve> average_estimates(const std::vector<plot::curve>& people)
+std::optional<plot::curve> make_mean(const study::exponents&, const plot::curve_axis&,
+                                     const std::vector<plot::curve>& people)
 {
     std::map<double, std::vector<double>> by_value;
     for (const plot::curve& one : people)
@@ -201,24 +176,42 @@ std::optional<plot::curve> average_estimates(const std::vector<plot::curve>& peo
     return all.line.empty() ? std::nullopt : std::optional(all);
 }
 
-// Names what the answers are counted of.
-std::string answers_title(const study::run_outline& r)
+plot::curve make_curve(const study::psychometric_functions& v, const study::fitted_function& f,
+                       const plot::curve_axis& x)
 {
-    if (r.task == task_kind::detect)
-        return "felt (%)";
-    return r.standard ? "comparison chosen (%)"
-                      : fmt::format("answered \"{}\" (%)", r.choices.size() == 2 ? r.choices[1] : "");
+    plot::curve one;
+    if (f.fit)
+        one.line = sample_function(f.fit->parameters, with_guess(v.family, f.guess), x);
+    for (const study::answer_block& b : f.blocks)
+        one.dots.push_back(
+            {{b.x, 100.0 * static_cast<double>(b.k) / static_cast<double>(b.n)}, static_cast<double>(b.n)});
+    return one;
 }
 
-plot::curve_axis make_answer_axis(const study::run_analysis& r)
+plot::curve make_curve(const study::exponents&, const study::fitted_exponent& f, const plot::curve_axis& x)
+{
+    plot::curve one;
+    for (const study::value_estimate& e : f.estimates) {
+        const plot::spot at{x.logs ? std::log10(e.value) : e.value, std::log10(e.ratio)};
+        one.line.push_back(at);
+        one.dots.push_back({at, static_cast<double>(e.n)});
+    }
+    return one;
+}
+
+plot::curve_axis make_answer_axis(const std::vector<const study::psychometric_functions*>& all)
 {
     constexpr double space = 0.05;
-    if (r.run.task != task_kind::estimate)
-        return {answers_title(r.run), -100.0 * space, 100.0 * (1.0 + space), 50.0};
+    return {all.front()->axis, -100.0 * space, 100.0 * (1.0 + space), 50.0};
+}
+
+plot::curve_axis make_answer_axis(const std::vector<const study::exponents*>& all)
+{
+    constexpr double space = 0.05;
     plot::curve_axis y{"estimate / participant's mean", 0.0, 0.0, {}, true};
-    for (const study::measured_condition& c : r.measures)
-        for (const study::person_measures& m : c.people)
-            for (const study::value_estimate& e : m.estimates) {
+    for (const study::exponents* v : all)
+        for (const study::fitted_exponent& f : v->people)
+            for (const study::value_estimate& e : f.estimates) {
                 y.from = std::min(y.from, std::log10(e.ratio));
                 y.to = std::max(y.to, std::log10(e.ratio));
             }
@@ -228,44 +221,61 @@ plot::curve_axis make_answer_axis(const study::run_analysis& r)
     return y;
 }
 
-// Names a condition with the exponent that was found in it, and then the run: a narrow panel cuts the end.
-std::string curves_title(const study::run_analysis& r, const study::measured_condition& c)
+// Estimates are drawn over the logarithms of values that are no levels.
+bool takes_logs(const study::psychometric_functions&, const study::run_outline&)
 {
-    std::string exponent;
-    if (r.run.task == task_kind::estimate && c.figures.front().second.mean)
-        exponent = fmt::format(", exponent {:.2f}", *c.figures.front().second.mean);
-    return c.name.empty() ? fmt::format("{} (n = {}){}", r.run.name, r.n, exponent)
-                          : fmt::format("{}{} ({}, n = {})", c.name, exponent, r.run.name, r.n);
+    return false;
 }
 
-// Draws the participants' curves in each condition with their mean, after the means of all conditions.
+bool takes_logs(const study::exponents&, const study::run_outline& r)
+{
+    return !r.on_db_axis;
+}
+
+std::string exponent_text(const study::psychometric_functions&)
+{
+    return {};
+}
+
+std::string exponent_text(const study::exponents& v)
+{
+    const auto& exponent = v.figures.front().test.mean;
+    return exponent ? fmt::format(", exponent {:.2f}", *exponent) : "";
+}
+
+// Draws the participants' curves in each condition with their mean, after the means of all conditions. A
+// narrow panel cuts the end of a title.
+template <class Values>
 void add_curves(plot::panel_figure& f, const study::run_analysis& r)
 {
-    const bool estimates = r.run.task == task_kind::estimate;
-    const bool several = r.measures.size() > 1;
-    const plot::curve_axis x = make_value_axis(r.run, estimates && !r.run.on_db_axis);
-    const plot::curve_axis y = make_answer_axis(r);
+    const std::vector<const Values*> all = study::list_values<Values>(r.results);
+    if (all.empty())
+        return;
+    const plot::curve_axis x = make_value_axis(r.run, takes_logs(*all.front(), r.run));
+    const plot::curve_axis y = make_answer_axis(all);
     plot::curve_panel means{fmt::format("{} (n = {}): means", r.run.name, r.n), x, y};
     std::vector<plot::curve_panel> panels;
-    for (std::size_t i = several ? 1 : 0; i < r.measures.size(); ++i) {
-        const study::measured_condition& c = r.measures[i];
-        plot::curve_panel& p = panels.emplace_back(plot::curve_panel{curves_title(r, c), x, y});
+    for (const Values* v : list_conditions<Values>(r)) {
+        const std::string title =
+            v->condition.empty()
+                ? fmt::format("{} (n = {}){}", r.run.name, r.n, exponent_text(*v))
+                : fmt::format("{}{} ({}, n = {})", v->condition, exponent_text(*v), r.run.name, r.n);
+        plot::curve_panel& p = panels.emplace_back(plot::curve_panel{title, x, y});
         double most = 0.0;
-        for (const study::person_measures& m : c.people) {
-            p.curves.push_back(make_person_curve(r, m, x));
+        for (const auto& one : v->people) {
+            p.curves.push_back(make_curve(*v, one, x));
             p.curves.back().colour = panels.size() - 1;
             for (const plot::weighted_dot& d : p.curves.back().dots)
                 most = std::max(most, d.weight);
         }
         p.key = fmt::format("largest point: {}", counted(static_cast<std::uint64_t>(most), "trial"));
-        std::optional<plot::curve> mean =
-            estimates ? average_estimates(p.curves) : make_mean_function(r, c, x);
+        std::optional<plot::curve> mean = make_mean(*v, x, p.curves);
         if (!mean)
             continue;
         mean->colour = panels.size() - 1;
         if (r.n > 1)
             p.curves.push_back(*mean);
-        mean->name = c.name;
+        mean->name = v->condition;
         means.curves.push_back(*std::move(mean));
     }
     if (means.curves.size() > 1)
@@ -281,20 +291,23 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
         notes.push_back(
             fmt::format("Means over participants; error bars: {}; dots and thin lines: participants.",
                         all_error_bars[static_cast<std::size_t>(kind)].second));
-    const auto has = [&a](const auto& what) {
-        return std::ranges::any_of(a.runs, [&](const study::run_analysis& r) {
-            return std::ranges::any_of(r.measures, [&](const study::measured_condition& c) {
-                return std::ranges::any_of(c.people, what);
-            });
-        });
-    };
+    bool without_function = false;
+    bool estimates = false;
+    for (const study::run_analysis& r : a.runs) {
+        for (const auto* v : study::list_values<study::psychometric_functions>(r.results))
+            for (const study::fitted_function& one : v->people)
+                without_function = without_function || (!one.blocks.empty() && !one.fit);
+        for (const auto* v : study::list_values<study::exponents>(r.results))
+            for (const study::fitted_exponent& one : v->people)
+                estimates = estimates || !one.estimates.empty();
+    }
     if (!f.curves.empty())
         notes.emplace_back("Thin lines and points: participants; the area of a point grows with its trials.");
     if (std::ranges::any_of(f.curves, [](const plot::curve_panel& p) { return p.curves.back().thick; }))
         notes.emplace_back("Thick: functions of the means of the participants' figures.");
-    if (has([](const study::person_measures& m) { return !m.blocks.empty() && !m.fit; }))
+    if (without_function)
         notes.emplace_back("Points without a line: answers that determine no function.");
-    if (has([](const study::person_measures& m) { return !m.estimates.empty(); }))
+    if (estimates)
         notes.emplace_back("Estimates: geometric means, divided by that of the participant.");
     if (!f.matrices.empty())
         notes.emplace_back("Answers: their number; darker cells are larger shares of the played motion.");
@@ -313,15 +326,15 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
     for (const study::run_analysis& r : a.runs) {
         if (r.n == 0)
             continue;
-        if (!find_task(r.run.task).about().measures)
-            f.bars.push_back(make_panel(r, kind));
-        else if (!r.run.vary.empty())
-            add_curves(f, r);
-        else if (std::optional<plot::bar_panel> p = make_sensitivity_panel(r, kind))
+        add_curves<study::psychometric_functions>(f, r);
+        add_curves<study::exponents>(f, r);
+        if (std::optional<plot::bar_panel> p = make_panel(r, kind))
             f.bars.push_back(*std::move(p));
-        for (std::size_t m = 0; m < r.confusion.size(); ++m)
-            f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, r.run.methods[m]), "played",
-                                  "answered", r.run.motions, r.confusion[m]});
+        else if (p = make_sensitivity_panel(r, kind); p && r.run.vary.empty())
+            f.bars.push_back(*std::move(p));
+        for (const study::answer_counts* v : study::list_values<study::answer_counts>(r.results))
+            f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, v->method), "played",
+                                  "answered", v->motions, v->counts});
     }
     f.note = describe_panels(f, a, kind);
     return plot::draw_panels(f);

@@ -8,7 +8,7 @@
 
 #include "cli/settings.hpp"
 #include "plot/figure.hpp"
-#include "study/analysis/analysis.hpp"
+#include "study/results/result.hpp"
 
 namespace tactor::cli {
 

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,10 +26,9 @@
 namespace tactor::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-using study::task_kind;
+constexpr int usual_decimals = 2;
 
-std::string value_text(std::optional<double> v, int decimals = 2)
+std::string value_text(std::optional<double> v, int decimals = usual_decimals)
 {
     return v ? fmt::format("{:.{}f}", *v, decimals) : "-";
 }
@@ -41,7 +43,7 @@ std::string p_clause(std::optional<double> p)
     return !p ? "p -" : *p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", *p);
 }
 
-std::string interval_text(const std::optional<study::interval>& i, int decimals = 2)
+std::string interval_text(const std::optional<study::interval>& i, int decimals = usual_decimals)
 {
     return i ? fmt::format("{:.{}f} ... {:.{}f}", i->first, decimals, i->second, decimals) : "-";
 }
@@ -80,86 +82,27 @@ std::size_t widest(const std::vector<std::string>& names)
     return w;
 }
 
-void print_tests(const study::by_motion& b, const std::vector<std::string>& motions)
+// Returns the decimals of a figure in the unit of a run's values: as many as a hundredth of their range has,
+// two at least.
+int count_decimals(const study::run_outline& run)
 {
-    const std::size_t w = widest(motions);
-    fmt::print("  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", "", w, "mean", "se", "95 %", "t",
-               "p", "Holm", "signs", "d");
-    const auto row = [&](const std::string& name, const study::t_test& t, std::optional<double> holm) {
-        say(stdout, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", name, w, value_text(t.mean),
-            value_text(t.se), interval_text(t.ci, study::per_cents), value_text(t.t), p_text(t.p),
-            p_text(holm), p_text(t.p_signflip), value_text(t.d));
-    };
-    row("all", b.all, {});
-    for (std::size_t m = 0; m < motions.size(); ++m)
-        row(motions[m], b.motion[m], b.p_holm[m]);
-    if (b.all.t)
-        fmt::print("  all: {}; d = {:.2f} ({})\n", t_text(b.all), *b.all.d, interval_text(b.all.d_ci));
+    const double range = run.values.back() - run.values.front();
+    return std::max(usual_decimals, usual_decimals - static_cast<int>(std::floor(std::log10(range))));
 }
 
-constexpr const char* column_legend =
-    "mean and se (standard error) are over participants, in per cent; 95 % is the interval of the mean, cut "
-    "to 0 to 100; t and p compare the mean with what guessing gives (two-sided); Holm is p adjusted for the "
-    "number of motions; signs is the exact p of all changes of sign; d is the effect size, (mean - guessing) "
-    "/ sd.";
-
-void print_effect(const std::string& name, const study::effect& e)
+std::string figure_name(const study::measured_figure& f)
 {
-    if (e.f)
-        fmt::print("{}", wrapped(fmt::format("  {}: ", name), effect_text(e)));
+    return f.name == "dprime" ? "d'" : f.name;
 }
 
-void print_pairs(const std::vector<study::comparison>& pairs, const std::vector<std::string>& motions,
-                 const std::string& of)
+std::string ratio_text(const study::difference_test& d)
 {
-    if (pairs.empty() || !pairs[0].q)
-        return;
-    say(stdout, "  Tukey{}:\n", of);
-    const std::size_t w = widest(motions);
-    for (const study::comparison& c : pairs)
-        say(stdout, "    {:<{}} - {:<{}} {:>7} q = {:>5}, {}\n", motions[c.a], w, motions[c.b], w,
-            value_text(c.difference), value_text(c.q), p_clause(c.p));
+    return fmt::format("likelihood ratio {:.2f}, {}", d.likelihood_ratio, p_clause(d.p));
 }
 
-void print_worths(const study::run_analysis& r)
+std::string test_text(const study::measured_figure& f, const std::optional<study::difference_test>& ratio)
 {
-    for (std::size_t m = 0; m < r.cells.size(); ++m) {
-        say(stdout, "  per cent of the trials with {} in which people chose it, against 50\n",
-            r.run.methods[m]);
-        print_tests(r.cells[m], r.run.motions);
-    }
-    const std::size_t w = widest(r.run.methods);
-    say(stdout, "  Bradley-Terry: log worth (se) relative to {}\n", r.run.methods.front());
-    for (std::size_t m = 1; m < r.worths.size(); ++m)
-        say(stdout, "    {:<{}} {:>6} ({})\n", r.run.methods[m], w, value_text(r.worths[m].log_worth),
-            value_text(r.worths[m].se));
-}
-
-void print_paired(const std::vector<study::paired_comparison>& pairs, const std::vector<std::string>& motions)
-{
-    if (pairs.empty() || pairs[0].test.n < 2)
-        return;
-    fmt::print("  pairs of motions, paired t; Holm is p adjusted for the number of pairs:\n");
-    const std::size_t w = widest(motions);
-    for (const study::paired_comparison& c : pairs)
-        say(stdout, "    {:<{}} - {:<{}} {:>7} t = {:>5}, {}, Holm {}\n", motions[c.a], w, motions[c.b], w,
-            value_text(c.test.mean), value_text(c.test.t), p_clause(c.test.p), p_text(c.p_holm));
-}
-
-void print_choose(const study::run_analysis& r)
-{
-    if (has_worths(r.run))
-        print_worths(r);
-    else {
-        say(stdout, "  per cent of trials in which people chose {}, against 50\n", r.run.methods.back());
-        print_tests(r.cells[0], r.run.motions);
-    }
-    const study::t_test& first = r.first_interval;
-    if (first.mean)
-        fmt::print("  first interval chosen: {:.1f} %{}\n", *first.mean, first.t ? ", " + t_text(first) : "");
-    print_effect("motion", r.effects.second);
-    for (const std::vector<study::comparison>& pairs : r.pairs)
-        print_pairs(pairs, r.run.motions, "");
+    return ratio ? ratio_text(*ratio) : f.test.t && f.against ? t_text(f.test) : "";
 }
 
 std::string paired_text(const study::t_test& t)
@@ -174,99 +117,200 @@ std::string paired_text(const study::t_test& t)
     return text;
 }
 
-void print_rate(const study::run_analysis& r)
-{
-    say(stdout, "  mean rating (se), {}\n", study::rating_range(r.run));
-    const std::size_t w = widest(r.run.methods);
-    const auto cell = [](const study::t_test& t) {
-        return fmt::format("{} ({})", value_text(t.mean), value_text(t.se));
-    };
-    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
-        say(stdout, "  {:<{}} all {}", r.run.methods[m], w, cell(r.cells[m].all));
-        fmt::print(", 95 % {}\n", interval_text(r.cells[m].all.ci, study::possible_values(r.run)));
-        for (std::size_t k = 0; k < r.run.motions.size(); ++k)
-            say(stdout, "  {:<{}} {} {}\n", "", w, r.run.motions[k], cell(r.cells[m].motion[k]));
+// Returns the main figure of a run in words: "NAME MEAN (INTERVAL), TEST".
+class summary {
+public:
+    explicit summary(const study::run_outline& run) : run_(run) {}
+
+    std::string operator()(const study::cell_means& v) const
+    {
+        const study::t_test& t = v.means.front().test;
+        return join((v.method.empty() ? "" : v.method + " ") + v.axis, t,
+                    t.ci ? std::optional(study::cut_to(*t.ci, v.possible)) : std::nullopt, usual_decimals,
+                    v.against && t.t ? t_text(t) : "");
     }
-    if (r.run.methods.size() > 1 && r.paired.mean)
-        say(stdout, "{}",
-            wrapped(fmt::format("  {} - {}: ", r.run.methods.back(), r.run.methods.front()),
-                    paired_text(r.paired)));
-    print_effect("method", r.effects.first);
-    print_effect("motion", r.effects.second);
-    print_effect("method:motion", r.effects.interaction);
-    for (std::size_t m = 0; m < r.run.methods.size(); ++m)
-        print_pairs(r.pairs[m], r.run.motions, " within " + r.run.methods[m]);
-}
-
-void print_identify(const study::run_analysis& r)
-{
-    const std::size_t w = widest(r.run.motions);
-    for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
-        say(stdout, "  {}: per cent correct, against {:.2f}\n", r.run.methods[m], study::chance(r.run));
-        print_tests(r.cells[m], r.run.motions);
-        print_paired(r.paired_motions[m], r.run.motions);
-        say(stdout, "  answers, from left to right in the order of the rows:\n");
-        for (std::size_t i = 0; i < r.run.motions.size(); ++i)
-            say(stdout, "    {:<{}} {:>5}\n", r.run.motions[i], w, fmt::join(r.confusion[m][i], " "));
+    std::string operator()(const study::method_difference& v) const
+    {
+        return join(fmt::format("{} - {}", v.last, v.first), v.test, v.test.ci, usual_decimals,
+                    v.test.t ? t_text(v.test) : "");
     }
-}
+    std::string operator()(const study::psychometric_functions& v) const
+    {
+        return join(v.figures.front(), count_decimals(run_));
+    }
+    std::string operator()(const study::sensitivities& v) const
+    {
+        return join(v.figures.front(), usual_decimals, v.ratio);
+    }
+    std::string operator()(const study::exponents& v) const
+    {
+        return join(v.figures.front(), usual_decimals);
+    }
+    template <class T>
+    std::string operator()(const T&) const // never main
+    {
+        return {};
+    }
 
-// Names a figure with the value against which it is tested, if any.
-std::string figure_text(const study::run_outline& run, std::string_view figure, bool is_main)
-{
-    const auto against = study::measured_against(run);
-    const std::string name = figure == "dprime" ? "d'" : std::string(figure);
-    return is_main && against ? fmt::format("{} against {}", name, *against) : name;
-}
+private:
+    static std::string join(const std::string& name, const study::t_test& t,
+                            const std::optional<study::interval>& ci, int decimals, const std::string& test)
+    {
+        return fmt::format("{} {}{}{}{}", name, value_text(t.mean, decimals),
+                           ci ? fmt::format(" ({})", interval_text(ci, decimals)) : "",
+                           test.empty() ? "" : ", ", test);
+    }
+    static std::string join(const study::measured_figure& f, int decimals,
+                            const std::optional<study::difference_test>& ratio = {})
+    {
+        return join(figure_name(f), f.test, f.test.ci, decimals, test_text(f, ratio));
+    }
 
-// Returns the decimals of a figure: of one in the unit of the values as many as a hundredth of their range
-// has, two at least.
-int count_decimals(const study::run_outline& run, std::string_view figure)
-{
-    constexpr int usual = 2;
-    if (figure != "pse" && figure != "jnd" && figure != "threshold")
-        return usual;
-    const double range = run.values.back() - run.values.front();
-    return std::max(usual, usual - static_cast<int>(std::floor(std::log10(range))));
-}
+    const study::run_outline& run_;
+};
 
-void print_measures(const study::run_analysis& r)
-{
-    if (!r.run.vary.empty())
-        say(stdout, "  {} {}{}\n", r.run.vary,
-            r.run.task == task_kind::adaptive ? "by procedure" : "over values",
-            r.run.standard ? fmt::format(", standard {}", *r.run.standard) : "");
-    for (const study::measured_condition& c : r.measures) {
-        if (!c.name.empty())
-            say(stdout, "  {}\n", c.name);
-        for (std::size_t k = 0; k < c.figures.size(); ++k) {
-            const auto& [figure, t] = c.figures[k];
-            const int decimals = count_decimals(r.run, figure);
-            std::string test;
-            if (k == 0 && c.difference)
-                test = fmt::format(", likelihood ratio {:.2f}, {}", c.difference->likelihood_ratio,
-                                   p_clause(c.difference->p));
-            else if (k == 0 && t.t && study::measured_against(r.run))
-                test = ", " + t_text(t);
-            say(stdout, "  {:<22} {:>8} (se {}), 95 % {}{}\n", figure_text(r.run, figure, k == 0),
-                value_text(t.mean, decimals), value_text(t.se, decimals), interval_text(t.ci, decimals),
+constexpr const char* column_legend =
+    "mean and se (standard error) are over participants; 95 % is the interval of the mean, cut to what is "
+    "possible; t and p compare the mean with what guessing gives (two-sided); Holm is p adjusted for the "
+    "number of motions; signs is the exact p of all changes of sign; d is the effect size, (mean - guessing) "
+    "/ sd.";
+
+// Prints the table of a result below its heading.
+class table_printer {
+public:
+    explicit table_printer(const study::run_outline& run) : run_(run) {}
+
+    void operator()(const study::cell_means& v) const
+    {
+        std::vector<std::string> names;
+        for (const study::cell_mean& m : v.means)
+            names.push_back(m.name);
+        const std::size_t w = widest(names);
+        fmt::print("  {:<{}} {:>6} {:>5} {:>16}", "", w, "mean", "se", "95 %");
+        if (v.against)
+            fmt::print(" {:>6} {:>5} {:>5} {:>5}  {}", "t", "p", "Holm", "signs", "d");
+        fmt::print("\n");
+        for (const study::cell_mean& m : v.means) {
+            const study::t_test& t = m.test;
+            say(stdout, "  {:<{}} {:>6} {:>5} {:>16}", m.name, w, value_text(t.mean), value_text(t.se),
+                interval_text(t.ci, v.possible));
+            if (v.against)
+                fmt::print(" {:>6} {:>5} {:>5} {:>5}  {}", value_text(t.t), p_text(t.p), p_text(m.p_holm),
+                           p_text(t.p_signflip), value_text(t.d));
+            fmt::print("\n");
+        }
+        if (const study::t_test& all = v.means.front().test; v.against && all.t)
+            fmt::print("  all: {}; d = {:.2f} ({})\n", t_text(all), *all.d, interval_text(all.d_ci));
+    }
+
+    void operator()(const study::interval_share& v) const
+    {
+        fmt::print("  first interval chosen: {:.1f} %{}\n", *v.test.mean,
+                   v.test.t ? ", " + t_text(v.test) : "");
+    }
+
+    void operator()(const study::method_difference& v) const
+    {
+        say(stdout, "{}", wrapped(fmt::format("  {} - {}: ", v.last, v.first), paired_text(v.test)));
+    }
+
+    void operator()(const study::effect_list& v) const
+    {
+        for (const auto& [name, e] : v.effects)
+            if (e && e->f)
+                fmt::print("{}", wrapped(fmt::format("    {}: ", name), effect_text(*e)));
+    }
+
+    void operator()(const study::tukey_list& v) const
+    {
+        const std::size_t w = widest(v.motions);
+        for (const study::comparison& c : v.pairs)
+            say(stdout, "    {:<{}} - {:<{}} {:>7} q = {:>5}, {}\n", v.motions[c.a], w, v.motions[c.b], w,
+                value_text(c.difference), value_text(c.q), p_clause(c.p));
+    }
+
+    void operator()(const study::paired_list& v) const
+    {
+        const std::size_t w = widest(v.motions);
+        for (const study::paired_comparison& c : v.pairs)
+            say(stdout, "    {:<{}} - {:<{}} {:>7} t = {:>5}, {}, Holm {}\n", v.motions[c.a], w,
+                v.motions[c.b], w, value_text(c.test.mean), value_text(c.test.t), p_clause(c.test.p),
+                p_text(c.p_holm));
+    }
+
+    void operator()(const study::worth_list& v) const
+    {
+        const std::size_t w = widest(v.methods);
+        for (std::size_t m = 1; m < v.worths.size(); ++m)
+            say(stdout, "    {:<{}} {:>6} ({})\n", v.methods[m], w, value_text(v.worths[m].log_worth),
+                value_text(v.worths[m].se));
+    }
+
+    void operator()(const study::answer_counts& v) const
+    {
+        const std::size_t w = widest(v.motions);
+        for (std::size_t i = 0; i < v.motions.size(); ++i)
+            say(stdout, "    {:<{}} {:>5}\n", v.motions[i], w, fmt::join(v.counts[i], " "));
+    }
+
+    void operator()(const study::psychometric_functions& v) const
+    {
+        const int decimals = count_decimals(run_);
+        print_figures(v, decimals);
+        print_people(v, decimals, [&](const study::fitted_function& f) -> std::string {
+            if (!f.bootstrap.p_gof)
+                return {};
+            return fmt::format("  {} {}  fit p {}", v.figures.front().name,
+                               interval_text(f.bootstrap.threshold, decimals), p_text(f.bootstrap.p_gof));
+        });
+    }
+    void operator()(const study::sensitivities& v) const
+    {
+        print_figures(v, usual_decimals, v.ratio);
+        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
+    }
+    void operator()(const study::exponents& v) const
+    {
+        print_figures(v, usual_decimals);
+        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
+    }
+    template <class T>
+    void operator()(const T&) const // has no table
+    {
+    }
+
+private:
+    template <class Person>
+    void print_figures(const study::measured<Person>& v, int decimals,
+                       std::optional<study::difference_test> ratio = {}) const
+    {
+        for (const study::measured_figure& f : v.figures) {
+            const std::string name =
+                f.against ? fmt::format("{} against {}", figure_name(f), *f.against) : figure_name(f);
+            const std::string test = test_text(f, std::exchange(ratio, {}));
+            say(stdout, "    {:<20} {:>8} (se {}), 95 % {}{}{}\n", name, value_text(f.test.mean, decimals),
+                value_text(f.test.se, decimals), interval_text(f.test.ci, decimals), test.empty() ? "" : ", ",
                 test);
         }
-        if (!c.name.empty())
-            continue;
-        const std::size_t w = widest(r.codes);
-        for (std::size_t i = 0; i < r.codes.size(); ++i) {
+    }
+
+    // Prints each participant in all trials. `more`: after the figures.
+    template <class Person, class More>
+    void print_people(const study::measured<Person>& v, int decimals, const More& more) const
+    {
+        if (!v.condition.empty())
+            return;
+        const std::size_t w = widest(v.codes);
+        for (std::size_t i = 0; i < v.codes.size(); ++i) {
             std::string row;
-            for (const auto& [figure, value] : study::list_measures(r.run, c.people[i]))
-                row += fmt::format("  {} {}", figure, value_text(value, count_decimals(r.run, figure)));
-            if (const auto& b = c.people[i].bootstrap; b.p_gof)
-                row += fmt::format("  {} {}  fit p {}", c.figures.front().first,
-                                   interval_text(b.threshold, count_decimals(r.run, c.figures.front().first)),
-                                   p_text(b.p_gof));
-            say(stdout, "    sub-{:<{}}{}\n", r.codes[i], w, row);
+            for (std::size_t k = 0; k < v.figures.size(); ++k)
+                row += fmt::format("  {} {}", v.figures[k].name, value_text(v.values[i][k], decimals));
+            say(stdout, "    sub-{:<{}}{}{}\n", v.codes[i], w, row, more(v.people[i]));
         }
     }
-}
+
+    const study::run_outline& run_;
+};
 
 // Prints the median response time, and the conditions with the shortest and the longest.
 void print_times(const study::response_times& t)
@@ -305,7 +349,7 @@ std::string_view in_the_paper(std::string_view experiment, std::string_view run)
 
 void print_run(const study::analysis& a, const study::run_analysis& r)
 {
-    say(stdout, "\n{}: {}, {}, {}\n", r.run.name, to_string(r.run.task), counted(r.n, "participant"),
+    say(stdout, "\n{}: {}, {}, {}\n", r.run.name, task_in(r.run).name(), counted(r.n, "participant"),
         counted(r.trials, "trial"));
     if (r.early != 0)
         fmt::print("  {} early (sooner after the stimulus than min_response_s), counted\n",
@@ -313,178 +357,42 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
     if (r.n == 0)
         return;
     print_times(r.times);
-    if (r.run.task == task_kind::choose)
-        print_choose(r);
-    else if (r.run.task == task_kind::rate)
-        print_rate(r);
-    else if (r.run.task == task_kind::identify)
-        print_identify(r);
-    else
-        print_measures(r);
-    const auto by_group = study::list_group_effects(r);
-    if (std::ranges::any_of(by_group, [](const auto& one) { return one.second && one.second->f; }))
-        fmt::print("  groups compared:\n");
-    for (const auto& [name, e] : by_group)
-        if (e != nullptr)
-            print_effect(fmt::format("  {}", name), *e);
+    for (const study::result& row : r.results) {
+        if (!has_table(row.value))
+            continue;
+        if (!row.heading.empty())
+            say(stdout, "  {}:\n", row.heading);
+        std::visit(table_printer(r.run), row.value);
+    }
     if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
-}
-
-// Writes the model of Bradley and Terry: a column for each method but the first, 1 where it was felt first,
-// -1 where it was felt second. The intercept is the preference for the first interval. `factors`: "1", or
-// those that the worths may depend on.
-std::string write_worth_model(const study::run_outline& r, const std::string& factors)
-{
-    std::string others;
-    for (std::size_t m = 1; m < r.methods.size(); ++m)
-        others += (m > 1 ? ", " : "") + json(r.methods[m]).dump();
-    return fmt::format("glmer(chosen ~ worth{} + (1 + worth | participant), family = binomial, "
-                       "data = within(subset(d, run == {}), "
-                       "worth <- sapply(c({}), function(m) (method == m) - (other == m))))",
-                       factors == "1" ? "" : " + worth:" + factors, json(r.name).dump(), others);
-}
-
-// Writes the values of a run less the standard, or the middle of them: effects of methods and groups are
-// those there. Estimates follow the logarithm of a value that is no level.
-std::string write_value(const study::run_outline& r)
-{
-    const double low = r.values.front();
-    const double high = r.values.back();
-    if (r.task == task_kind::estimate && !r.on_db_axis)
-        return fmt::format("log(value / {})", plain_number(r.standard.value_or(std::sqrt(low * high)), 12));
-    const double at = r.standard.value_or(0.5 * (low + high));
-    return fmt::format("I(value {} {})", at < 0.0 ? '+' : '-', plain_number(std::abs(at), 12));
-}
-
-// The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
-// difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
-std::string write_model(const study::run_outline& r, const std::vector<study::group_outline>& groups)
-{
-    std::string motion = r.motions.size() > 1 ? "motion" : "1";
-    if (study::has_groups(r, groups))
-        motion = motion == "1" ? "group" : "(group * motion)";
-    const bool has_method =
-        r.task != task_kind::choose && r.task != task_kind::same_different && r.methods.size() > 1;
-    std::vector<std::string> factors;
-    // The slope over the values, or over whether there was a signal, is what the run is about. The method of
-    // a trial without a stimulus is "none", which says it, too.
-    if (!r.vary.empty())
-        factors.push_back(write_value(r));
-    else if (r.task == task_kind::same_different || (r.catches && !has_method))
-        factors.emplace_back("signal");
-    std::vector<std::string> people{"1"};
-    people.insert(people.end(), factors.begin(), factors.end());
-    if (has_method || r.motions.size() > 1)
-        people.emplace_back(has_method ? "method" : "motion");
-    if (has_method)
-        factors.emplace_back("method");
-    if (motion != "1" || factors.empty())
-        factors.push_back(motion);
-    // R reads the texts of JSON.
-    const std::string rest =
-        fmt::format("{} + {}({} | participant), ", fmt::join(factors, " * "),
-                    r.task == task_kind::choose ? "order + " : "", fmt::join(people, " + "));
-    const std::string data = fmt::format("data = subset(d, run == {})", json(r.name).dump());
-    switch (r.task) {
-    case task_kind::choose:
-        return has_worths(r) ? write_worth_model(r, motion)
-                             : fmt::format("glmer(chosen ~ {}family = binomial, {})", rest, data);
-    case task_kind::rate:
-        return fmt::format("lmer(rating ~ {}{})", rest, data);
-    case task_kind::estimate:
-        return fmt::format("lmer(log(estimate) ~ {}{})", rest, data);
-    case task_kind::identify:
-        return fmt::format("glmer(correct ~ {}family = binomial, {})", rest, data);
-    default:
-        return fmt::format("glmer(positive ~ {}family = binomial(\"probit\"), {})", rest, data);
-    }
 }
 
 // A column of the trials.
 struct trial_column {
     const char* name;
-    std::string (*cell)(const study::trial& t, const study::run_outline& r);
-    bool (*needed)(const study::run_outline& r) noexcept = nullptr; ///< by a run; null: in all studies
+    /// Null: the task has it.
+    std::string (*cell)(const study::trial& t, const study::run_outline& own) = nullptr;
+    bool always = true; ///< else only studies in which a task needs it have it
 };
-
-bool is_measured(const study::run_outline& r) noexcept
-{
-    return find_task(r.task).about().measures;
-}
-
-bool has_values(const study::run_outline& r) noexcept
-{
-    return !r.vary.empty();
-}
-
-// Returns the method that a trial of choose asks about: the last of two; of three or more the one felt first.
-std::size_t asked_method(const study::trial& t, const study::run_outline& r)
-{
-    return has_worths(r) ? t.method_1 : r.methods.size() - 1;
-}
 
 constexpr trial_column trial_columns[] = {
     {"run", [](const auto&, const auto& r) { return r.name; }},
-    {"task", [](const auto&, const auto& r) { return std::string(to_string(r.task)); }},
+    {"task", [](const auto&, const auto& r) { return std::string(task_in(r).name()); }},
     {"trial", [](const auto& t, const auto&) { return fmt::format("{}", t.place); }},
     {"attempt", [](const auto& t, const auto&) { return fmt::format("{}", t.attempt); }},
     {"motion", [](const auto& t, const auto& r) { return r.motions[t.motion]; }},
-    {"method",
-     [](const auto& t, const auto& r) {
-         return r.catches && !t.signal
-                    ? std::string(study::catch_name)
-                    : r.methods[r.task == task_kind::choose ? asked_method(t, r) : t.method_1];
-     }},
-    {"other",
-     [](const auto& t, const auto& r) -> std::string {
-         return r.task != task_kind::choose
-                    ? "n/a"
-                    : r.methods[t.method_1 == asked_method(t, r) ? t.method_2 : t.method_1];
-     },
-     study::has_worths},
-    {"order",
-     [](const auto& t, const auto& r) -> std::string {
-         return r.task != task_kind::choose ? "n/a" : t.method_1 == asked_method(t, r) ? "0.5" : "-0.5";
-     }},
-    {"response",
-     [](const auto& t, const auto& r) {
-         return r.task == task_kind::identify   ? r.motions[t.response]
-                : r.task == task_kind::estimate ? fmt::format("{}", t.estimate)
-                                                : fmt::format("{}", t.response);
-     }},
-    {"chosen",
-     [](const auto& t, const auto& r) -> std::string {
-         return r.task != task_kind::choose ? "n/a" : chosen_method(t) == asked_method(t, r) ? "1" : "0";
-     }},
-    {"rating",
-     [](const auto& t, const auto& r) {
-         return r.task == task_kind::rate ? fmt::format("{}", t.response) : "n/a";
-     }},
-    {"correct",
-     [](const auto& t, const auto& r) -> std::string {
-         return r.task != task_kind::identify ? "n/a" : t.response == t.motion ? "1" : "0";
-     }},
-    {"value",
-     [](const auto& t, const auto& r) -> std::string {
-         return r.vary.empty() || !t.signal ? "n/a" : fmt::format("{}", t.value);
-     },
-     has_values},
-    {"signal",
-     [](const auto& t, const auto& r) -> std::string {
-         return !is_measured(r) ? "n/a" : t.signal ? "1" : "0";
-     },
-     is_measured},
-    {"positive",
-     [](const auto& t, const auto& r) -> std::string {
-         return !is_measured(r) || r.task == task_kind::estimate ? "n/a" : t.positive ? "1" : "0";
-     },
-     is_measured},
-    {"estimate",
-     [](const auto& t, const auto& r) {
-         return r.task == task_kind::estimate ? fmt::format("{}", t.estimate) : "n/a";
-     },
-     [](const study::run_outline& r) noexcept { return r.task == task_kind::estimate; }},
+    {"method"},
+    {"other", nullptr, false},
+    {"order"},
+    {"response"},
+    {"chosen"},
+    {"rating"},
+    {"correct"},
+    {"value", nullptr, false},
+    {"signal", nullptr, false},
+    {"positive", nullptr, false},
+    {"estimate", nullptr, false},
     {"response_time",
      [](const auto& t, const auto&) {
          return t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a";
@@ -524,41 +432,50 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
     return unique;
 }
 
-// Returns the place of a name; the size where it is none of them.
-std::size_t find_place(const std::vector<std::string>& names, const std::string& name)
-{
-    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-}
-
-// Returns a trial of a group with the places of its motions and methods in the whole run.
-study::trial move_to(study::trial t, const study::run_outline& own, const study::run_outline& whole)
-{
-    t.motion = find_place(whole.motions, own.motions[t.motion]);
-    t.method_1 = find_place(whole.methods, own.methods[t.method_1]);
-    t.method_2 = find_place(whole.methods, own.methods[t.method_2]);
-    if (whole.task == task_kind::identify)
-        t.response = static_cast<unsigned>(find_place(whole.motions, own.motions[t.response]));
-    return t;
-}
-
 } // namespace
 
-void print_analysis_text(const study::analysis& a)
+void print_summary(const study::analysis& a)
 {
+    constexpr std::size_t most_lines = 10;
     say(stdout, "{}: {}{}\n", a.experiment, counted(a.participants, "participant"),
         a.simulated ? ", SIMULATED: no person gave these answers" : "");
+    std::size_t room = most_lines - 1;
     std::size_t voids = 0;
     for (const study::run_analysis& r : a.runs)
         voids += r.group.empty() ? r.voids : 0;
-    if (voids != 0)
+    if (voids != 0) {
         fmt::print("{} void, not counted\n", counted(voids, "trial"));
-    for (const study::left_out& one : a.excluded)
-        say(stdout, "excluded: sub-{} ({})\n", one.participant, one.why);
-    for (const study::run_analysis& r : a.runs)
+        --room;
+    }
+    if (!a.excluded.empty()) {
+        std::vector<std::string> who;
+        for (const study::left_out& one : a.excluded)
+            who.push_back(fmt::format("sub-{} ({})", one.participant, one.why));
+        say(stdout, "excluded: {}\n", fmt::join(who, ", "));
+        --room;
+    }
+    const std::size_t shown = a.runs.size() > room ? room - 1 : a.runs.size();
+    for (std::size_t i = 0; i < shown; ++i) {
+        const study::run_analysis& r = a.runs[i];
+        const study::result* main = find_main(r.results);
+        say(stdout, "{}: {}\n", r.run.name,
+            r.n == 0 || main == nullptr ? counted(r.n, "participant")
+                                        : std::visit(summary(r.run), main->value));
+    }
+    if (shown < a.runs.size())
+        fmt::print("and {} more: --format tables\n", counted(a.runs.size() - shown, "result"));
+}
+
+void print_tables(const study::analysis& a)
+{
+    print_summary(a);
+    bool tested = false;
+    for (const study::run_analysis& r : a.runs) {
         print_run(a, r);
-    if (std::ranges::any_of(a.runs, [](const auto& r) {
-            return r.n != 0 && r.run.task != task_kind::rate && !is_measured(r.run);
-        }))
+        for (const study::cell_means* v : study::list_values<study::cell_means>(r.results))
+            tested = tested || (r.n != 0 && v->against);
+    }
+    if (tested)
         fmt::print("\n{}", wrapped("Columns: ", column_legend));
 }
 
@@ -586,12 +503,15 @@ void print_trials(const study::dataset& d)
                         "# d <- read.delim(\"trials.tsv\", skip = {}, na.strings = \"n/a\", quote = \"\", "
                         "colClasses = c(participant = \"character\"))\n",
                         notes);
-    for (const study::run_outline& r : d.experiment.runs)
-        text += fmt::format("# {}\n", write_model(r, d.experiment.groups));
-    std::vector<trial_column> columns(std::begin(trial_columns), std::end(trial_columns));
-    std::erase_if(columns, [&](const trial_column& c) {
-        return c.needed != nullptr && std::ranges::none_of(d.experiment.runs, c.needed);
-    });
+    std::set<std::string_view> needed;
+    for (const study::run_outline& r : d.experiment.runs) {
+        text += fmt::format("# {}\n", task_in(r).model_in_r(r, has_groups(r, d.experiment.groups)));
+        for (const std::string_view column : task_in(r).list_columns(r))
+            needed.insert(column);
+    }
+    std::vector<trial_column> columns;
+    std::ranges::copy_if(trial_columns, std::back_inserter(columns),
+                         [&](const trial_column& c) { return c.always || needed.contains(c.name); });
     const bool grouped = !d.experiment.groups.empty();
     const bool several = d.experiment.sessions > 1;
     text += fmt::format("participant{}{}", grouped ? "\tgroup" : "", several ? "\tsession" : "");
@@ -599,16 +519,23 @@ void print_trials(const study::dataset& d)
         text += fmt::format("\t{}", c.name);
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i)
-        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k)
-            for (const study::trial& own : d.data[i][k].trials) {
-                const study::trial t = move_to(own, find_run(d, i, k), d.experiment.runs[k]);
+        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+            const study::run_outline& own = find_run(d, i, k);
+            const study::run_outline& whole = d.experiment.runs[k];
+            for (const study::trial& t : d.data[i][k].trials) {
                 text += d.participants[i];
                 text += grouped ? "\t" + d.groups[i] : "";
-                text += several ? fmt::format("\t{}", own.session.value()) : "";
-                for (const trial_column& c : columns)
-                    text += "\t" + c.cell(t, d.experiment.runs[k]);
+                text += several ? fmt::format("\t{}", t.session.value()) : "";
+                const study::named_texts cells = task_in(own).describe_trial(t, own, whole);
+                for (const trial_column& c : columns) {
+                    const auto at = std::ranges::find(cells, c.name, &study::named_texts::value_type::first);
+                    text += "\t" + (c.cell != nullptr   ? c.cell(t, own)
+                                    : at != cells.end() ? at->second
+                                                        : "n/a");
+                }
                 text += '\n';
             }
+        }
     fmt::print("{}", text);
 }
 
@@ -618,38 +545,26 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
     std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
     text += grouped ? ",group" : "";
     std::set<std::string> taken;
+    std::vector<std::vector<study::named_value>> columns; // by run
     for (const study::run_outline& r : d.experiment.runs) {
-        if (is_measured(r)) {
-            for (const auto& [figure, none] : study::list_measures(r, {}))
-                text += "," + name_column({r.name, std::string(figure)}, taken);
-            continue;
+        columns.push_back(task_in(r).measure(r, {}, kind));
+        for (const study::named_value& v : columns.back()) {
+            std::vector<std::string> parts{r.name};
+            parts.insert(parts.end(), v.name.begin(), v.name.end());
+            text += "," + name_column(parts, taken);
         }
-        for (const std::string& method : study::row_methods(r))
-            for (const std::string& motion : r.motions)
-                text += "," + name_column({r.name, method, motion}, taken);
     }
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
-        text += grouped ? "," + json(d.groups[i]).dump() : ""; // quotes it
+        text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // quotes it
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
             const study::run_outline& own = find_run(d, i, k);
-            if (is_measured(own)) {
-                const auto measured = study::measure_trials(own, d.data[i][k].trials, kind, "");
-                for (const auto& [figure, value] : study::list_measures(own, measured))
-                    text += value ? fmt::format(",{}", *value) : ",";
-                continue;
+            const auto values = task_in(own).measure(own, d.data[i][k].trials, kind);
+            for (const study::named_value& column : columns[k]) {
+                const auto at = std::ranges::find(values, column.name, &study::named_value::name);
+                text += at != values.end() && at->value ? fmt::format(",{}", *at->value) : ",";
             }
-            const std::vector<std::string> methods = study::row_methods(own);
-            const auto cells = study::compute_cells(own, d.data[i][k].trials);
-            for (const std::string& method : study::row_methods(d.experiment.runs[k]))
-                for (const std::string& motion : d.experiment.runs[k].motions) {
-                    const std::size_t row = find_place(methods, method);
-                    const std::size_t m = find_place(own.motions, motion);
-                    text += cells && row < methods.size() && m < own.motions.size()
-                                ? fmt::format(",{}", (*cells)[row][m])
-                                : ",";
-                }
         }
         text += '\n';
     }

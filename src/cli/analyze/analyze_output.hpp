@@ -3,11 +3,15 @@
 /// Output of `tactor analyze`, from values.
 #pragma once
 
-#include "study/analysis/analysis.hpp"
+#include "study/results/result.hpp"
 
 namespace tactor::cli {
 
-void print_analysis_text(const study::analysis& a);
+/// Prints the main figure of each result, in ten lines or less.
+void print_summary(const study::analysis& a);
+
+/// Prints the summary, and then the tables of all results.
+void print_tables(const study::analysis& a);
 
 /// Every trial that counts on a line, with tabs between, after lines that begin with # and tell R how to read
 /// and fit it.

@@ -17,10 +17,11 @@
 #include "core/split.hpp"
 #include "plot/paint/output.hpp"
 #include "session/process.hpp"
-#include "study/analysis/analysis_json.hpp"
+#include "study/analysis/analysis.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/dataset.hpp"
 #include "study/report/report.hpp"
+#include "study/results/result_json.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -102,8 +103,10 @@ int analyze(const analyze_options& o)
         print_trials(d);
     else if (o.format == "wide")
         print_wide(d, o.function);
+    else if (o.format == "tables")
+        print_tables(a);
     else
-        print_analysis_text(a);
+        print_summary(a);
     return status_ok;
 }
 
@@ -119,7 +122,7 @@ int report(const report_options& o)
     const study::dataset d = study::read_dataset({o.folder}, o.who);
     const study::study_facts f = study::read_facts(o.folder, d);
     const study::analysis a = study::analyse(d);
-    const std::string text = study::methods_text(f, d, study::make_analysis_json(a));
+    const std::string text = study::methods_text(f, d, a);
     if (o.file.empty())
         fmt::print("{}", text);
     else {
@@ -141,9 +144,10 @@ int run_analyze(command_line& line)
                  "folder of the study, as tactor experiment wrote it; several count as one study")
         ->required();
     add_selection(c, o.who);
-    add_format_option(c, o.format, {"text", "json", "tsv", "wide"},
-                      "format of the output; tsv has a line for each trial, for R; wide has a line for each "
-                      "participant, for JASP and SPSS (default text)");
+    add_format_option(c, o.format, {"text", "tables", "json", "tsv", "wide"},
+                      "format of the output: text has the main figure of each run, tables all figures; tsv "
+                      "has a line for each trial, for R; wide has a line for each participant, for JASP and "
+                      "SPSS (default text)");
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
              "also draw means with error bars, psychometric functions, each participant, and the answers of "
              "identify",
@@ -166,6 +170,7 @@ int run_analyze(command_line& line)
              });
     add_picture_options(c, o.picture, "170, the width of a page");
     c.footer("tactor analyze study\n"
+             "tactor analyze study --format tables\n"
              "tactor analyze study --format json -o study.pdf\n"
              "tactor analyze study --exclude 07:illness");
     line.parse();

@@ -75,12 +75,12 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
     const study::run_definition& r = p.definition.runs[s.run];
     json j{{"name", r.outline.name},
            {"file_name", r.outline.file_name},
-           {"task", std::string(to_string(r.outline.task))}};
+           {"task", std::string(task_in(r.outline).name())}};
     j["attribute"] = files::or_null(r.attribute);
     j["question"] = r.outline.question;
     j["animation"] = r.animation;
     j["min_response_s"] = r.min_response_s;
-    j["scale"] = find_task(r.outline.task).scale(r.outline);
+    j["scale"] = task_in(r.outline).scale(r.outline);
     j["break_s"] = r.break_s;
     j["duration_s"] = t.total_s;
     j["waits"] = t.waits;
@@ -265,7 +265,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         const study::run_sequence& s = p.runs[i];
         const study::run_definition& r = d.runs[s.run];
         say(stdout, "\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(), r.outline.name,
-            to_string(r.outline.task), r.animation ? ", animation" : "", counted(s.trials.size(), "trial"),
+            task_in(r.outline).name(), r.animation ? ", animation" : "", counted(s.trials.size(), "trial"),
             time_text(times[i]), r.outline.question);
         std::vector<std::string> values;
         for (const auto& [value, trials] : count_values(p, s))

@@ -10,6 +10,7 @@
 
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
+#include "study/analysis/power.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
 

@@ -30,7 +30,7 @@
 #include "files/text_file.hpp"
 #include "options/option.hpp"
 #include "session/process.hpp"
-#include "study/analysis/analysis.hpp"
+#include "study/analysis/power.hpp"
 #include "study/bids/disk.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
@@ -59,21 +59,7 @@ std::vector<std::size_t> participants_in(std::string_view text)
 
 std::string comparison_text(const study::run_outline& r)
 {
-    if (find_task(r.task).about().measures) {
-        const auto against = study::measured_against(r);
-        return against ? fmt::format("{}, {} against {}", study::list_measures(r, {}).front().first,
-                                     r.task == study::task_kind::same_different ? "likelihood ratio" : "t",
-                                     *against)
-                       : "no standard: nothing to compare with";
-    }
-    if (r.task == study::task_kind::choose)
-        return fmt::format("{} chosen{}, t against 50 %", r.methods.back(),
-                           has_worths(r) ? " in its trials" : "");
-    if (r.task == study::task_kind::rate)
-        return r.methods.size() < 2
-                   ? std::string("one method: nothing to compare")
-                   : fmt::format("{} less {}, paired t", r.methods.back(), r.methods.front());
-    return fmt::format("{} correct, t against {:.2f} %", r.methods.back(), study::chance(r));
+    return task_in(r).name_comparison(r).text;
 }
 
 double share(std::size_t n, std::size_t studies)
@@ -114,7 +100,7 @@ json counts_json(const study::power_at& at)
 
 json run_power_json(const study::run_power& p, const study::run_outline& r, std::size_t studies)
 {
-    json j{{"name", r.name}, {"task", std::string(to_string(r.task))}, {"comparison", comparison_text(r)}};
+    json j{{"name", r.name}, {"task", std::string(task_in(r).name())}, {"comparison", comparison_text(r)}};
     j["power"] = json::array();
     for (const study::power_at& at : p.at) {
         const study::interval ci = study::binomial_interval(at.significant, studies);

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "study/analysis/cells.hpp"
 
 namespace tactor::study {
 namespace {
@@ -26,15 +29,14 @@ std::vector<answer_block> make_blocks(const std::vector<trial>& trials)
     return blocks;
 }
 
-std::optional<double> estimate_exponent(const run_outline& run, const std::vector<trial>& trials)
+// Counts positive answers, to a signal and without one.
+difference_counts count_positive(const std::vector<trial>& trials)
 {
-    std::vector<double> ratios;
-    std::vector<double> numbers;
-    for (const trial& t : trials) {
-        ratios.push_back(size_ratio(run, t.value, run.values.back()));
-        numbers.push_back(t.estimate);
-    }
-    return stevens_exponent(ratios, numbers);
+    const auto count = [&](bool signal, bool positive) {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            trials, [&](const trial& t) { return t.signal == signal && (t.positive || !positive); }));
+    };
+    return {count(true, true), count(true, false), count(false, true), count(false, false)};
 }
 
 std::vector<value_estimate> normalise_estimates(const std::vector<trial>& trials)
@@ -51,115 +53,60 @@ std::vector<value_estimate> normalise_estimates(const std::vector<trial>& trials
     return estimates;
 }
 
-// Measures the trials for which `counts` is true.
-template <class Counts>
-measured_condition measure_condition(const run_outline& run, const std::string& name,
-                                     const std::vector<person_trials>& people, sigmoid kind,
-                                     const Counts& counts)
-{
-    measured_condition c{name};
-    std::map<std::string_view, std::vector<double>> values;
-    for (const person_trials& p : people) {
-        std::vector<trial> own;
-        std::ranges::copy_if(*p.trials, std::back_inserter(own), counts);
-        c.people.push_back(measure_trials(run, own, kind, fmt::format("{}/{}/{}", run.name, name, p.code)));
-        for (const auto& [figure, value] : list_measures(run, c.people.back()))
-            if (value)
-                values[figure].push_back(*value);
-    }
-    const std::vector<named_measure> figures = list_measures(run, {});
-    for (const auto& [figure, none] : figures) {
-        const bool is_main = figure == figures.front().first;
-        c.figures.emplace_back(
-            figure, test_mean(values[figure], is_main ? measured_against(run).value_or(0.0) : 0.0));
-    }
-    if (run.task == task_kind::same_different) {
-        std::vector<difference_counts> answers;
-        for (const person_measures& m : c.people)
-            if (m.detected)
-                answers.push_back(m.detected->counts);
-        c.difference = test_difference(answers, fmt::format("{}/{}", run.name, name));
-        t_test& dprime = c.figures.front().second;
-        dprime = {.n = dprime.n, .mean = dprime.mean, .se = dprime.se, .ci = dprime.ci};
-    }
-    return c;
-}
-
 } // namespace
 
-psychometric_family find_family(const run_outline& run, sigmoid kind, double guess) noexcept
-{
-    return run.task == task_kind::detect ? psychometric_family{kind, guess} : two_answers(kind);
-}
-
-person_measures measure_trials(const run_outline& run, const std::vector<trial>& trials, sigmoid kind,
-                               std::string_view seed)
+fitted_function fit_answers(const std::vector<trial>& trials, psychometric_family family,
+                            std::string_view seed)
 {
     constexpr double most_guess = 0.9; // more leaves no room for a function
-    person_measures m;
-    if (run.task == task_kind::estimate) {
-        m.exponent = estimate_exponent(run, trials);
-        if (m.exponent)
-            m.estimates = normalise_estimates(trials);
-        return m;
-    }
-    const auto count = [&](bool signal, bool positive) {
-        return static_cast<std::size_t>(std::ranges::count_if(
-            trials, [&](const trial& t) { return t.signal == signal && (t.positive || !positive); }));
-    };
-    const difference_counts all{count(true, true), count(true, false), count(false, true),
-                                count(false, false)};
-    const std::size_t others = all.same;
-    if (all.different > 0 && others > 0) {
-        detection d{
-            corrected_rate(all.hits, all.different), corrected_rate(all.false_alarms, others), {}, all};
-        d.found = run.task == task_kind::detect ? yes_no(d.hits, d.false_alarms)
-                                                : same_different(d.hits, d.false_alarms);
-        m.detected = d;
-    }
-    if (run.vary.empty())
-        return m;
-    m.blocks = make_blocks(trials);
-    if (others > 0)
-        m.guess = std::min(most_guess, static_cast<double>(all.false_alarms) / static_cast<double>(others));
-    const psychometric_family family = find_family(run, kind, m.guess);
-    m.fit = fit_psychometric(m.blocks, family);
-    if (m.fit && !seed.empty())
-        m.bootstrap = bootstrap_psychometric(m.blocks, family, *m.fit, seed);
-    if (!m.fit || run.task == task_kind::detect)
-        return m;
-    m.pse = m.fit->parameters.threshold;
+    fitted_function f;
+    f.blocks = make_blocks(trials);
+    if (const difference_counts n = count_positive(trials); n.same > 0)
+        f.guess = std::min(most_guess, static_cast<double>(n.false_alarms) / static_cast<double>(n.same));
+    family.guess = f.guess;
+    f.fit = fit_psychometric(f.blocks, family);
+    if (f.fit && !seed.empty())
+        f.bootstrap = bootstrap_psychometric(f.blocks, family, *f.fit, seed);
+    return f;
+}
+
+fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, std::string_view seed)
+{
+    fitted_function f = fit_answers(trials, two_answers(kind), seed);
+    if (!f.fit)
+        return f;
+    f.pse = f.fit->parameters.threshold;
     const double quartile = find_quartile(kind);
-    if (!m.fit->step)
-        m.jnd = m.fit->parameters.slope * quartile;
-    if (const auto& slope = m.bootstrap.slope)
-        m.jnd_ci = interval{slope->first * quartile, slope->second * quartile};
-    return m;
+    if (!f.fit->step)
+        f.jnd = f.fit->parameters.slope * quartile;
+    if (const auto& slope = f.bootstrap.slope)
+        f.jnd_ci = interval{slope->first * quartile, slope->second * quartile};
+    return f;
 }
 
-std::vector<named_measure> list_measures(const run_outline& run, const person_measures& m)
+std::optional<detection> measure_detection(const std::vector<trial>& trials,
+                                           sensitivity (*model)(double hits, double false_alarms))
 {
-    std::vector<named_measure> all;
-    if (run.task == task_kind::estimate)
-        all.emplace_back("exponent", m.exponent);
-    else if (run.task == task_kind::constant || run.task == task_kind::adaptive)
-        all = {{"pse", m.pse}, {"jnd", m.jnd}};
-    else if (!run.vary.empty())
-        all.emplace_back("threshold", m.fit ? std::optional(m.fit->parameters.threshold) : std::nullopt);
-    if (run.task == task_kind::same_different || run.catches) {
-        all.emplace_back("dprime", m.detected ? std::optional(m.detected->found.dprime) : std::nullopt);
-        all.emplace_back("c", m.detected ? std::optional(m.detected->found.c) : std::nullopt);
+    const difference_counts n = count_positive(trials);
+    if (n.different == 0 || n.same == 0)
+        return {};
+    const double hits = corrected_rate(n.hits, n.different);
+    const double false_alarms = corrected_rate(n.false_alarms, n.same);
+    return detection{hits, false_alarms, model(hits, false_alarms), n};
+}
+
+fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials)
+{
+    std::vector<double> ratios;
+    std::vector<double> numbers;
+    for (const trial& t : trials) {
+        ratios.push_back(size_ratio(run, t.value, run.values.back()));
+        numbers.push_back(t.estimate);
     }
-    return all;
-}
-
-std::optional<double> measured_against(const run_outline& run) noexcept
-{
-    if (run.task == task_kind::estimate)
-        return 1.0;
-    if (run.task == task_kind::same_different || (run.catches && run.vary.empty()))
-        return 0.0;
-    return run.standard;
+    fitted_exponent e{stevens_exponent(ratios, numbers)};
+    if (e.exponent)
+        e.estimates = normalise_estimates(trials);
+    return e;
 }
 
 double size_ratio(const run_outline& run, double value, double to) noexcept
@@ -168,25 +115,93 @@ double size_ratio(const run_outline& run, double value, double to) noexcept
     return run.on_db_axis ? std::pow(10.0, (value - to) / db_per_tenfold) : value / to;
 }
 
-std::vector<measured_condition> measure_run(const run_outline& run, const std::vector<person_trials>& people,
-                                            sigmoid kind)
+std::vector<condition_trials> split_conditions(const run_outline& run, const run_people& people,
+                                               const std::vector<std::string>& methods)
 {
-    const auto measure = [&](const std::string& name, const auto& counts) {
-        return measure_condition(run, name, people, kind, counts);
+    std::vector<condition_trials> all;
+    const auto add = [&](const std::string& name, const auto& counts) {
+        condition_trials& c = all.emplace_back(condition_trials{name});
+        for (const person_trials& p : people.all)
+            std::ranges::copy_if(*p.trials, std::back_inserter(c.people.emplace_back()), counts);
     };
-    std::vector<measured_condition> all{measure("", [](const trial&) { return true; })};
-    const bool has_method = run.task != task_kind::same_different;
-    const std::size_t methods = has_method ? run.methods.size() : 1;
-    if (methods * run.motions.size() < 2)
+    add("", [](const trial&) { return true; });
+    const std::size_t rows = std::max<std::size_t>(methods.size(), 1);
+    if (rows * run.motions.size() < 2)
         return all;
-    for (std::size_t method = 0; method < methods; ++method)
+    for (std::size_t row = 0; row < rows; ++row)
         for (std::size_t motion = 0; motion < run.motions.size(); ++motion)
-            all.push_back(measure(
-                (has_method ? run.methods[method] + ":" : "") + run.motions[motion], [&](const trial& t) {
-                    return t.motion == motion &&
-                           (!has_method || t.method_1 == method || (run.catches && !t.signal));
-                }));
+            add((methods.empty() ? "" : methods[row] + ":") + run.motions[motion], [&](const trial& t) {
+                return t.motion == motion && (methods.empty() || t.method_1 == row || !t.signal);
+            });
     return all;
+}
+
+std::vector<result> begin_measured(const run_outline& run, std::optional<double> against)
+{
+    std::vector<result> rows{{{"vary"}}, {{"against"}}};
+    if (!run.vary.empty())
+        rows[0].value = run.vary;
+    if (against)
+        rows[1].value = *against;
+    return rows;
+}
+
+result make_row(const condition_trials& c, std::string_view name, std::string_view heading,
+                result_value value)
+{
+    if (c.name.empty())
+        return {{std::string(name)}, std::string(heading), std::move(value)};
+    return {{"by", c.name, std::string(name)}, fmt::format("{}, {}", heading, c.name), std::move(value)};
+}
+
+std::string make_seed(const run_outline& run, const condition_trials& c, std::string_view code)
+{
+    return fmt::format("{}/{}/{}", run.name, c.name, code);
+}
+
+std::vector<named_value> list_pse(const fitted_function& f)
+{
+    return {{{"pse"}, f.pse}, {{"jnd"}, f.jnd}};
+}
+
+std::vector<named_value> list_threshold(const fitted_function& f)
+{
+    return {{{"threshold"}, f.fit ? std::optional(f.fit->parameters.threshold) : std::nullopt}};
+}
+
+std::vector<named_value> list_sensitivity(const std::optional<detection>& d)
+{
+    return {{{"dprime"}, d ? std::optional(d->found.dprime) : std::nullopt},
+            {{"c"}, d ? std::optional(d->found.c) : std::nullopt}};
+}
+
+std::vector<named_value> list_exponent(const fitted_exponent& e)
+{
+    return {{{"exponent"}, e.exponent}};
+}
+
+std::vector<result> analyse_comparisons(const run_outline& run, const run_people& people, sigmoid kind)
+{
+    const psychometric_functions begun{
+        {},
+        two_answers(kind),
+        run.on_db_axis,
+        run.standard ? "comparison chosen (%)"
+                     : fmt::format("answered \"{}\" (%)", run.choices.size() == 2 ? run.choices[1] : "")};
+    std::vector<result> rows = begin_measured(run, run.standard);
+    std::vector<std::optional<double>> main;
+    for (const condition_trials& c : split_conditions(run, people, run.methods)) {
+        const auto fit = [&](const std::vector<trial>& trials, const std::string& code) {
+            return fit_comparisons(trials, kind, make_seed(run, c, code));
+        };
+        psychometric_functions f = measure_people(begun, c, people, run.standard, fit, list_pse);
+        if (c.name.empty())
+            main = list_main(f);
+        rows.push_back(make_row(c, "psychometric", "Psychometric functions over " + run.vary, std::move(f)));
+        rows.back().is_main = c.name.empty();
+    }
+    add_groups(rows, people, main);
+    return rows;
 }
 
 } // namespace tactor::study

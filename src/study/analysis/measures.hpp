@@ -1,86 +1,102 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Results of a task that measures: of a participant a psychometric function, d', or the exponent of
+/// Figures that a task measures in a participant's trials: a psychometric function, d', or the exponent of
 /// magnitude estimates.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "study/data/dataset.hpp"
-#include "study/statistics/psychometric_fit.hpp"
-#include "study/statistics/signal_detection.hpp"
-#include "study/statistics/tests.hpp"
+#include "study/results/result.hpp"
 
 namespace tactor::study {
 
-/// Sensitivity with the rates that it is from, corrected: corrected_rate().
-struct detection {
-    double hits = 0.0;
-    double false_alarms = 0.0;
-    sensitivity found = {};
-    difference_counts counts = {}; ///< of the answers; detect: to a stimulus and to none
-};
+/// Fits a function to answers. The family's guess is the share of trials without a stimulus with a positive
+/// answer. The bootstrap draws from `seed`; empty: there is none.
+fitted_function fit_answers(const std::vector<trial>& trials, psychometric_family family,
+                            std::string_view seed);
 
-/// Estimates of one value.
-struct value_estimate {
-    double value = 0.0;
-    double ratio = 1.0; ///< of the geometric mean of its estimates to that of all values
-    std::size_t n = 0;  ///< estimates
-};
+/// Fits the function of answers that compare, with pse and jnd.
+fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, std::string_view seed);
 
-/// Results of a participant, those that the run's task has.
-struct person_measures {
-    std::vector<answer_block> blocks = {}; ///< answers by value, ascending
-    double guess = 0.0;                    ///< detect: share of catch trials with a yes
-    std::optional<psychometric_fit> fit = {};
-    psychometric_bootstrap bootstrap = {};
-    std::optional<double> pse = {}; ///< constant, adaptive: the threshold of the fit
-    std::optional<double> jnd = {}; ///< the same; none where the answers rise in one step
-    std::optional<interval> jnd_ci = {};
-    std::optional<detection> detected = {};
-    std::optional<double> exponent = {};
-    std::vector<value_estimate> estimates = {}; ///< by value, ascending; empty without an exponent
-};
+/// Returns the rates of positive answers with a signal and without one; nothing where one of them has no
+/// trial. `model`: computes d' from both.
+std::optional<detection> measure_detection(const std::vector<trial>& trials,
+                                           sensitivity (*model)(double hits, double false_alarms));
 
-/// Returns the family of a run's psychometric functions; `guess`: share of catch trials with a yes.
-psychometric_family find_family(const run_outline& run, sigmoid kind, double guess) noexcept;
-
-/// Measures trials of a participant. The bootstrap draws from `seed`; empty: there is none.
-person_measures measure_trials(const run_outline& run, const std::vector<trial>& trials, sigmoid kind,
-                               std::string_view seed);
-
-/// A figure of the results, by its name in them.
-using named_measure = std::pair<std::string_view, std::optional<double>>;
-
-/// Lists the figures of a participant, the main one first: pse and jnd; threshold; dprime and c; exponent.
-std::vector<named_measure> list_measures(const run_outline& run, const person_measures& m);
-
-/// Returns the value against which the main figure is tested: the standard, 0 or 1; nothing without one.
-std::optional<double> measured_against(const run_outline& run) noexcept;
+fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials);
 
 /// Returns the ratio of the sizes of two values: of the amplitudes, if they are levels in dB.
 double size_ratio(const run_outline& run, double value, double to) noexcept;
 
-/// Results of a run's trials in one condition, or in all of them.
-struct measured_condition {
-    std::string name = {};                                         ///< METHOD:MOTION; empty: all trials
-    std::vector<person_measures> people = {};                      ///< by participant
-    std::vector<std::pair<std::string_view, t_test>> figures = {}; ///< over participants, as list_measures()
-    std::optional<difference_test> difference = {}; ///< same-different: in place of t and p of d'
+/// Trials of one condition, METHOD:MOTION, or all trials, where its name is empty.
+struct condition_trials {
+    std::string name;
+    std::vector<std::vector<trial>> people = {}; ///< by participant
 };
 
-/// A participant's trials that count.
-struct person_trials {
-    std::string code;
-    const std::vector<trial>* trials = nullptr;
-};
+/// Returns all trials, and then those of each condition, if there are several. A trial without a stimulus is
+/// in those of its motion. `methods`: of the run, if conditions are of a method.
+std::vector<condition_trials> split_conditions(const run_outline& run, const run_people& people,
+                                               const std::vector<std::string>& methods);
 
-/// Measures all trials, and then each condition, if there are several.
-std::vector<measured_condition> measure_run(const run_outline& run, const std::vector<person_trials>& people,
-                                            sigmoid kind);
+/// Begins the results of a task that measures, whose main figure is tested against a value, if any.
+std::vector<result> begin_measured(const run_outline& run, std::optional<double> against);
+
+/// Returns the row of a condition. `name`: of its kind in JSON.
+result make_row(const condition_trials& c, std::string_view name, std::string_view heading,
+                result_value value);
+
+/// Returns the seed of a participant's draws in a condition.
+std::string make_seed(const run_outline& run, const condition_trials& c, std::string_view code);
+
+/// Lists figures of a participant, the main one first: pse and jnd; the threshold; d' and c; the exponent.
+std::vector<named_value> list_pse(const fitted_function& f);
+std::vector<named_value> list_threshold(const fitted_function& f);
+std::vector<named_value> list_sensitivity(const std::optional<detection>& d);
+std::vector<named_value> list_exponent(const fitted_exponent& e);
+
+/// Measures each participant in a condition, by `fit(trials, code)`, and tests the figures that `list` lists.
+/// `against`: of the main one.
+template <class Values, class Fit, class Figures>
+Values measure_people(Values v, const condition_trials& c, const run_people& people,
+                      std::optional<double> against, const Fit& fit, const Figures& list)
+{
+    v.condition = c.name;
+    for (std::size_t i = 0; i < people.all.size(); ++i) {
+        v.codes.push_back(people.all[i].code);
+        v.people.push_back(fit(c.people[i], v.codes.back()));
+        v.values.emplace_back();
+        for (const named_value& figure : list(v.people.back()))
+            v.values.back().push_back(figure.value);
+    }
+    const std::vector<named_value> names = list({});
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        std::vector<double> there;
+        for (const auto& own : v.values)
+            if (own[k])
+                there.push_back(*own[k]);
+        const std::optional<double> its = k == 0 ? against : std::nullopt;
+        v.figures.push_back({names[k].name.front(), test_mean(there, its.value_or(0.0)), its});
+    }
+    return v;
+}
+
+/// Returns the main figure of each participant.
+template <class Person>
+std::vector<std::optional<double>> list_main(const measured<Person>& v)
+{
+    std::vector<std::optional<double>> all;
+    for (const auto& own : v.values)
+        all.push_back(own.front());
+    return all;
+}
+
+/// Analyses a run whose answers compare two stimuli, or judge one by two words.
+std::vector<result> analyse_comparisons(const run_outline& run, const run_people& people, sigmoid kind);
 
 } // namespace tactor::study

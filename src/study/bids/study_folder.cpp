@@ -136,7 +136,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
 std::string task_text(const run_definition& r, const experiment_definition& d, bool simulated)
 {
     ordered j{{"TaskName", r.outline.name}};
-    const task::facts& task = find_task(r.outline.task).about();
+    const task::facts& task = task_in(r.outline).about();
     j["TaskDescription"] = (simulated ? std::string(simulated_note) + " " : "") + std::string(task.trial);
     j["Instructions"] = r.outline.question;
     if (!r.outline.labels.empty())

@@ -130,7 +130,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.response_time_s = t.number(row, "response_time");
     if (r.response_time_s.value_or(0.0) < 0.0)
         t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 or more seconds");
-    find_task(run.task).read_row(r, t, row, run);
+    task_in(run).read_row(r, t, row, run);
     return r;
 }
 
@@ -259,12 +259,6 @@ private:
 };
 
 } // namespace
-
-std::string rating_range(const run_outline& run)
-{
-    return fmt::format("{} to {}{}", run.lowest_rating(), run.scale,
-                       run.visual ? " on a visual analogue scale" : "");
-}
 
 std::string describe_group(const group_outline& g)
 {

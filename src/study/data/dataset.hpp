@@ -30,15 +30,12 @@
 
 namespace tactor::study {
 
-enum class task_kind { choose, rate, identify, detect, same_different, estimate, constant, adaptive };
-
-/// Returns the name of a task.
-std::string_view to_string(task_kind t) noexcept;
+class task;
 
 struct run_outline {
     std::string name;
     std::string file_name; ///< the name's letters and digits, which name its files
-    task_kind task = task_kind::choose;
+    const study::task* task = nullptr;
     std::vector<std::string> motions = {}; ///< in the order of the definition
     std::vector<std::string> methods = {}; ///< the same; what is chosen or compared is the last
     unsigned trials = 0;                   ///< 0: the definition does not say

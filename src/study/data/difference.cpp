@@ -81,7 +81,7 @@ public:
 private:
     void run(const std::string& of, const run_outline& before, const run_outline& now)
     {
-        key(of, "task", std::string(to_string(before.task)), std::string(to_string(now.task)));
+        key(of, "task", std::string(task_in(before).name()), std::string(task_in(now).name()));
         key(of, "question", before.question, now.question);
         key(of, "scale", rating_range(before), rating_range(now));
         key(of, "labels", before.labels, now.labels);

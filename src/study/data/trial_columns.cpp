@@ -143,7 +143,7 @@ const std::array<trial_column, 23> trial_columns{{
 bool has_column(const run_outline& run, const trial_column& c)
 {
     return c.use == column_use::values ? !run.vary.empty()
-           : c.use == column_use::own  ? find_task(run.task).about().column == c.name
+           : c.use == column_use::own  ? task_in(run).about().column == c.name
                                        : true;
 }
 
@@ -189,7 +189,7 @@ std::vector<trial_cells> read_study(const std::filesystem::path& folder, const s
                 for (std::size_t row = 0; row < t.rows(); ++row) {
                     all.push_back({{"participant", code},
                                    {"run", run.name},
-                                   {"task", std::string(to_string(run.task))},
+                                   {"task", std::string(task_in(run).name())},
                                    {"simulated", d.simulated}});
                     add_cells(all.back(), t, row);
                 }

@@ -361,19 +361,10 @@ void check_cells(const toml_table& t, const run_outline& o)
 {
     if (o.motions.empty() || o.methods.empty())
         t.fail(fmt::format("{} has no motion or no method", o.name), "leave it out of runs, or name more");
-    find_task(o.task).check(t, o);
+    task_in(o).check(t, o);
 }
 
 constexpr std::size_t most_texts = 1000; // a definition that is held has stricter bounds
-
-task_kind read_task(const toml_table& t)
-{
-    std::vector<std::string_view> names;
-    for (const task* one : list_tasks())
-        names.push_back(one->name());
-    const std::string name = t.need(t.choice("task", names), "task");
-    return static_cast<task_kind>(std::ranges::find(names, name) - names.begin());
-}
 
 // Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
@@ -391,17 +382,17 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
                    fmt::format("the files of the runs \"{}\" and \"{}\" would have the same name",
                                other.outline.name, o.name),
                    "make their letters and digits differ");
-    o.task = read_task(t);
+    o.task = &read_task(t);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     o.motions = names_at(r.motions, d.motions);
     o.methods = names_at(r.methods, d.methods);
     o.labels = t.texts("labels", most_texts);
     o.choices = t.texts("choices", most_texts);
-    find_task(o.task).read_outline(t, r);
+    task_in(o).read_outline(t, r);
     const std::string attribute = t.text("attribute").value_or("");
     const std::size_t kind = attribute == "similarity" ? 0 : attribute == "uniformity" ? 1 : 2;
-    o.question = t.text("question").value_or(std::string(find_task(o.task).about().questions[kind]));
+    o.question = t.text("question").value_or(std::string(task_in(o).about().questions[kind]));
     check_cells(t, o);
     return r;
 }
@@ -428,7 +419,7 @@ void check_keys(const toml_table& t, const task& own)
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
                                    std::vector<method_definition>& variants)
 {
-    const task& own = find_task(read_task(t));
+    const task& own = read_task(t);
     check_keys(t, own);
     run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
@@ -459,7 +450,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     r.choices = t.has("choices") ? r.outline.choices : own.usual_choices(d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
-    r.pairs = std::ranges::any_of(own.list_cells(r), [](const auto& c) { return c.method_2.has_value(); });
+    r.pairs = std::ranges::any_of(own.plan_cells(r), [](const auto& c) { return c.method_2.has_value(); });
     return r;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Simulated observers, who answer by the predicted percept of a plan and noise, and the power of studies
-/// with them. They test the chain; they say nothing about people.
+/// Simulated observers, who answer by the predicted percept of a plan and noise. They test the chain; they
+/// say nothing about people.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +14,6 @@
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
-#include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
@@ -64,38 +62,19 @@ private:
     simulated_run run_;
 };
 
-struct power_request {
-    simulation observer = {};
-    std::vector<std::size_t> participants = {}; ///< sample sizes to simulate, each at least 2
-    std::size_t studies = 200;
-    std::optional<std::uint64_t> seed = {}; ///< of the orders; none: the definition's, or the codes'
-    std::size_t part = 1;                   ///< from 1
-    std::size_t parts = 1;                  ///< into which the studies are divided, in their order
+/// A participant's trials of a run: as planned, and as the analysis has them.
+struct person_run {
+    std::string code;
+    std::vector<planned_trial> planned = {};
+    std::vector<trial> trials = {};
 };
 
-/// Level of significance: a smaller p is significant.
-inline constexpr double significant_p = 0.05;
+/// Prepares a run for n participants, without their answers.
+std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
+                                       const std::optional<std::uint64_t>& seed);
 
-/// Outcomes of studies with so many participants.
-struct power_at {
-    std::size_t participants = 0;
-    std::size_t significant = 0; ///< studies with p < 0.05, two-sided
-    std::size_t for_last = 0;    ///< of these, those in which the last method was better
-    std::size_t untested = 0;    ///< without a test: nobody differed from anybody
-};
-
-struct run_power {
-    std::size_t run = 0; ///< index in the definition
-    /// By sample size; empty for ratings of one method, where there is nothing to compare.
-    std::vector<power_at> at = {};
-};
-
-/// Simulates the studies of the part and tests each. Study k (from 0) has the participants 01, 02, ... whose
-/// observers have the seed of `observer` plus k, and hold all sessions. A study of n has the first n
-/// participants of a larger one. Void trials come again. Calls `go_on` before each study, and returns nothing
-/// if it returns false. \throws error (bad_input) as simulated_observer does.
-std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
-                                                     const stimulus_set& stimuli, const power_request& r,
-                                                     const std::function<bool()>& go_on);
+/// Fills the answers in; a trial that is void comes again until it is not.
+void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
+                const run_definition& r);
 
 } // namespace tactor::study

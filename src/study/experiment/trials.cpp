@@ -215,10 +215,10 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     random_numbers numbers(fmt::format("{}/{}", session_seed(seed, d, code), r.outline.name));
     run_sequence s{run};
     const bool mixes_motions = r.motions.size() > 1 && r.blocks != "motions";
-    auto blocks = part_blocks(d, r, find_task(r.outline.task).draw(r, r.outline.trials, numbers));
+    auto blocks = part_blocks(d, r, task_in(r.outline).draw(r, r.outline.trials, numbers));
     if (mixes_motions &&
         !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
-        blocks = part_blocks(d, r, draw_by_turns(d, r, find_task(r.outline.task).list_cells(r), numbers));
+        blocks = part_blocks(d, r, draw_by_turns(d, r, task_in(r.outline).plan_cells(r), numbers));
     // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
     const std::size_t runs = square_rows(d.order, d.runs.size());
@@ -230,7 +230,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
             shuffle(std::span(blocks[i]), numbers);
         s.trials.insert(s.trials.end(), blocks[i].begin(), blocks[i].end());
     }
-    s.practice = find_task(r.outline.task).draw(r, r.practice, numbers);
+    s.practice = task_in(r.outline).draw(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
     draw_rests(s.practice, d.rest, numbers);
     draw_rests(s.trials, d.rest, numbers);

@@ -93,7 +93,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
             v.standard = add(vary(methods[i], *o.standard, "standard"), i);
             more.back().name = standard_name;
         }
-        if (o.catches) {
+        if (r.catch_share > 0.0) {
             v.silent = add(methods[i], i);
             more.back().name = catch_name;
             more.back().silent = true;

@@ -6,6 +6,9 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -17,9 +20,9 @@
 #include "core/split.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
-#include "study/analysis/analysis.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/report/facts.hpp"
+#include "study/results/result_json.hpp"
 #include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 
@@ -241,109 +244,103 @@ json list_calibrations(const study_facts& f)
     return all;
 }
 
-// Cuts the intervals of means to the values that a mean may have, because an interval from t ignores these
-// bounds.
-void cut_intervals(json& results, double low, double high)
+// Cuts the intervals of means to the values that a mean may have: one from t knows no bounds.
+void cut_intervals(json& results, const interval& possible)
 {
     if (const auto ci = results.find("ci"); ci != results.end() && ci->is_array())
         for (json& end : *ci)
-            end = std::clamp(end.get<double>(), low, high);
+            end = std::clamp(end.get<double>(), possible.first, possible.second);
     for (json& inner : results)
         if (inner.is_object())
-            cut_intervals(inner, low, high);
+            cut_intervals(inner, possible);
 }
 
-// Adds the rows of a table of worths.
-void add_rows(json& bradley_terry)
-{
-    json rows = json::array();
-    for (const auto& [method, log_worth] : bradley_terry.at("log_worth").items())
-        rows.push_back(
-            {{"name", method}, {"log_worth", log_worth}, {"se", bradley_terry.at("se").at(method)}});
-    bradley_terry["rows"] = std::move(rows);
-}
-
-// Adds the results of the groups, named like runs. Returns the outlines of all results.
-std::vector<run_outline> add_groups(json& runs, const experiment_outline& e)
-{
-    std::vector<run_outline> all = e.runs;
-    for (const group_outline& g : e.groups)
-        for (const run_outline& o : g.runs) {
-            if (o.motions.empty())
-                continue; // the group lacks the run
-            const json results = runs.at(o.name).at("groups").at(g.name);
-            all.push_back(o);
-            all.back().name = name_result(o.name, g.name);
-            runs[all.back().name] = results;
-        }
-    return all;
-}
-
-// Lists the results of all trials and of each condition of a task that measures. Tests only the main figure
-// of each, if there is a value to test it against.
-json list_measured(const json& run)
-{
-    json all = json::array();
-    const auto add = [&](const json& name, const json& from) {
-        json one{{"condition", name}};
-        for (const char* key : {"psychometric", "dprime", "exponent"})
-            one[key] = from.value(key, json(false));
-        if (one["psychometric"].is_object())
-            for (auto& [figure, test] : one["psychometric"]["tests"].items())
-                if (figure == "jnd" || run.at("against").is_null())
-                    for (const char* key : {"t", "df", "p", "p_signflip", "d", "d_ci"})
-                        test[key] = nullptr;
-        all.push_back(std::move(one));
-    };
-    if (run.contains("against"))
-        add(false, run);
-    const json by = run.value("by", json::object());
-    for (const auto& [name, own] : by.items())
-        add(name, own);
-    return all;
-}
-
-// Adds to each run what its tables need: names of motions, and lists of Tukey's comparisons.
-json describe_results(json runs, const dataset& d)
-{
-    for (const run_outline& o : add_groups(runs, d.experiment)) {
-        json& run = runs.at(o.name);
-        if (run.at("n") == 0) // nobody answered all of it
-            for (const char* key :
-                 {"preference", "chosen", "first_interval", "bradley_terry", "means", "paired", "anova",
-                  "group_anova", "tukey", "correct", "confusion", "pairs"})
-                run.erase(key);
-        const interval possible = possible_values(o);
-        for (const char* key : {"preference", "chosen", "means", "correct"})
-            if (run.contains(key))
-                cut_intervals(run[key], possible.first, possible.second);
-        if (run.contains("bradley_terry"))
-            add_rows(run["bradley_terry"]);
-        for (const char* key : {"anova", "group_anova"})
-            if (const json effects = run.value(key, json::object()); std::ranges::all_of(
-                    effects, [](const json& e) { return e.is_null() || e.at("F").is_null(); }))
-                run.erase(key);
-        run["motions"] = o.motions;
-        run["measured"] = run.at("n") == 0 ? json::array() : list_measured(run);
-        run["compared"] = json::array();
-        const auto add = [&run](const json& within, const json& rows) {
-            if (!rows.empty() && !rows[0].at("q").is_null())
-                run["compared"].push_back({{"within", within}, {"rows", rows}});
-        };
-        const json tukey = run.value("tukey", json::array());
-        if (tukey.is_array())
-            add(nullptr, tukey);
-        else
-            for (const auto& [method, rows] : tukey.items())
-                add(method, rows);
+// Returns a result as methods.md has it, under the name of its kind.
+class row_facts {
+public:
+    explicit row_facts(const result& r) : all_(value_json(r.value))
+    {
+        std::visit(*this, r.value);
+        all_ = {{"heading", r.heading.empty() ? json(false) : json(r.heading)}, {kind_, std::move(all_)}};
     }
-    return runs;
+
+    json finish() && { return std::move(all_); }
+
+    template <class T>
+    void operator()(const T&)
+    {
+    }
+    void operator()(const cell_means& v)
+    {
+        kind_ = v.against ? "tests" : "means";
+        cut_intervals(all_, v.possible);
+    }
+    void operator()(const interval_share&) { kind_ = "first_interval"; }
+    void operator()(const method_difference&) { kind_ = "paired"; }
+    void operator()(const effect_list&) { kind_ = "anova"; }
+    void operator()(const tukey_list&) { set_rows("tukey"); }
+    void operator()(const paired_list&) { set_rows("pairs"); }
+    void operator()(const answer_counts& v)
+    {
+        kind_ = "confusion";
+        all_ = {{"motions", v.motions}, {"rows", std::move(all_)}};
+    }
+    void operator()(const worth_list& v)
+    {
+        kind_ = "bradley_terry";
+        json rows = json::array();
+        for (const std::string& m : v.methods)
+            rows.push_back(
+                {{"name", m}, {"log_worth", all_.at("log_worth").at(m)}, {"se", all_.at("se").at(m)}});
+        all_["rows"] = std::move(rows);
+    }
+    // Only the main figure is tested, if there is something against which.
+    void operator()(const psychometric_functions& v)
+    {
+        kind_ = "psychometric";
+        for (const measured_figure& f : v.figures)
+            if (!f.against)
+                for (const char* key : {"t", "df", "p", "p_signflip", "d", "d_ci"})
+                    all_["tests"][f.name][key] = nullptr;
+        all_["against"] = files::or_null(v.figures.front().against);
+    }
+    void operator()(const sensitivities&) { kind_ = "dprime"; }
+    void operator()(const exponents&) { kind_ = "exponent"; }
+
+private:
+    void set_rows(const char* kind)
+    {
+        kind_ = kind;
+        all_ = {{"rows", std::move(all_)}};
+    }
+
+    const char* kind_ = "";
+    json all_;
+};
+
+json describe_results(const run_analysis& r)
+{
+    json run{{"name", r.run.name},
+             {"n", r.n},
+             {"trials", r.trials},
+             {"early", r.early},
+             {"left_out", left_out_json(r.missing)},
+             {"rows", json::array()},
+             {"response_time", times_json(r.times)}};
+    for (const result& row : r.results)
+        if (r.n != 0 && has_table(row.value))
+            run["rows"].push_back(row_facts(row).finish());
+    return run;
 }
 
 } // namespace
 
-nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const json& analysis)
+nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const analysis& a)
 {
+    std::set<std::string_view> sections;
+    for (const run_outline& r : d.experiment.runs)
+        for (const std::string_view section : task_in(r).list_sections(r))
+            sections.insert(section);
     const auto definition = [&f](const std::function<std::string(const experiment_definition&)>& text) {
         return join_texts(f,
                           [&](const session_facts& s) { return s.design ? text(*s.design) : std::string(); });
@@ -389,13 +386,8 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["recorded"] = !all["stimuli"].empty();
     all["valued"] = std::ranges::any_of(all["stimuli"], [](const json& s) { return s.at("value") != ""; });
     all["notes"] = list_notes(f);
-    const auto has_run = [&d](const auto& what) { return std::ranges::any_of(d.experiment.runs, what); };
     all["gap"] =
-        std::ranges::any_of(f.sessions,
-                            [](const session_facts& s) {
-                                return s.design &&
-                                       std::ranges::any_of(s.design->runs, &run_definition::pairs);
-                            })
+        sections.contains("gap")
             ? json(definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; }))
             : json(false);
     all["rest"] = definition([](const experiment_definition& e) {
@@ -422,22 +414,16 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["questionnaires"] = list_questionnaires(f);
     const bool own =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
-    all["worths"] = has_run(has_worths);
-    all["has_cells"] = has_run([](const run_outline& r) { return !find_task(r.task).about().measures; });
-    all["has_comparisons"] = has_run(
-        [](const run_outline& r) { return r.task == task_kind::constant || r.task == task_kind::adaptive; });
-    all["has_thresholds"] =
-        has_run([](const run_outline& r) { return r.task == task_kind::detect && !r.vary.empty(); });
-    all["has_functions"] = all["has_comparisons"] || all["has_thresholds"];
-    all["has_differences"] =
-        has_run([](const run_outline& r) { return r.task == task_kind::same_different; });
-    all["has_dprime"] = all["has_differences"] || has_run([](const run_outline& r) { return r.catches; });
-    all["has_exponents"] = has_run([](const run_outline& r) { return r.task == task_kind::estimate; });
     for (const session_facts& s : f.sessions)
         if (s.design)
-            for (const run_definition& r : s.design->runs)
-                if (r.outline.task == task_kind::adaptive)
-                    all[r.adaptive.down == 0 ? "has_quest" : "has_staircases"] = true;
+            for (const run_definition& r : s.design->runs) {
+                std::string_view section;
+                task_in(r.outline).describe_procedure(r, section);
+                sections.insert(section);
+            }
+    sections.erase("gap"); // with its own text
+    for (const std::string_view section : sections)
+        all[std::string(section)] = true;
     all["ordered"] = own;
     all["sessions"] = json::array();
     for (const session_facts& s : f.sessions)
@@ -449,11 +435,13 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                                    : v["tactor"].words();
     });
     all["definitions"] = join_texts(f, [](const session_facts& s) { return s.definition_hash; });
-    all["excluded"] = json::array();
-    for (const left_out& one : d.excluded)
-        all["excluded"].push_back({{"participant", one.participant}, {"why", one.why}});
-    all["results"] = describe_results(analysis.at("runs"), d);
-    all["warnings"] = analysis.at("warnings");
+    all["excluded"] = left_out_json(d.excluded);
+    all["results"] = json::array();
+    for (const run_analysis& r : a.runs)
+        all["results"].push_back(describe_results(r));
+    all["warnings"] = a.warnings;
+    for (const std::string& w : a.no_figures)
+        all["warnings"].push_back(w);
     return all;
 }
 

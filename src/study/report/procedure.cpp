@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/analysis/analysis.hpp"
 #include "study/report/facts.hpp"
 #include "study/tasks/task.hpp"
 
@@ -32,73 +31,6 @@ std::string stream_text(const session_facts& s, const std::string& key)
     if (seen.empty())
         return is_simulated(s) ? "simulated" : not_recorded;
     return join(seen, "; ");
-}
-
-// Describes a task that measures, with the values.
-std::string describe_measure(const run_outline& r)
-{
-    std::string text = fmt::format("{} ({})", find_task(r.task).about().trial, join(r.methods));
-    if (!r.vary.empty())
-        text += fmt::format(
-            "; {} {} {}", r.vary, r.task == task_kind::adaptive ? "chosen by the answers from" : "of",
-            r.task == task_kind::adaptive
-                ? fmt::format("{} to {}", plain_number(r.values.front()), plain_number(r.values.back()))
-                : join(r.values));
-    if (r.standard)
-        text += fmt::format("; standard {}", plain_number(*r.standard));
-    return text;
-}
-
-std::string describe_task(const run_outline& r)
-{
-    const std::string methods = join(r.methods);
-    if (r.task == task_kind::choose)
-        return fmt::format(
-            "two stimuli of one motion, with {}, one after the other; the participant chose one",
-            has_worths(r) ? "two of " + methods : join(r.methods, " and with "));
-    if (r.task == task_kind::rate)
-        return fmt::format("one stimulus ({}), which the participant rated from {}", methods,
-                           rating_range(r));
-    if (r.task == task_kind::identify)
-        return fmt::format("one stimulus ({}); the participant named one of {}", methods,
-                           counted(r.motions.size(), "motion"));
-    return describe_measure(r);
-}
-
-// Describes the procedure of an adaptive run.
-std::string describe_procedure(const run_definition& r)
-{
-    const adaptive_options& a = r.adaptive;
-    const std::vector<double>& values = r.outline.values;
-    const double step = values[1] - values[0];
-    const auto list = [](const std::vector<double>& numbers) {
-        std::vector<std::string> texts;
-        for (const double v : numbers)
-            texts.push_back(plain_number(v, 4));
-        return join(texts);
-    };
-    std::string text = fmt::format("{} in each condition, values from {} in steps of {}; ",
-                                   counted(a.tracks, "track"), range_text(values), plain_number(step));
-    if (a.down == 0)
-        return text + fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. "
-                                  "Priors were uniform over thresholds at the values, slopes (standard "
-                                  "deviations of the normal) of {} and lapses of {}",
-                                  list(a.slopes), list(a.lapses));
-    std::vector<double> steps;
-    for (const std::size_t places : a.steps)
-        steps.push_back(static_cast<double>(places) * step);
-    std::vector<double> start;
-    for (const std::size_t place : a.start)
-        start.push_back(values[place]);
-    const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
-    const std::string mirrored =
-        fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
-                    counted(a.down, "negative answer"), 100.0 - led_to);
-    return text + fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
-                              "after each other answer, which leads to {:.1f} % positive answers{}; step "
-                              "sizes of {}, the next one after every second reversal",
-                              list(start), counted(a.down, "positive answer"), led_to,
-                              a.down > 1 ? mirrored : "", list(steps));
 }
 
 // Lists the motions that were mirrored for the hand that wore the array.
@@ -147,13 +79,18 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
         });
     };
     const json attribute = fact([](const run_definition& r) { return r.attribute; });
+    const std::string procedure = fact([](const run_definition& r) {
+        std::string_view section;
+        return task_in(r.outline).describe_procedure(r, section);
+    });
+    const std::vector<std::string_view> sections = task_in(o).list_sections(o);
+    const auto has = [&](std::string_view section) { return std::ranges::count(sections, section) != 0; };
     return {
         {"name", o.name},
-        {"task", to_string(o.task)},
-        {"asked", describe_task(o)},
+        {"task", task_in(o).name()},
+        {"asked", task_in(o).describe(o)},
         {"motions", join(o.motions)},
-        {"attribute",
-         attribute == not_recorded && find_task(o.task).about().measures ? json(false) : attribute},
+        {"attribute", attribute == not_recorded && !has("has_cells") ? json(false) : attribute},
         {"question", fact([](auto& r) { return r.outline.question; })},
         {"animation", join_texts(f,
                                  [run](const session_facts& s) {
@@ -167,14 +104,14 @@ nlohmann::ordered_json describe_run(const study_facts& f, const run_outline& o, 
         {"labels", fact([](auto& r) { return r.outline.labels.empty() ? "none" : join(r.outline.labels); })},
         {"choices",
          fact([](const run_definition& r) { return r.choices.empty() ? "none" : join(r.choices); })},
-        {"procedure", o.task == task_kind::adaptive ? json(fact(describe_procedure)) : json(false)},
+        {"procedure", procedure == not_recorded ? json(false) : json(procedure)},
         {"standard", o.standard ? json(fmt::format("by the same method, with {} of {}", o.vary,
                                                    plain_number(*o.standard)))
                                 : json(false)},
-        {"catch", o.catches ? json(fact([](const run_definition& r) {
+        {"catch", has("catches") ? json(fact([](const run_definition& r) {
              return fmt::format("{} %", plain_number(100.0 * r.catch_share));
          }))
-                            : json(false)},
+                                 : json(false)},
         {"blocks", fact([](const run_definition& r) {
              return r.blocks.empty() ? "none" : fmt::format("the {}, ordered like the runs", r.blocks);
          })},

@@ -205,11 +205,11 @@ study_facts read_facts(const fs::path& folder, const dataset& d)
     return f;
 }
 
-std::string methods_text(const study_facts& f, const dataset& d, const nlohmann::ordered_json& analysis)
+std::string methods_text(const study_facts& f, const dataset& d, const analysis& a)
 {
     mustache::mustache text{std::string(methods_template())};
     text.set_custom_escape([](const std::string& t) { return escape_markdown(t); });
-    return without_gaps(text.render(make_data(collect_facts(f, d, analysis))));
+    return without_gaps(text.render(make_data(collect_facts(f, d, a))));
 }
 
 std::string between_text(const study_facts& f)

@@ -18,6 +18,7 @@
 #include "options/option.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/results/result.hpp"
 
 namespace tactor::study {
 
@@ -79,9 +80,8 @@ struct study_facts {
 ///         or no longer has its SHA-256; a trial whose stimulus is not the one with its plan's hash.
 study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
 
-/// Returns the whole text. `f` and `d` are from the same folder; `analysis` is an object of tactor-analysis/1
-/// about it.
-std::string methods_text(const study_facts& f, const dataset& d, const nlohmann::ordered_json& analysis);
+/// Returns the whole text. `f` is from the same folder as `d`, and `a` is about it.
+std::string methods_text(const study_facts& f, const dataset& d, const analysis& a);
 
 /// Writes the report whole or not at all, with its SHA-256 in the last line. \throws error: bad_input for a
 /// folder that does not exist, for a file that was read as input, and without `force` for a file that is not
@@ -89,8 +89,7 @@ std::string methods_text(const study_facts& f, const dataset& d, const nlohmann:
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
 /// Returns all facts, by their names in methods.md.
-nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d,
-                                     const nlohmann::ordered_json& analysis);
+nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const analysis& a);
 
 /// Returns methods.md, a template of Mustache with [[ and ]].
 std::string_view methods_template() noexcept;

@@ -55,7 +55,7 @@ const std::array<event_row, code_events>& list_events()
 // Returns the intervals in which an event may come.
 std::vector<unsigned> list_intervals(const experiment_definition& d, const run_definition& r, code_event e)
 {
-    const auto cells = find_task(r.outline.task).list_cells(r);
+    const auto cells = task_in(r.outline).plan_cells(r);
     std::vector<unsigned> all;
     for (const unsigned interval : {1U, 2U})
         if (std::ranges::any_of(cells, [&](const planned_trial& t) {
@@ -111,7 +111,7 @@ code_event find_event(const method_definition& m) noexcept
 std::string code_numbers::describe(const experiment_definition& d, const coded_event& e) const
 {
     const run_outline& r = e.run->outline;
-    const task& own = find_task(r.task);
+    const task& own = task_in(r);
     const method_definition& m = d.methods[e.method];
     const bool is_stimulus = e.event != code_event::answer && e.event != code_event::made_void;
     std::vector<std::string> parts{std::string(to_string(e.event))};
@@ -148,7 +148,7 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
             meanings_[next++].push_back(text);
         };
         for (const run_definition& r : whole.runs) {
-            std::vector<std::string> answers = find_task(r.outline.task).list_responses(r.outline);
+            std::vector<std::string> answers = task_in(r.outline).list_responses(r.outline);
             if (answers.empty())
                 answers.emplace_back(); // one number for all
             for (const coded_event& e : list_events_in(whole, r)) {

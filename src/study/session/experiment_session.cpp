@@ -472,7 +472,7 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
 
 void set_response(trial_row& row, const run_definition& r, double response, double time_s)
 {
-    find_task(r.outline.task).take(row, r, response);
+    task_in(r.outline).take(row, r, response);
     row.response_time_s = time_s;
     row.early = time_s < r.min_response_s;
 }
@@ -480,7 +480,7 @@ void set_response(trial_row& row, const run_definition& r, double response, doub
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
 {
     const run_definition& r = p.definition.runs[s.run];
-    const auto values = find_task(r.outline.task).choose_values(r);
+    const auto values = task_in(r.outline).choose_values(r);
     run_queue queue(s.trials.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const trial_row& row = rows[i];
@@ -579,7 +579,7 @@ held_run::held_run(const prepared_experiment& p, std::size_t place, session_stor
       sequence_(p.runs[place]),
       practice_(store, p.run_at(place), true),
       trials_(store, p.run_at(place), false),
-      values_(find_task(p.run_at(place).outline.task).choose_values(p.run_at(place)))
+      values_(task_in(p.run_at(place).outline).choose_values(p.run_at(place)))
 {
     for (const trial_row& row : store.rows(p.run_at(place)))
         take_line(*values_, row);

@@ -43,7 +43,7 @@ bool question::is_typed() const noexcept
 
 trial_answers find_answers(const experiment_definition& d, const run_definition& r)
 {
-    return find_task(r.outline.task).ask(r, d.page);
+    return task_in(r.outline).ask(r, d.page);
 }
 
 page_progress find_progress(const prepared_experiment& p, const session_step& s)

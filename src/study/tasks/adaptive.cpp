@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/words.hpp"
 #include "study/experiment/variation.hpp"
@@ -121,6 +122,14 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
 }
 
+std::string list_numbers(const std::vector<double>& numbers)
+{
+    std::vector<std::string> texts;
+    for (const double v : numbers)
+        texts.push_back(plain_number(v, 4));
+    return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 class chooser final : public value_chooser {
 public:
     explicit chooser(const run_definition& r) : run_(r), tracks_(r) {}
@@ -150,9 +159,7 @@ public:
                            .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
                            .keys = {"choices", "vary", "standard", "procedure", "start", "steps", "range",
                                     "tracks", "slope", "lapse"},
-                           .column = "track",
-                           .measures = true,
-                           .varies = true})
+                           .column = "track"})
     {
     }
 
@@ -163,7 +170,7 @@ public:
     }
     void read(const toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         std::vector<planned_trial> cells;
         unsigned track = 0;
@@ -178,6 +185,49 @@ public:
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {
         return std::make_unique<chooser>(r);
+    }
+
+    // Results.
+
+    std::string describe(const run_outline& o) const override
+    {
+        return fmt::format("{} ({}); {} chosen by the answers from {} to {}{}", about().trial,
+                           fmt::join(o.methods, ", "), o.vary, plain_number(o.values.front()),
+                           plain_number(o.values.back()),
+                           o.standard ? "; standard " + plain_number(*o.standard) : "");
+    }
+
+    std::string describe_procedure(const run_definition& r, std::string_view& section) const override
+    {
+        const adaptive_options& a = r.adaptive;
+        const std::vector<double>& values = r.outline.values;
+        const double step = values[1] - values[0];
+        const std::string text = fmt::format("{} in each condition, values from {} to {} in steps of {}; ",
+                                             counted(a.tracks, "track"), plain_number(values.front()),
+                                             plain_number(values.back()), plain_number(step));
+        section = a.down == 0 ? "has_quest" : "has_staircases";
+        if (a.down == 0)
+            return text +
+                   fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. "
+                               "Priors were uniform over thresholds at the values, slopes (standard "
+                               "deviations of the normal) of {} and lapses of {}",
+                               list_numbers(a.slopes), list_numbers(a.lapses));
+        std::vector<double> steps;
+        for (const std::size_t places : a.steps)
+            steps.push_back(static_cast<double>(places) * step);
+        std::vector<double> start;
+        for (const std::size_t place : a.start)
+            start.push_back(values[place]);
+        const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
+        const std::string mirrored =
+            fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
+                        counted(a.down, "negative answer"), 100.0 - led_to);
+        return text +
+               fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
+                           "after each other answer, which leads to {:.1f} % positive answers{}; step "
+                           "sizes of {}, the next one after every second reversal",
+                           list_numbers(start), counted(a.down, "positive answer"), led_to,
+                           a.down > 1 ? mirrored : "", list_numbers(steps));
     }
 };
 

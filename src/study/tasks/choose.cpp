@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstddef>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "study/analysis/cells.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
+#include "study/statistics/bradley_terry.hpp"
 #include "study/tasks/draw.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
@@ -18,6 +25,55 @@ std::vector<planned_trial> list_pairs(std::size_t motion, const std::vector<std:
     for (std::size_t i = 0; i < n * (n - 1) / 2; ++i)
         all.push_back({motion, methods[i % n], methods[(i % n + i / n + 1) % n]});
     return all;
+}
+
+// Tests whether a run chooses among three methods or more: each has a row of cells and a worth.
+bool has_several(const run_outline& o)
+{
+    return o.methods.size() > 2;
+}
+
+std::size_t find_chosen(const trial& t)
+{
+    return t.response == 1 ? t.method_1 : t.method_2;
+}
+
+// Per cent of trials in which the last method was chosen; of three or more by method: of its trials.
+cell_plan plan_choices(const run_outline& o)
+{
+    if (has_several(o))
+        return {o.methods,
+                [](const trial& t) {
+                    const bool first = t.response == 1;
+                    return std::vector<std::pair<std::size_t, double>>{{t.method_1, first ? 100.0 : 0.0},
+                                                                       {t.method_2, first ? 0.0 : 100.0}};
+                },
+                per_cents, 50.0, "chosen (% of its trials)"};
+    return {{o.methods.back()},
+            [last = o.methods.size() - 1](const trial& t) {
+                return std::vector<std::pair<std::size_t, double>>{{0, find_chosen(t) == last ? 100.0 : 0.0}};
+            },
+            per_cents,
+            50.0,
+            fmt::format("{} chosen (%)", o.methods.back())};
+}
+
+interval_share count_first_interval(const run_people& people)
+{
+    std::vector<double> shares;
+    for (const person_trials& p : people.all)
+        shares.push_back(100.0 * static_cast<double>(std::ranges::count(*p.trials, 1U, &trial::response)) /
+                         static_cast<double>(p.trials->size()));
+    return {test_mean(shares, 50.0)};
+}
+
+worth_list estimate_worths(const run_outline& o, const run_people& people)
+{
+    std::vector<std::vector<double>> wins(o.methods.size(), std::vector<double>(o.methods.size()));
+    for (const person_trials& p : people.all)
+        for (const trial& t : *p.trials)
+            ++wins[find_chosen(t)][t.response == 1 ? t.method_2 : t.method_1];
+    return {o.methods, bradley_terry(wins)};
 }
 
 class choose final : public task {
@@ -43,7 +99,7 @@ public:
         refuse_method_blocks(t, r.outline);
     }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         return cross_motions(r, list_pairs);
     }
@@ -74,6 +130,121 @@ public:
     {
         const double first = judge(who, t.motion, t.method_1, r);
         return first >= judge(who, t.motion, t.method_2.value(), r) ? 1 : 2;
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
+                                     sigmoid) const override
+    {
+        return list_cells(o, plan_choices(o), trials);
+    }
+
+    bool is_enough(const run_outline& o, const std::vector<trial>& trials) const override
+    {
+        return compute_cells(o, plan_choices(o), trials).has_value();
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
+    {
+        const cell_plan plan = plan_choices(o);
+        const std::vector<cell_values> all = compute_all_cells(o, plan, people);
+        const std::vector<cell_means> means = test_cells(o, plan, all);
+        std::vector<result> rows;
+        if (has_several(o)) {
+            // Rows of methods are not independent: what one gains another loses.
+            for (const cell_means& m : means)
+                rows.push_back(
+                    {{"chosen", m.method},
+                     fmt::format("Per cent of the trials with {} in which people chose it, against 50",
+                                 m.method),
+                     m});
+            rows.back().is_main = true;
+            rows.push_back({{"first_interval"}, "", count_first_interval(people)});
+            rows.push_back({{"bradley_terry"},
+                            fmt::format("Worths (Bradley and Terry 1952) relative to {}, which has 0",
+                                        o.methods.front()),
+                            estimate_worths(o, people)});
+            return rows;
+        }
+        rows.push_back({{"method"}, "", o.methods.back()});
+        rows.push_back(
+            {{"preference"},
+             fmt::format("Per cent of trials in which people chose {}, against 50", o.methods.back()),
+             means[0],
+             true});
+        rows.push_back({{"first_interval"}, "", count_first_interval(people)});
+        rows.push_back({{"anova"}, "Analysis of variance", list_effects(o, all, false)});
+        rows.push_back({{"tukey"}, "Tukey's comparisons of motions", compare_by_tukey(all, 0, means[0])});
+        add_groups(rows, o, people, all, false);
+        return rows;
+    }
+
+    std::vector<std::string> list_timed_methods(const run_outline&) const override { return {}; }
+
+    main_comparison name_comparison(const run_outline& o) const override
+    {
+        return {fmt::format("{} chosen{}, t against 50 %", o.methods.back(),
+                            has_several(o) ? " in its trials" : ""),
+                50.0, plan_choices(o).rounding()};
+    }
+
+    compared_person compare(const run_outline& o, const std::vector<trial>& trials) const override
+    {
+        const auto cells = compute_cells(o, plan_choices(o), trials);
+        return {cells ? std::optional(mean(cells->back())) : std::nullopt};
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline& o) const override
+    {
+        if (has_several(o))
+            return {"other"};
+        return {};
+    }
+
+    // A trial asks about the last of two methods; of three or more about the one felt first.
+    named_texts describe_trial(const trial& t, const run_outline& own,
+                               const run_outline& whole) const override
+    {
+        const std::string& first = own.methods[t.method_1];
+        const std::string& second = own.methods[t.method_2];
+        const bool asks_first = has_several(whole) || first == whole.methods.back();
+        return {{"method", asks_first ? first : second},
+                {"other", asks_first ? second : first},
+                {"order", asks_first ? "0.5" : "-0.5"},
+                {"response", fmt::format("{}", t.response)},
+                {"chosen", (t.response == 1) == asks_first ? "1" : "0"}};
+    }
+
+    // Worths have a column for each method but the first, 1 where it was felt first, -1 where it was felt
+    // second. The intercept is the preference for the first interval.
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        if (!has_several(o))
+            return write_model(o, grouped, {"glmer(chosen", "family = binomial, ", "order + ", "", false});
+        std::string others;
+        for (std::size_t m = 1; m < o.methods.size(); ++m)
+            others += (m > 1 ? ", " : "") + quote(o.methods[m]);
+        const std::string factors = list_factors(o, grouped);
+        return fmt::format("glmer(chosen ~ worth{} + (1 + worth | participant), family = binomial, "
+                           "data = within(subset(d, run == {}), "
+                           "worth <- sapply(c({}), function(m) (method == m) - (other == m))))",
+                           factors == "1" ? "" : " + worth:" + factors, quote(o.name), others);
+    }
+
+    std::string describe(const run_outline& o) const override
+    {
+        return fmt::format(
+            "two stimuli of one motion, with {}, one after the other; the participant chose one",
+            has_several(o) ? fmt::format("two of {}", fmt::join(o.methods, ", "))
+                           : fmt::format("{}", fmt::join(o.methods, " and with ")));
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline& o) const override
+    {
+        if (has_several(o))
+            return {"gap", "has_cells", "worths"};
+        return {"gap", "has_cells"};
     }
 };
 

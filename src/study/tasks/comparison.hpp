@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
@@ -37,6 +39,48 @@ public:
     double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         return simulate_comparison(who, t, r);
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline&, const std::vector<trial>& trials,
+                                     sigmoid kind) const override
+    {
+        return list_pse(fit_comparisons(trials, kind, ""));
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
+    {
+        return analyse_comparisons(o, people, kind);
+    }
+
+    main_comparison name_comparison(const run_outline& o) const override
+    {
+        return compare_with("pse", "t", o.standard);
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline&) const override
+    {
+        return {"value", "signal", "positive"};
+    }
+
+    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
+    {
+        return describe_measured(t, own);
+    }
+
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        return write_model(o, grouped,
+                           {"glmer(positive", "family = binomial(\"probit\"), ", "", write_value(o)});
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline& o) const override
+    {
+        std::vector<std::string_view> all{"has_functions", "has_comparisons"};
+        if (o.standard)
+            all.emplace_back("gap");
+        return all;
     }
 };
 

@@ -11,9 +11,7 @@ public:
               {.name = "constant",
                .trial = "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
                .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
-               .keys = {"choices", "vary", "values", "standard", "trials_per_value"},
-               .measures = true,
-               .varies = true})
+               .keys = {"choices", "vary", "values", "standard", "trials_per_value"}})
     {
     }
 
@@ -24,7 +22,7 @@ public:
     }
     void read(const detail::toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         return list_value_cells(r, false);
     }

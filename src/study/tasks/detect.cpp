@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "study/analysis/cells.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/tasks/task.hpp"
@@ -7,6 +12,11 @@
 namespace tactor::study {
 namespace {
 
+std::optional<double> find_against(const run_outline& o)
+{
+    return o.vary.empty() && o.catches ? std::optional(0.0) : o.standard;
+}
+
 class detect final : public task {
 public:
     detect()
@@ -14,8 +24,7 @@ public:
                 .trial = "One stimulus or none",
                 .response = "Whether a stimulus was felt: 1 yes, 2 no",
                 .questions = {"Did you feel it?", "Did you feel it?", "Did you feel it?"},
-                .keys = {"choices", "catch", "vary", "values", "trials_per_value"},
-                .measures = true})
+                .keys = {"choices", "catch", "vary", "values", "trials_per_value"}})
     {
     }
 
@@ -32,7 +41,7 @@ public:
     }
     std::vector<std::string> usual_choices(const page_words& w) const override { return {w["yes"], w["no"]}; }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         return list_value_cells(r, false);
     }
@@ -66,6 +75,97 @@ public:
             return feels_more(who, *value, r) ? 1 : 2;
         const double felt = is_silent ? 0.0 : who.truth.dprime;
         return felt + r.normal() > 0.5 * who.truth.dprime ? 1 : 2;
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
+                                     sigmoid kind) const override
+    {
+        std::vector<named_value> all;
+        if (!o.vary.empty())
+            all = list_threshold(fit_answers(trials, {kind}, ""));
+        if (o.catches)
+            for (named_value& v : list_sensitivity(measure_detection(trials, yes_no)))
+                all.push_back(std::move(v));
+        return all;
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
+    {
+        const psychometric_functions begun{{}, {kind}, o.on_db_axis, "felt (%)"};
+        const std::optional<double> against = find_against(o);
+        std::vector<result> rows = begin_measured(o, against);
+        std::vector<std::optional<double>> main;
+        for (const condition_trials& c : split_conditions(o, people, o.methods)) {
+            result functions = make_row(c, "psychometric", "Psychometric functions over " + o.vary, {});
+            result differences = make_row(c, "dprime", "Sensitivity", {});
+            if (!o.vary.empty()) {
+                const auto fit = [&](const std::vector<trial>& trials, const std::string& code) {
+                    return fit_answers(trials, {kind}, make_seed(o, c, code));
+                };
+                auto f = measure_people(begun, c, people, against, fit, list_threshold);
+                main = c.name.empty() ? list_main(f) : main;
+                functions.value = std::move(f);
+            }
+            if (o.catches) {
+                const auto fit = [](const std::vector<trial>& trials, const std::string&) {
+                    return measure_detection(trials, yes_no);
+                };
+                auto d = measure_people(sensitivities{}, c, people, o.vary.empty() ? against : std::nullopt,
+                                        fit, list_sensitivity);
+                main = c.name.empty() && o.vary.empty() ? list_main(d) : main;
+                differences.value = std::move(d);
+            }
+            functions.is_main = c.name.empty() && !o.vary.empty();
+            differences.is_main = c.name.empty() && o.vary.empty();
+            rows.push_back(std::move(functions));
+            rows.push_back(std::move(differences));
+        }
+        add_groups(rows, people, main);
+        return rows;
+    }
+
+    bool is_silent(const trial& t) const override { return !t.signal; }
+
+    main_comparison name_comparison(const run_outline& o) const override
+    {
+        return compare_with(o.vary.empty() ? "dprime" : "threshold", "t", find_against(o));
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline& o) const override
+    {
+        if (o.vary.empty())
+            return {"signal", "positive"};
+        return {"value", "signal", "positive"};
+    }
+
+    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
+    {
+        named_texts all = describe_measured(t, own);
+        if (is_silent(t))
+            all.front().second = catch_name;
+        return all;
+    }
+
+    // The slope over the values, or over whether there was a signal, is what the run is about. The method of
+    // a trial without a stimulus is "none", which says it, too.
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;
+        return write_model(
+            o, grouped,
+            {"glmer(positive", "family = binomial(\"probit\"), ", "", by_signal ? "signal" : write_value(o)});
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline& o) const override
+    {
+        std::vector<std::string_view> all;
+        if (!o.vary.empty())
+            all.insert(all.end(), {"has_functions", "has_thresholds"});
+        if (o.catches)
+            all.insert(all.end(), {"has_dprime", "catches"});
+        return all;
     }
 };
 

@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include "core/split.hpp"
+#include "core/words.hpp"
+#include "study/analysis/cells.hpp"
 #include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/tasks/task.hpp"
@@ -22,9 +25,7 @@ public:
                     "One stimulus, or a standard and then a stimulus, which the participant gives a number",
                 .response = "The number above 0 that the participant gave",
                 .keys = {"vary", "values", "standard", "trials_per_value"},
-                .column = "intensity_estimate",
-                .measures = true,
-                .varies = true})
+                .column = "intensity_estimate"})
     {
     }
 
@@ -37,7 +38,7 @@ public:
         read_trials(t, o);
     }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         return list_value_cells(r, true);
     }
@@ -79,6 +80,71 @@ public:
             modulus * std::pow(ratio, who.truth.exponent) * std::exp(who.truth.sigma * r.normal());
         const auto rounded = detail::number_in<double>(fmt::format("{:.3g}", number));
         return std::clamp(rounded.value_or(number), least_estimate, most_estimate);
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
+                                     sigmoid) const override
+    {
+        return list_exponent(fit_exponent(o, trials));
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
+    {
+        std::vector<result> rows = begin_measured(o, 1.0);
+        std::vector<std::optional<double>> main;
+        for (const condition_trials& c : split_conditions(o, people, o.methods)) {
+            const auto fit = [&](const std::vector<trial>& trials, const std::string&) {
+                return fit_exponent(o, trials);
+            };
+            auto e = measure_people(exponents{}, c, people, 1.0, fit, list_exponent);
+            if (c.name.empty())
+                main = list_main(e);
+            rows.push_back(
+                make_row(c, "exponent", "Exponents of the estimates over " + o.vary, std::move(e)));
+            rows.back().is_main = c.name.empty();
+        }
+        add_groups(rows, people, main);
+        return rows;
+    }
+
+    main_comparison name_comparison(const run_outline&) const override
+    {
+        return compare_with("exponent", "t", 1.0);
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline&) const override
+    {
+        return {"value", "signal", "positive", "estimate"};
+    }
+
+    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
+    {
+        const std::string estimate = fmt::format("{}", t.estimate);
+        return {{"method", own.methods[t.method_1]},
+                {"response", estimate},
+                {"value", fmt::format("{}", t.value)},
+                {"signal", "1"},
+                {"estimate", estimate}};
+    }
+
+    // Estimates follow the logarithm of a value that is no level.
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        const double middle = std::sqrt(o.values.front() * o.values.back());
+        return write_model(
+            o, grouped,
+            {"lmer(log(estimate)", "", "",
+             o.on_db_axis ? write_value(o)
+                          : fmt::format("log(value / {})", plain_number(o.standard.value_or(middle), 12))});
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline& o) const override
+    {
+        if (o.standard)
+            return {"gap", "has_exponents"};
+        return {"has_exponents"};
     }
 };
 

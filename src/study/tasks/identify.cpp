@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "core/words.hpp"
+#include "study/analysis/cells.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/tasks/draw.hpp"
@@ -30,6 +35,35 @@ double mean_distance(const std::vector<tactor::point>& a, const std::vector<tact
     return sum / static_cast<double>(a.size());
 }
 
+double find_chance(const run_outline& o)
+{
+    return 100.0 / static_cast<double>(o.motions.size());
+}
+
+// Per cent correct by method, against chance.
+cell_plan plan_names(const run_outline& o)
+{
+    return {o.methods,
+            [](const trial& t) {
+                return std::vector<std::pair<std::size_t, double>>{
+                    {t.method_1, t.response == t.motion ? 100.0 : 0.0}};
+            },
+            per_cents, find_chance(o), "correct (%)"};
+}
+
+std::vector<answer_counts> count_answers(const run_outline& o, const run_people& people)
+{
+    std::vector<answer_counts> all;
+    for (const std::string& method : o.methods)
+        all.push_back({method, o.motions,
+                       std::vector<std::vector<std::size_t>>(o.motions.size(),
+                                                             std::vector<std::size_t>(o.motions.size()))});
+    for (const person_trials& p : people.all)
+        for (const trial& t : *p.trials)
+            ++all[t.method_1].counts[t.motion][t.response];
+    return all;
+}
+
 class identify final : public task {
 public:
     identify()
@@ -46,7 +80,7 @@ public:
             t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
     }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         return cross_motions(r, list_methods);
     }
@@ -99,6 +133,78 @@ public:
             distances.push_back(mean_distance(target, felt));
         return static_cast<double>(std::ranges::min_element(distances) - distances.begin() + 1);
     }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
+                                     sigmoid) const override
+    {
+        return list_cells(o, plan_names(o), trials);
+    }
+
+    bool is_enough(const run_outline& o, const std::vector<trial>& trials) const override
+    {
+        return compute_cells(o, plan_names(o), trials).has_value();
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
+    {
+        const cell_plan plan = plan_names(o);
+        const std::vector<cell_values> all = compute_all_cells(o, plan, people);
+        const std::vector<cell_means> means = test_cells(o, plan, all);
+        std::vector<result> rows{{{"chance"}, "", find_chance(o)}};
+        for (answer_counts& c : count_answers(o, people)) {
+            const std::string method = c.method;
+            rows.push_back({{"confusion", method}, "Answers with " + method, std::move(c)});
+        }
+        for (const cell_means& m : means)
+            rows.push_back({{"correct", m.method},
+                            fmt::format("Per cent correct with {}, against {}", m.method,
+                                        plain_number(find_chance(o), 4)),
+                            m});
+        rows.back().is_main = true;
+        for (const cell_means& m : means)
+            rows.push_back(
+                {{"pairs", m.method},
+                 fmt::format("Per cent correct with {}, motions in pairs by paired t tests", m.method),
+                 compare_in_pairs(m, plan.rounding())});
+        add_groups(rows, o, people, all, true);
+        return rows;
+    }
+
+    main_comparison name_comparison(const run_outline& o) const override
+    {
+        return {fmt::format("{} correct, t against {:.2f} %", o.methods.back(), find_chance(o)),
+                find_chance(o), plan_names(o).rounding()};
+    }
+
+    compared_person compare(const run_outline& o, const std::vector<trial>& trials) const override
+    {
+        const auto cells = compute_cells(o, plan_names(o), trials);
+        return {cells ? std::optional(mean(cells->back())) : std::nullopt};
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline&) const override { return {}; }
+
+    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
+    {
+        return {{"method", own.methods[t.method_1]},
+                {"response", own.motions[t.response]},
+                {"correct", t.response == t.motion ? "1" : "0"}};
+    }
+
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        return write_model(o, grouped, {"glmer(correct", "family = binomial, "});
+    }
+
+    std::string describe(const run_outline& o) const override
+    {
+        return fmt::format("one stimulus ({}); the participant named one of {}", fmt::join(o.methods, ", "),
+                           counted(o.motions.size(), "motion"));
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_cells"}; }
 };
 
 } // namespace

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "core/words.hpp"
+#include "study/analysis/cells.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/questionnaire.hpp"
 #include "study/tasks/draw.hpp"
@@ -14,6 +18,25 @@
 
 namespace tactor::study {
 namespace {
+
+// Mean ratings by method, not tested.
+cell_plan plan_ratings(const run_outline& o)
+{
+    return {o.methods,
+            [](const trial& t) {
+                return std::vector<std::pair<std::size_t, double>>{{t.method_1, t.response}};
+            },
+            {o.lowest_rating(), o.scale},
+            {},
+            "mean rating"};
+}
+
+// Returns the last method's mean less the first's; 0 for what rounding leaves of it.
+double subtract_methods(const cell_values& cells, const cell_plan& plan)
+{
+    const double difference = mean(cells.back()) - mean(cells.front());
+    return std::abs(difference) > plan.rounding() ? difference : 0.0;
+}
 
 class rate final : public task {
 public:
@@ -49,7 +72,7 @@ public:
         return o.visual ? nlohmann::ordered_json("vas") : nlohmann::ordered_json(o.scale);
     }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         return cross_motions(r, list_methods);
     }
@@ -96,9 +119,93 @@ public:
         const double felt = judge(who, t.motion, t.method_1, r) - who.mean_utility;
         return std::clamp(std::round((highest + lowest) / 2.0 + felt), lowest, highest);
     }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
+                                     sigmoid) const override
+    {
+        return list_cells(o, plan_ratings(o), trials);
+    }
+
+    bool is_enough(const run_outline& o, const std::vector<trial>& trials) const override
+    {
+        return compute_cells(o, plan_ratings(o), trials).has_value();
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
+    {
+        const cell_plan plan = plan_ratings(o);
+        const std::vector<cell_values> all = compute_all_cells(o, plan, people);
+        const std::vector<cell_means> means = test_cells(o, plan, all);
+        const bool compares = o.methods.size() > 1;
+        std::vector<result> rows;
+        for (const cell_means& m : means)
+            rows.push_back({{"means", m.method},
+                            fmt::format("Mean rating of {}, {}", m.method, rating_range(o)),
+                            m,
+                            !compares});
+        rows.push_back({{"paired"}, "", std::monostate{}, compares});
+        if (compares) {
+            std::vector<double> differences;
+            for (const cell_values& v : all)
+                differences.push_back(subtract_methods(v, plan));
+            rows.back().value = method_difference{o.methods.back(), o.methods.front(),
+                                                  test_mean(differences, 0.0, plan.rounding())};
+        }
+        rows.push_back({{"anova"}, "Analysis of variance", list_effects(o, all, true)});
+        for (std::size_t m = 0; m < means.size(); ++m)
+            rows.push_back({{"tukey", means[m].method},
+                            "Tukey's comparisons of motions within " + means[m].method,
+                            compare_by_tukey(all, m, means[m])});
+        add_groups(rows, o, people, all, true);
+        return rows;
+    }
+
+    main_comparison name_comparison(const run_outline& o) const override
+    {
+        if (o.methods.size() < 2)
+            return {"one method: nothing to compare"};
+        return {fmt::format("{} less {}, paired t", o.methods.back(), o.methods.front()), 0.0,
+                plan_ratings(o).rounding()};
+    }
+
+    compared_person compare(const run_outline& o, const std::vector<trial>& trials) const override
+    {
+        const cell_plan plan = plan_ratings(o);
+        const auto cells = compute_cells(o, plan, trials);
+        return {cells ? std::optional(subtract_methods(*cells, plan)) : std::nullopt};
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline&) const override { return {}; }
+
+    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
+    {
+        const std::string rating = fmt::format("{}", t.response);
+        return {{"method", own.methods[t.method_1]}, {"response", rating}, {"rating", rating}};
+    }
+
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        return write_model(o, grouped, {"lmer(rating"});
+    }
+
+    std::string describe(const run_outline& o) const override
+    {
+        return fmt::format("one stimulus ({}), which the participant rated from {}",
+                           fmt::join(o.methods, ", "), rating_range(o));
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_cells"}; }
 };
 
 } // namespace
+
+std::string rating_range(const run_outline& run)
+{
+    return fmt::format("{} to {}{}", run.lowest_rating(), run.scale,
+                       run.visual ? " on a visual analogue scale" : "");
+}
 
 const task& rate_task()
 {

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "study/analysis/cells.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/tasks/task.hpp"
@@ -20,8 +23,7 @@ public:
                 .trial = "Two stimuli, one after the other",
                 .response = "Whether the stimuli were 1 the same or 2 different",
                 .questions = {"Were both the same?", "Were both the same?", "Were both the same?"},
-                .keys = {"choices"},
-                .measures = true})
+                .keys = {"choices"}})
     {
     }
 
@@ -40,7 +42,7 @@ public:
         return {w["same"], w["different"]};
     }
 
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    std::vector<planned_trial> plan_cells(const run_definition& r) const override
     {
         std::vector<planned_trial> cells;
         for (const std::size_t motion : r.motions)
@@ -71,6 +73,82 @@ public:
         constexpr double criterion = std::numbers::sqrt2;
         const double apart = t.method_1 != *t.method_2 ? who.truth.dprime : 0.0;
         return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline&, const std::vector<trial>& trials,
+                                     sigmoid) const override
+    {
+        return list_sensitivity(measure_detection(trials, same_different));
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
+    {
+        std::vector<result> rows = begin_measured(o, 0.0);
+        std::vector<std::optional<double>> main;
+        for (const condition_trials& c : split_conditions(o, people, {})) {
+            const auto fit = [](const std::vector<trial>& trials, const std::string&) {
+                return measure_detection(trials, same_different);
+            };
+            auto d = measure_people(sensitivities{}, c, people, 0.0, fit, list_sensitivity);
+            std::vector<difference_counts> answers;
+            for (const std::optional<detection>& one : d.people)
+                if (one)
+                    answers.push_back(one->counts);
+            d.ratio = test_difference(answers, fmt::format("{}/{}", o.name, c.name));
+            t_test& t = d.figures.front().test;
+            t = {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
+            if (c.name.empty())
+                main = list_main(d);
+            rows.push_back(make_row(c, "dprime", "Sensitivity", std::move(d)));
+            rows.back().is_main = c.name.empty();
+        }
+        add_groups(rows, people, main);
+        return rows;
+    }
+
+    main_comparison name_comparison(const run_outline&) const override
+    {
+        return compare_with("dprime", "likelihood ratio", 0.0);
+    }
+
+    compared_person compare(const run_outline&, const std::vector<trial>& trials) const override
+    {
+        const auto d = measure_detection(trials, same_different);
+        return {{}, d ? std::optional(d->counts) : std::nullopt};
+    }
+
+    compared test(const run_outline&, std::span<const compared_person> people,
+                  std::string_view seed) const override
+    {
+        std::vector<difference_counts> counts;
+        for (const compared_person& p : people)
+            if (p.counts)
+                counts.push_back(*p.counts);
+        const auto difference = test_difference(counts, seed);
+        return {difference ? std::optional(difference->p) : std::nullopt, true};
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline&) const override
+    {
+        return {"signal", "positive"};
+    }
+
+    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
+    {
+        return describe_measured(t, own);
+    }
+
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        return write_model(o, grouped,
+                           {"glmer(positive", "family = binomial(\"probit\"), ", "", "signal", false});
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline&) const override
+    {
+        return {"gap", "has_dprime", "has_differences"};
     }
 };
 

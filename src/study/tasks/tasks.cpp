@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The list of tasks, to which a new one adds a line, and what most of them have in common.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -29,14 +30,17 @@ std::span<const task* const> list_tasks() noexcept
     return all;
 }
 
-const task& find_task(task_kind t) noexcept
+const task& find_task(std::string_view name) noexcept
 {
-    return *list_tasks()[static_cast<std::size_t>(t)];
+    return **std::ranges::find(list_tasks(), name, &task::name);
 }
 
-std::string_view to_string(task_kind t) noexcept
+const task& read_task(const detail::toml_table& t)
 {
-    return find_task(t).name();
+    std::vector<std::string_view> names;
+    for (const task* one : list_tasks())
+        names.push_back(one->name());
+    return find_task(t.need(t.choice("task", names), "task"));
 }
 
 void task::read_outline(const detail::toml_table& t, run_definition& r) const
@@ -64,7 +68,7 @@ nlohmann::ordered_json task::scale(const run_outline&) const
 
 std::vector<planned_trial> task::draw(const run_definition& r, std::size_t n, random_numbers& numbers) const
 {
-    return draw_cells(r, list_cells(r), n, numbers);
+    return draw_cells(r, plan_cells(r), n, numbers);
 }
 
 std::unique_ptr<value_chooser> task::choose_values(const run_definition&) const

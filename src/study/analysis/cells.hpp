@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Results of a task in which each trial is a value of a cell: of a method, or both, and a motion.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "study/results/result.hpp"
+
+namespace tactor::study {
+
+/// Values by row (method; one row for choose between two) and motion.
+using cell_values = std::vector<std::vector<double>>;
+
+/// Cells of a run, and how trials become their values.
+struct cell_plan {
+    std::vector<std::string> methods = {}; ///< of the rows
+    /// Lists the rows that a trial is in, each with its value.
+    std::function<std::vector<std::pair<std::size_t, double>>(const trial&)> score = {};
+    interval possible = per_cents;
+    std::optional<double> against = {}; ///< what guessing gives; none: means are not tested
+    std::string axis = {};
+
+    /// Returns the largest difference of the values that rounding may leave of 0.
+    double rounding() const noexcept { return few_digits * possible.second; }
+};
+
+/// Returns a participant's values. Nothing if a cell has no trial.
+std::optional<cell_values> compute_cells(const run_outline& run, const cell_plan& plan,
+                                         const std::vector<trial>& trials);
+
+/// Lists them by METHOD and MOTION; without values if a cell has no trial.
+std::vector<named_value> list_cells(const run_outline& run, const cell_plan& plan,
+                                    const std::vector<trial>& trials);
+
+/// Returns the values of all participants, of whom none lacks a cell.
+std::vector<cell_values> compute_all_cells(const run_outline& run, const cell_plan& plan,
+                                           const run_people& people);
+
+/// Tests the means of each row.
+std::vector<cell_means> test_cells(const run_outline& run, const cell_plan& plan,
+                                   const std::vector<cell_values>& all);
+
+/// Computes the effects of motions, and with `methods` those of methods and of both together.
+effect_list list_effects(const run_outline& run, const std::vector<cell_values>& all, bool methods);
+
+/// Compares the motions of a row by Tukey's test.
+tukey_list compare_by_tukey(const std::vector<cell_values>& all, std::size_t row, const cell_means& means);
+
+/// Compares the motions of a row by paired t tests.
+paired_list compare_in_pairs(const cell_means& means, double rounding);
+
+/// Adds the groups' mixed analysis of variance, if they are compared. `all`: cells of these participants.
+void add_groups(std::vector<result>& results, const run_outline& run, const run_people& people,
+                const std::vector<cell_values>& all, bool methods);
+
+/// The same of one value of each participant, who may lack it.
+void add_groups(std::vector<result>& results, const run_people& people,
+                const std::vector<std::optional<double>>& values);
+
+} // namespace tactor::study

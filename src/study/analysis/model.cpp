@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "study/analysis/model.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "core/words.hpp"
+
+namespace tactor::study {
+
+std::string quote(const std::string& text)
+{
+    return nlohmann::json(text).dump(); // R reads the texts of JSON
+}
+
+std::string list_factors(const run_outline& run, bool grouped)
+{
+    if (run.motions.size() < 2)
+        return grouped ? "group" : "1";
+    return grouped ? "(group * motion)" : "motion";
+}
+
+std::string write_value(const run_outline& run)
+{
+    if (run.vary.empty())
+        return {};
+    const double at = run.standard.value_or(0.5 * (run.values.front() + run.values.back()));
+    return fmt::format("I(value {} {})", at < 0.0 ? '+' : '-', plain_number(std::abs(at), 12));
+}
+
+std::string write_model(const run_outline& run, bool grouped, const r_model& m)
+{
+    const bool has_method = m.by_method && run.methods.size() > 1;
+    std::vector<std::string> factors;
+    if (!m.slope.empty())
+        factors.push_back(m.slope);
+    std::vector<std::string> people{"1"};
+    people.insert(people.end(), factors.begin(), factors.end());
+    if (has_method || run.motions.size() > 1)
+        people.emplace_back(has_method ? "method" : "motion");
+    if (has_method)
+        factors.emplace_back("method");
+    if (const std::string motion = list_factors(run, grouped); motion != "1" || factors.empty())
+        factors.push_back(motion);
+    return fmt::format("{} ~ {} + {}({} | participant), {}data = subset(d, run == {}))", m.response,
+                       fmt::join(factors, " * "), m.first, fmt::join(people, " + "), m.family,
+                       quote(run.name));
+}
+
+} // namespace tactor::study

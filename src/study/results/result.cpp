@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "study/results/result.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tactor::study {
+namespace {
+
+// Collects why figures of a run's rows are missing.
+class missing_figures {
+public:
+    explicit missing_figures(const run_analysis& r) : run_(r)
+    {
+        for (const result& row : r.results)
+            std::visit(*this, row.value);
+    }
+
+    std::vector<std::string> finish()
+    {
+        for (const undetermined& u : undetermined_) {
+            std::vector<std::string> whose;
+            for (const auto& [code, conditions] : u.whose)
+                if (!conditions.empty())
+                    whose.push_back("sub-" + code +
+                                    (conditions.size() < u.conditions
+                                         ? fmt::format(" ({})", fmt::join(conditions, ", "))
+                                         : ""));
+            if (!whose.empty())
+                add(u.figure, fmt::format("the answers do not determine it: {}", fmt::join(whose, ", ")));
+        }
+        if (run_.n == 1)
+            texts_.push_back(run_.run.name + ": one participant: tests need two");
+        return std::move(texts_);
+    }
+
+    template <class T>
+    void operator()(const T&)
+    {
+    }
+
+    void operator()(const cell_means& v)
+    {
+        for (const cell_mean& m : v.means) {
+            const std::string name = v.method.empty() ? m.name : v.method + ", " + m.name;
+            if (v.against)
+                explain(name, m.test);
+            else if (m.test.n > 1 && !m.test.ci)
+                add(name, "no variance over participants, so no interval");
+            const std::size_t conditions = &m == v.means.data() ? v.rows : v.rows * (v.means.size() - 1);
+            if (m.test.n > 1 && conditions > 1 && !m.test.ci_within)
+                add(name, "no variance within participants, so no interval within participants");
+        }
+    }
+
+    void operator()(const interval_share& v) { explain("first interval", v.test); }
+    void operator()(const method_difference& v) { explain("methods", v.test); }
+
+    void operator()(const worth_list& v)
+    {
+        for (std::size_t i = 0; i < v.worths.size(); ++i)
+            if (run_.n != 0 && !v.worths[i].log_worth)
+                add("worth of " + v.methods[i],
+                    fmt::format("the choices between it and {}, directly and through other methods, all go "
+                                "one way or are missing, so it is not finite",
+                                v.methods[0]));
+    }
+
+    void operator()(const effect_list& v)
+    {
+        for (const auto& [effect_name, e] : v.effects) {
+            const std::string name = (v.of_groups ? "groups compared, " : "") + effect_name;
+            if (!e)
+                continue;
+            if (e->ms_error && !e->f)
+                add(name, "the error has no variance, so no F");
+            if (e->epsilon_gg && !e->epsilon_hf)
+                add(name, "too few participants for the epsilon of Huynh and Feldt");
+            if (e->epsilon_gg && !e->mauchly_w)
+                add(name, "too few participants, or too little variance, for Mauchly's test");
+        }
+        if (v.of_groups && !v.effects.front().second->ms_error)
+            add("groups", "too few participants to compare them");
+    }
+
+    void operator()(const tukey_list& v)
+    {
+        if (!v.pairs.empty() && !v.pairs[0].q && run_.n > 1)
+            add(v.method.empty() ? "motion" : v.method, "the error has no variance, so no Tukey");
+    }
+
+    void operator()(const paired_list& v)
+    {
+        for (const paired_comparison& c : v.pairs)
+            if (c.test.n > 1 && !c.test.t)
+                add(fmt::format("{}, {} - {}", v.method, v.motions[c.a], v.motions[c.b]),
+                    "no variance over participants, so no t test");
+    }
+
+    void operator()(const psychometric_functions& v) { note(v); }
+    void operator()(const sensitivities& v) { note(v); }
+    void operator()(const exponents& v) { note(v); }
+
+private:
+    // A figure that some answers do not determine: by participant the conditions without it.
+    struct undetermined {
+        std::string figure;
+        std::size_t conditions = 0; // of all
+        std::vector<std::pair<std::string, std::vector<std::string>>> whose = {};
+    };
+
+    void add(std::string_view figure, std::string_view why)
+    {
+        texts_.push_back(fmt::format("{}: {}: {}", run_.run.name, figure, why));
+    }
+
+    void explain(std::string_view figure, const t_test& t)
+    {
+        if (t.n < 2)
+            return;
+        if (!t.t)
+            add(figure, "no variance over participants, so no t test");
+        else if (!t.d_ci)
+            add(figure, "the effect is too large for an interval");
+        if (!t.p_signflip)
+            add(figure, "too many participants for the exact test");
+    }
+
+    // Notes who lacks a figure, for one text about all conditions.
+    template <class Person>
+    void note(const measured<Person>& v)
+    {
+        for (std::size_t k = 0; k < v.figures.size(); ++k) {
+            auto at = std::ranges::find(undetermined_, v.figures[k].name, &undetermined::figure);
+            if (at == undetermined_.end())
+                at = undetermined_.insert(at, {v.figures[k].name});
+            ++at->conditions;
+            at->whose.resize(v.codes.size());
+            for (std::size_t i = 0; i < v.codes.size(); ++i) {
+                at->whose[i].first = v.codes[i];
+                if (!v.values[i][k])
+                    at->whose[i].second.push_back(v.condition.empty() ? "all trials" : v.condition);
+            }
+        }
+    }
+
+    const run_analysis& run_;
+    std::vector<std::string> texts_ = {};
+    std::vector<undetermined> undetermined_ = {};
+};
+
+} // namespace
+
+const result* find_main(const std::vector<result>& results) noexcept
+{
+    const auto at = std::ranges::find(results, true, &result::is_main);
+    return at != results.end() ? &*at : nullptr;
+}
+
+bool has_table(const result_value& v)
+{
+    if (const auto* e = std::get_if<effect_list>(&v))
+        return std::ranges::any_of(e->effects, [](const auto& one) { return one.second && one.second->f; });
+    if (const auto* t = std::get_if<tukey_list>(&v))
+        return !t->pairs.empty() && t->pairs[0].q;
+    if (const auto* p = std::get_if<paired_list>(&v))
+        return !p->pairs.empty();
+    return v.index() > 2; // not null, a text or a number
+}
+
+std::vector<std::string> explain_missing(const run_analysis& r)
+{
+    return missing_figures(r).finish();
+}
+
+interval cut_to(const interval& i, const interval& possible)
+{
+    return {std::max(i.first, possible.first), std::min(i.second, possible.second)};
+}
+
+} // namespace tactor::study

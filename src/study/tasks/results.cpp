@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Parts of results that most tasks share.
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/words.hpp"
+#include "study/tasks/task.hpp"
+
+namespace tactor::study {
+
+bool task::is_enough(const run_outline&, const std::vector<trial>& trials) const
+{
+    return !trials.empty();
+}
+
+compared_person task::compare(const run_outline& o, const std::vector<trial>& trials) const
+{
+    return {measure(o, trials, sigmoid::normal).front().value};
+}
+
+compared task::test(const run_outline& o, std::span<const compared_person> people, std::string_view) const
+{
+    std::vector<double> there;
+    for (const compared_person& p : people)
+        if (p.value)
+            there.push_back(*p.value);
+    const main_comparison c = name_comparison(o);
+    const t_test t = quick_test_mean(there, c.against.value_or(0.0), c.rounding);
+    return {t.p, t.t.value_or(0.0) > 0.0};
+}
+
+std::string task::describe(const run_outline& o) const
+{
+    std::string text = fmt::format("{} ({})", facts_.trial, fmt::join(o.methods, ", "));
+    if (!o.vary.empty())
+        text += fmt::format("; {} of {}", o.vary, fmt::join(o.values, ", "));
+    if (o.standard)
+        text += fmt::format("; standard {}", plain_number(*o.standard));
+    return text;
+}
+
+std::string task::describe_procedure(const run_definition&, std::string_view&) const
+{
+    return {};
+}
+
+main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against)
+{
+    if (!against)
+        return {"no standard: nothing to compare with"};
+    return {fmt::format("{}, {} against {}", figure, test, *against), against};
+}
+
+named_texts describe_measured(const trial& t, const run_outline& own)
+{
+    named_texts all{{"method", own.methods[t.method_1]},
+                    {"response", fmt::format("{}", t.response)},
+                    {"signal", t.signal ? "1" : "0"},
+                    {"positive", t.positive ? "1" : "0"}};
+    if (!own.vary.empty() && t.signal)
+        all.emplace_back("value", fmt::format("{}", t.value));
+    return all;
+}
+
+} // namespace tactor::study

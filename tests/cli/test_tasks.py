@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""Every task that the tool knows, from its definition to its report.
+
+Run as: python3 test_tasks.py TOOL SOURCE_ROOT FOLDER_OF_SCHEMAS
+"""
+import csv
+import io
+import json
+import pathlib
+import re
+import sys
+
+import jsonschema
+from experiments import DESK, ExperimentTest
+from harness import main
+from pictures import Svg
+import check_r
+from studies import STUDIES, measures, toml
+
+SCHEMAS = pathlib.Path(sys.argv[3]).resolve()
+
+# Keys of a run of each task; its main figure in the JSON of a run, and a column of the trials for R.
+TASKS = {
+    "choose": (dict(attribute="similarity", trials=8), "preference.all.mean", "chosen"),
+    "rate": (dict(attribute="similarity", trials=8), "paired.difference", "rating"),
+    "identify": (dict(trials=8), "correct.soft.all.mean", "correct"),
+    "detect": (dict(catch=0.5, trials=16), "dprime.mean", "signal"),
+    "same-different": (dict(trials=16), "dprime.mean", "positive"),
+    "estimate": (dict(question="?", vary="length_mm", values=[5, 10, 20], trials=18), "exponent.mean", "estimate"),
+    "constant": (dict(question="?", vary="length_mm", values=[4, 8, 12, 16, 20], standard=12, trials_per_value=8), "psychometric.mean.pse", "value"),
+    "adaptive": (dict(question="?", vary="length_mm", procedure="quest", range=[4, 20], standard=12, trials=40), "psychometric.mean.pse", "value"),
+}
+WEST = toml("motion", "west", path="M20 0H0", duration=0.2)
+
+
+def define(task):
+    text = measures("desk.toml", toml("run", "only", task=task, **TASKS[task][0]), keys="gap_s = 0.1\n")
+    return text.replace("[[method]]", WEST + "[[method]]", 1)
+
+
+class EveryTask(ExperimentTest):
+    def valid(self, text):
+        """Returns JSON that its schema accepts."""
+        told = json.loads(text)
+        name = told["schema"].replace("/", "-")
+        schema = json.loads((SCHEMAS / f"{name}.schema.json").read_text(encoding="utf-8"))
+        self.assertEqual([e.message[:200] for e in jsonschema.Draft202012Validator(schema).iter_errors(told)], [])
+        return told
+
+    def test_the_table_has_all_tasks_of_the_tool_and_r_checks_each(self):
+        self.write("desk.toml", DESK)
+        self.write("x.toml", define("rate").replace('"rate"', '"none of them"'))
+        known = re.search(r"known values: (.*)\)", self.refused(2, "experiment", "x.toml", "--dry-run").stderr)[1]
+        self.assertEqual(known.split(", "), list(TASKS))
+        for name, make in STUDIES.items():
+            make(self.dir / name)
+        texts = [json.loads(p.read_text())["experiment"]["text"] for p in self.dir.glob("*/sourcedata/sub-*/session.json")]
+        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, *texts]), re.M))
+        self.assertEqual(checked, set(TASKS))
+
+    def test_from_definition_to_report(self):
+        self.write("desk.toml", DESK)
+        for task, (_, main_figure, column) in TASKS.items():
+            with self.subTest(task=task):
+                self.write("t.toml", define(task))
+                dry = self.valid(self.ok("experiment", "t.toml", "--dry-run", "--format", "json").stdout)
+                self.assertEqual([r["task"] for r in dry["runs"]], [task])
+                power = self.valid(self.ok("experiment", "t.toml", "--power", "3", "--studies", "2", "--simulate", "jnd=3", "--format", "json").stdout)
+                self.assertEqual(len(power["runs"][0]["power"]), 1)
+                for code in "123":
+                    self.simulate(code, definition="t.toml", folder=task, spec=f"seed={code},jnd=3,dprime=2,sigma=0.3")
+                told = self.valid(self.ok("analyze", task, "--format", "json").stdout)["runs"]["only"]
+                self.assertEqual((told["n"], told["trials"]), (3, 3 * len(dry["runs"][0]["trials"])))
+                mean = told
+                for key in main_figure.split("."):
+                    mean = mean[key]
+                summary = self.ok("analyze", task).stdout
+                self.assertRegex(summary, rf"(?m)^only: .* {mean:.2f} \(")
+                self.assertIn(f" {mean:.2f} ", self.ok("analyze", task, "--format", "tables", "-o", f"{task}.svg").stdout)
+                self.assertTrue(Svg(self.dir / f"{task}.svg").all("bars") + Svg(self.dir / f"{task}.svg").all("curves"))
+                wide = list(csv.DictReader(io.StringIO(self.ok("analyze", task, "--format", "wide").stdout)))
+                self.assertEqual(len(wide), 3)
+                self.assertNotIn("", [v for row in wide for v in row.values()])
+                _, rows = self.trials(task)
+                self.assertEqual(len(rows), told["trials"])
+                self.assertNotEqual({r[column] for r in rows}, {"n/a"})
+                report = self.ok("report", task).stdout
+                self.assertIn(f"**only** ({task}): ", report)
+                self.assertNotIn("not recorded", report.partition("## Apparatus")[2])
+                self.assertIn(f" {mean:.4g} ", report.partition("### only")[2])
+
+
+if __name__ == "__main__":
+    main()
