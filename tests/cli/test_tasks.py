@@ -75,7 +75,7 @@ class EveryTask(ExperimentTest):
                 for key in main_figure.split("."):
                     mean = mean[key]
                 summary = self.ok("analyze", task).stdout
-                self.assertRegex(summary, rf"(?m)^only: .* {mean:.2f} \(")
+                self.assertRegex(summary, rf"(?m)^only: .* {mean:.2f}( \(|$)")
                 self.assertIn(f" {mean:.2f} ", self.ok("analyze", task, "--format", "tables", "-o", f"{task}.svg").stdout)
                 self.assertTrue(Svg(self.dir / f"{task}.svg").all("bars") + Svg(self.dir / f"{task}.svg").all("curves"))
                 wide = list(csv.DictReader(io.StringIO(self.ok("analyze", task, "--format", "wide").stdout)))
@@ -86,8 +86,8 @@ class EveryTask(ExperimentTest):
                 self.assertNotEqual({r[column] for r in rows}, {"n/a"})
                 report = self.ok("report", task).stdout
                 self.assertIn(f"**only** ({task}): ", report)
-                self.assertNotIn("not recorded", report.partition("## Apparatus")[2])
-                self.assertIn(f" {mean:.4g} ", report.partition("### only")[2])
+                self.assertNotIn("not recorded", report.partition("## Stimuli")[2].partition("### As it was held")[0] + report.partition("## Data")[2])
+                self.assertRegex(report.partition("### only")[2], rf" {mean:.4g}[ ,]")
 
 
 if __name__ == "__main__":

@@ -117,7 +117,7 @@ std::string paired_text(const study::t_test& t)
     return text;
 }
 
-// Returns the main figure of a run in words: "NAME MEAN (INTERVAL), TEST".
+// Writes the main figure of a run on one line: "NAME MEAN (INTERVAL), P".
 class summary {
 public:
     explicit summary(const study::run_outline& run) : run_(run) {}
@@ -127,12 +127,12 @@ public:
         const study::t_test& t = v.means.front().test;
         return join((v.method.empty() ? "" : v.method + " ") + v.axis, t,
                     t.ci ? std::optional(study::cut_to(*t.ci, v.possible)) : std::nullopt, usual_decimals,
-                    v.against && t.t ? t_text(t) : "");
+                    v.against && t.t ? p_clause(t.p) : "");
     }
     std::string operator()(const study::method_difference& v) const
     {
         return join(fmt::format("{} - {}", v.last, v.first), v.test, v.test.ci, usual_decimals,
-                    v.test.t ? t_text(v.test) : "");
+                    v.test.t ? p_clause(v.test.p) : "");
     }
     std::string operator()(const study::psychometric_functions& v) const
     {
@@ -163,7 +163,10 @@ private:
     static std::string join(const study::measured_figure& f, int decimals,
                             const std::optional<study::difference_test>& ratio = {})
     {
-        return join(figure_name(f), f.test, f.test.ci, decimals, test_text(f, ratio));
+        return join(figure_name(f), f.test, f.test.ci, decimals,
+                    ratio                   ? ratio_text(*ratio)
+                    : f.test.t && f.against ? p_clause(f.test.p)
+                                            : "");
     }
 
     const study::run_outline& run_;
@@ -463,7 +466,7 @@ void print_summary(const study::analysis& a)
                                         : std::visit(summary(r.run), main->value));
     }
     if (shown < a.runs.size())
-        fmt::print("and {} more: --format tables\n", counted(a.runs.size() - shown, "result"));
+        fmt::print("and {}: --format tables\n", counted(a.runs.size() - shown, "more result"));
 }
 
 void print_tables(const study::analysis& a)
@@ -560,7 +563,9 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
         text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // quotes it
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
             const study::run_outline& own = find_run(d, i, k);
-            const auto values = task_in(own).measure(own, d.data[i][k].trials, kind);
+            std::vector<study::named_value> values;
+            if (!own.motions.empty()) // else the group lacks the run
+                values = task_in(own).measure(own, d.data[i][k].trials, kind);
             for (const study::named_value& column : columns[k]) {
                 const auto at = std::ranges::find(values, column.name, &study::named_value::name);
                 text += at != values.end() && at->value ? fmt::format(",{}", *at->value) : ",";

@@ -17,8 +17,11 @@ class missing_figures {
 public:
     explicit missing_figures(const run_analysis& r) : run_(r)
     {
-        for (const result& row : r.results)
-            std::visit(*this, row.value);
+        for (const bool of_pairs : {false, true}) // pairs come last
+            for (const result& row : r.results)
+                if (of_pairs == (std::holds_alternative<tukey_list>(row.value) ||
+                                 std::holds_alternative<paired_list>(row.value)))
+                    std::visit(*this, row.value);
     }
 
     std::vector<std::string> finish()
