@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <new>
 #include <optional>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -40,7 +39,6 @@ namespace {
 constexpr std::size_t most_file_bytes = 64U << 20;
 
 using net::json;
-using options::option;
 
 // Strokes that were read, and the text if it is TOML with the same contents.
 struct read_file {
@@ -218,51 +216,6 @@ bool is_recording(const options::option_values& s)
     return s.plan.wave.kind == waveform_kind::recording;
 }
 
-// Returns true for an option that put_options() writes. The texts of strokes must not name recordings.
-bool is_in_file(const option& o, const options::option_values& s)
-{
-    constexpr std::uint64_t kept = options::in_stroke | options::live; // others are in the strokes' times
-    const bool is_recorded = o.name == "waveform" || o.name.starts_with("texture");
-    return ((o.where & kept) == kept && !(is_recorded && is_recording(s))) || o.name == "am";
-}
-
-// Returns the options for a command: the strokes contain their times, and the array has a name.
-options::option_values for_command(options::option_values s, const service_options& o)
-{
-    constexpr unsigned usual_rate = 48000;
-    const auto value_if = [](bool is_set, auto v) { return is_set ? std::optional(v) : std::nullopt; };
-    s.array_name = value_if(!o.array_name.empty(), o.array_name);
-    s.config_file = value_if(!o.config_name.empty(), o.config_name);
-    s.duration_s.reset();
-    s.speed_mm_s.reset();
-    s.intensity_max.reset();
-    s.rate = value_if(s.render.rate != usual_rate, s.render.rate);
-    s.channels = value_if(s.render.channels > o.plans.tactors.channels(), s.render.channels);
-    return s;
-}
-
-std::string value_text(const options::value& v)
-{
-    if (const auto* number = std::get_if<double>(&v))
-        return fmt::format(" {}", *number);
-    if (const auto* text = std::get_if<std::string>(&v))
-        return " " + quote_word(*text);
-    return {}; // a flag has no value
-}
-
-// Returns true for a value that the command must have. The level is always written, because a configuration
-// may set another one.
-bool is_needed(const option& o, const options::option_values& s, const options::value& v)
-{
-    static const options::option_values usual;
-    const bool is_off = std::holds_alternative<std::monostate>(v) || v == options::value(false);
-    const bool is_used = o.used == nullptr || o.used(s);
-    if (o.name == "level_dbfs")
-        return !s.render.sl_db;
-    const bool was_given = s.gives(o) && (o.where & options::by_client) != 0;
-    return !is_off && is_used && (was_given || v != o.to.get(usual));
-}
-
 // Adds to a stroke the options that differ from the built-in ones or that a client set, if stroke files have
 // keys for them and the stroke does not set them itself.
 void put_options(stroke& k, const options::option_values& s)
@@ -285,68 +238,18 @@ void put_options(stroke& k, const options::option_values& s)
     put(k.sound.am, "am", p.am, usual.am);
 }
 
-// Options with which a command of the tool does the same.
-struct command_options {
-    std::string words = {};                 ///< " --array palm-3x3 --level-dbfs -15"
-    std::vector<std::string> defaults = {}; ///< lines of [defaults], for options that only a file sets
-};
-
-// `file_says`: put_options() has written its part.
-command_options find_options(const options::option_values& w, options::place command, bool file_says)
-{
-    command_options all;
-    for (const option& o : options::all()) {
-        const options::value v = o.to.get(w);
-        if ((o.where & command) == 0 || (file_says && is_in_file(o, w)) || !is_needed(o, w, v))
-            continue;
-        if ((o.where & options::file_only) != 0)
-            all.defaults.push_back(fmt::format("{} ={}", options::dashed(o), value_text(v)));
-        else
-            all.words += fmt::format(" --{}{}", options::dashed(o), value_text(v));
-    }
-    return all;
-}
-
-// Returns the command that writes an array file with these lines of [defaults], and names it as the array.
-std::string write_defaults(options::option_values& w, const std::string& file,
-                           const std::vector<std::string>& lines)
-{
-    std::vector<std::string> text;
-    if (w.array_name) {
-        const auto presets = array_presets();
-        const bool is_preset = std::find(presets.begin(), presets.end(), *w.array_name) != presets.end();
-        text = {"[array]",
-                fmt::format("{} = {}", is_preset ? "preset" : "file", detail::toml_string(*w.array_name))};
-    }
-    text.emplace_back("[defaults]");
-    text.insert(text.end(), lines.begin(), lines.end());
-    std::string command = "printf '%s\\n'";
-    for (const std::string& line : text)
-        command += " " + quote_word(line);
-    w.array_name = file;
-    return fmt::format("{} > {} && ", command, quote_word(file));
-}
-
-// Kind of a file, and the command of the tool that makes or plays it. `strokes`: the format of a stroke file.
+// Kind of a file.
 struct file_kind {
     std::string_view extension;
     std::string_view mime;
-    std::string_view command;
-    options::place place;
-    std::string_view reads; ///< extension of the file that it reads
-    std::string_view into;  ///< arguments before the file that it writes
-    std::string_view writes;
     std::optional<plot::file_format> picture = {};
     const detail::stroke_format* strokes = nullptr;
 };
 
-constexpr std::array other_kinds{
-    file_kind{"wav", "audio/wav", "render", options::on_render, "toml", "-o", "wav"},
-    file_kind{"json", "application/json", "plan", options::on_plan, "toml", "--format json >", "json"},
-    file_kind{"svg", "image/svg+xml", "plot", options::on_plot, "toml", "-o", "svg", plot::file_format::svg},
-    file_kind{"png", "image/png", "plot", options::on_plot, "toml", "-o", "png", plot::file_format::png},
-    file_kind{"pdf", "application/pdf", "plot", options::on_plot, "toml", "-o", "pdf",
-              plot::file_format::pdf}};
+constexpr std::array other_kinds{file_kind{"wav", "audio/wav"}, file_kind{"json", "application/json"},
+                                 file_kind{"svg", "image/svg+xml", plot::file_format::svg},
+                                 file_kind{"png", "image/png", plot::file_format::png},
+                                 file_kind{"pdf", "application/pdf", plot::file_format::pdf}};
 
 // Returns all kinds of file: the formats of strokes that are written come first.
 const std::vector<file_kind>& file_kinds()
@@ -355,8 +258,7 @@ const std::vector<file_kind>& file_kinds()
         std::vector<file_kind> all;
         for (const detail::stroke_format* f : detail::stroke_formats())
             if (f->write != nullptr)
-                all.push_back({f->name, f->media_type, "render", options::on_render, f->name, "-o", "wav",
-                               std::nullopt, f});
+                all.push_back({f->name, f->media_type, std::nullopt, f});
         all.insert(all.end(), other_kinds.begin(), other_kinds.end());
         return all;
     }();
@@ -440,20 +342,6 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
     return wav::bytes(score(o.plans.tactors, p.plans, p.render), format, true);
 }
 
-std::string command_line(const service_options& o, const file_kind& kind, const std::string& name,
-                         const options::option_values& s)
-{
-    options::option_values w = for_command(s, o);
-    const bool file_says = kind.reads == "toml";
-    std::string before;
-    if (const auto lines = find_options(w, kind.place, file_says).defaults; !lines.empty())
-        before = write_defaults(w, name + ".array.toml", lines);
-    return fmt::format("{}tactor {} {}{} {} {}", before, kind.command,
-                       quote_word(fmt::format("{}.{}", name, kind.reads)),
-                       find_options(w, kind.place, file_says).words, kind.into,
-                       quote_word(fmt::format("{}.{}", name, kind.writes)));
-}
-
 // Makes the bytes of a file. Writes the strokes and reads them again, so that it has the digits that the tool
 // will read.
 std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
@@ -522,26 +410,13 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
         const std::string bytes = make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);
         if (bytes.size() > most_file_bytes)
             too_large();
-        std::string out = fmt::format(R"({{"name":{},"mime":"{}","command":{},"base64":")",
-                                      net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime,
-                                      net::json_line(command_line(o, kind, name, s)));
+        std::string out = fmt::format(R"({{"name":{},"mime":"{}","base64":")",
+                                      net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime);
         net::append_base64(out, bytes);
         return out + "\"}";
     } catch (...) {
         throw fault_error(current_fault(source));
     }
-}
-
-std::string quote_word(std::string_view word)
-{
-    constexpr std::string_view plain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,+=@%";
-    if (!word.empty() && word.find_first_not_of(plain) == word.npos)
-        return std::string(word);
-    std::string quoted = "'";
-    for (const char c : word)
-        quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    return quoted + "'";
 }
 
 std::string make_file_name(std::string_view name)

@@ -22,9 +22,6 @@ std::string import_strokes(const planning& with, const layout& faces, const net:
 std::string export_strokes(const service_options& o, const layout& faces, const net::json& params,
                            const go_on_check& go_on);
 
-/// Quotes a word for a shell, if necessary.
-std::string quote_word(std::string_view word);
-
 /// Makes a name for a file from valid UTF-8: 1 to 100 bytes of letters, digits, blanks, - and _. It does not
 /// begin with -, and does not begin or end with a blank. Other characters become _; an empty name becomes
 /// "stroke". Characters beyond ASCII are letters, except those that has_controls() finds.

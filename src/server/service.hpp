@@ -67,9 +67,6 @@ struct service_options {
     std::string version = {};
     std::string token = {}; ///< token that TCP clients need; empty: none
     net::reply_json array = {};
-    /// Name of the array in the tool's command line, for exported files; empty: none.
-    std::string array_name = {}; ///< preset or file
-    std::string config_name = {};
     /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond `most_bytes`.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.

@@ -4,8 +4,6 @@ import base64
 import itertools
 import json
 import math
-import shlex
-import subprocess
 
 from harness import ROOT, Wav, main
 from serving import ServeTest
@@ -142,24 +140,22 @@ class Import(ServeTest):
 
 class Export(ServeTest):
     def export(self, client, kind, **params):
-        """Exports and keeps the file; returns its bytes and the command."""
+        """Exports and keeps the file; returns its bytes."""
         r = client.ok("export", **params, **{"as": kind})
-        self.assertEqual(list(r), ["name", "mime", "command", "base64"])
+        self.assertEqual(list(r), ["name", "mime", "base64"])
         data = base64.b64decode(r["base64"], validate=True)
         self.write(r["name"], data)
-        return data, r["command"]
+        return data
 
-    def run_line(self, line):
-        """Runs a command line of the tool as a shell does, and returns the bytes of the file that it writes."""
-        before, _, line = line.rpartition(" && ")
-        subprocess.run(before or "true", shell=True, cwd=self.dir, check=True)
-        words = shlex.split(line)
-        self.assertEqual(words[0], "tactor")
-        if ">" in words:
-            return self.ok(*words[1:words.index(">")]).stdout.encode()
-        (self.dir / words[-1]).unlink(missing_ok=True)
-        self.ok(*words[1:])
-        return (self.dir / words[-1]).read_bytes()
+    def made(self, command, stroke, output, *args):
+        """Returns the bytes of the file that a command of the tool makes of a stroke file."""
+        self.ok(command, stroke, *args, "-o", f"made-{output}")
+        return (self.dir / f"made-{output}").read_bytes()
+
+    def words(self, options):
+        """Returns the options of a request that the exported stroke file does not have, as the tool's."""
+        in_file = {"algorithm", "phantom", "faces", "soa", "burst", "carrier", "waveform", "noise_seed", "am", "duration", "speed"}
+        return [word for name, value in options.items() if name not in in_file for word in (f"--{name.replace('_', '-')}", value)]
 
     def test_the_tool_makes_the_same_sound_of_the_exported_strokes(self):
         c = self.serve().client()
@@ -175,19 +171,18 @@ class Export(ServeTest):
                  {"compensate": "low-speed", "sigma_mm": 8, "phantom": "barycentric", "outside": "clamp", "slope": 0.3, "soa": 0.06})
         for params, options in zip(strokes, itertools.cycle(every)):
             with self.subTest(params=params, options=options):
-                wav, line = self.export(c, "wav", **params, options=options, name="a take-1")
-                toml, same = self.export(c, "toml", **params, options=options, name="a take-1")
-                self.assertEqual(line, same)
-                self.assertEqual(self.run_line(line), wav)
+                wav = self.export(c, "wav", **params, options=options, name="a take-1")
+                toml = self.export(c, "toml", **params, options=options, name="a take-1")
+                self.assertEqual(self.made("render", "a take-1.toml", "a.wav", *self.words(options)), wav)
                 # The strokes are exact: the exported file sounds like what it was made of.
-                again, _ = self.export(c, "wav", toml=toml.decode(), options=options, name="again")
+                again = self.export(c, "wav", toml=toml.decode(), options=options, name="again")
                 self.assertEqual(again, wav)
 
     def test_what_has_its_digits_sounds_as_it_is_played(self):
         c = self.serve().client()
         for params, arguments in (({"stroke": "park2016-3"}, ("park2016-3",)), ({"csv": CSV}, (self.write("b.csv", CSV),)),
                                   ({"path": "M 0 10 C 20 -5 20 45 40 30"}, ("--path", "M 0 10 C 20 -5 20 45 40 30"))):
-            wav, _ = self.export(c, "wav", **params)
+            wav = self.export(c, "wav", **params)
             self.ok("render", *arguments, "-o", "c.wav")
             self.assertEqual((self.dir / "c.wav").read_bytes(), wav)
 
@@ -199,52 +194,41 @@ class Export(ServeTest):
         told = c.ok("play", **take)
         c.await_end(told["stroke"])
         sample_format = c.ok("hello")["stream"]["format"]
-        file, line = self.export(c, "toml", name="drawn", **take)
-        self.write("drawn.toml", file.decode())
+        self.export(c, "toml", name="drawn", **take)
         server.terminate()
-        self.run_line(line.replace(" -o ", f" --sample-format {sample_format} -o "))
+        self.ok("render", "drawn.toml", "--outside", "clamp", "--level-dbfs", -15, "--sample-format", sample_format, "-o", "drawn.wav")
         samples = Wav(self.dir / "drawn.wav").data
         self.assertGreater(sum(map(bool, samples)), 10000)
         self.assertIn(samples, (self.dir / "played.raw").read_bytes())
 
-    def test_a_file_says_its_options_and_the_command_the_rest(self):
+    def test_a_file_says_the_options_that_it_has_keys_for(self):
         c = self.serve().client()
-        toml, line = self.export(c, "toml", path="M 0 0 L 40 40", name="up",
-                                 options={"algorithm": "continuous", "soa": 0.06, "level_dbfs": -15, "outside": "error"})
+        toml = self.export(c, "toml", path="M 0 0 L 40 40", name="up",
+                           options={"algorithm": "continuous", "soa": 0.06, "level_dbfs": -15, "outside": "error"})
         self.assertEqual(toml.decode(), '[stroke]\nname = "path"\npath = "M 0 0 L 40 40"\nspeed_mm_s = 60\n'
                                         'algorithm = "continuous"\nsoa_s = 0.06\n')
-        self.assertEqual(line, "tactor render up.toml --array palm-3x3 --outside error --level-dbfs -15 -o up.wav")
-        # Options that only a file sets are in an array file, which the command writes.
-        wav, line = self.export(c, "wav", path="M 0 0 L 40 40", name="an up", options={"slope": 0.4, "intercept": 0.03, "soa": 0.05, "intensity_scale": "linear"})
-        self.assertEqual(line, "printf '%s\\n' '[array]' 'preset = \"palm-3x3\"' '[defaults]' 'slope = 0.4' 'intercept = 0.03' > 'an up.array.toml' && "
-                               "tactor render 'an up.toml' --array 'an up.array.toml' --intensity-scale linear --level-dbfs -12 -o 'an up.wav'")
-        self.export(c, "toml", path="M 0 0 L 40 40", name="an up", options={"soa": 0.05, "slope": 0.4, "intercept": 0.03})
-        self.assertEqual(self.run_line(line), wav)
         # A stroke's own key comes first.
-        toml, _ = self.export(c, "toml", toml='[stroke]\npath = "M 0 0 L 40 40"\nalgorithm = "park2016"\n',
-                              options={"algorithm": "continuous"})
+        toml = self.export(c, "toml", toml='[stroke]\npath = "M 0 0 L 40 40"\nalgorithm = "park2016"\n',
+                           options={"algorithm": "continuous"})
         self.assertIn('algorithm = "park2016"', toml.decode())
         r = c.ok("export", points=[[0, 0, 0], [1, 40, 40]], **{"as": "csv"}, options={"algorithm": "continuous"}, name="two words")
         self.assertEqual(base64.b64decode(r["base64"]), b"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,40,40,1\n")
         self.assertEqual((r["name"], r["mime"]), ("two words.csv", "text/csv"))
-        self.assertEqual(r["command"],
-                         "tactor render 'two words.csv' --array palm-3x3 --algorithm continuous --level-dbfs -12 -o 'two words.wav'")
         self.assertEqual(c.ok("export", stroke="tap", **{"as": "toml"})["name"], "tap.toml")
         self.assertEqual(c.ok("export", toml='[stroke]\nname = "-a/b\\"\u00e9 "\npath = "M 0 0 L 9 9"\n',
                               **{"as": "toml"})["name"], "_a_b_\u00e9.toml")
 
-    def test_the_owner_s_options_marks_and_limits_are_in_line_and_sound(self):
-        for config, more in (('[array]\nname = "desk"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
-                              '[output]\nrate = 44100\nchannels = 12\n[defaults]\nalgorithm = "continuous"\nlevel-dbfs = -30\n'
-                              'speed = 20\nobserver = "low-speed"\nsigma-mm = 8\n', f"--array {self.dir}/serve.toml --level-dbfs -30 --rate 44100 --channels 12 -o up.wav"),
-                             ('[output]\nchannels = 10\n[sync]\nchannel = 9\n[serve]\nmax_level_dbfs = -12\n'
-                              '[defaults]\nlevel-dbfs = -6\n', f"--array palm-3x3 --config {self.dir}/serve.toml --level-dbfs -12 ")):
+    def test_the_owner_s_options_marks_and_limits_are_in_the_sound(self):
+        for config, *args in (('[array]\nname = "desk"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
+                               '[output]\nrate = 44100\nchannels = 12\n[defaults]\nalgorithm = "continuous"\nlevel-dbfs = -30\n'
+                               'speed = 20\nobserver = "low-speed"\nsigma-mm = 8\n', "--array", "serve.toml"),
+                              ('[output]\nchannels = 10\n[sync]\nchannel = 9\n[serve]\nmax_level_dbfs = -12\n'
+                               '[defaults]\nlevel-dbfs = -6\n', "--config", "serve.toml", "--level-dbfs", -12)):
             s = self.serve(config=config)
             c = s.client()
-            wav, line = self.export(c, "wav", path="M 0 0 L 40 40", name="up")
-            self.assertIn(f"tactor render up.toml {more}", line)
+            wav = self.export(c, "wav", path="M 0 0 L 40 40", name="up")
             self.export(c, "toml", path="M 0 0 L 40 40", name="up")
-            self.assertEqual(self.run_line(line), wav)
+            self.assertEqual(self.made("render", "up.toml", "up.wav", *args), wav)
             s.terminate()
         self.assertEqual(max(x[9] for x in Wav(self.dir / "up.wav").samples()), 1)
 
@@ -253,14 +237,14 @@ class Export(ServeTest):
         for params in ({"stroke": "park2016-3", "options": {"soa": 0.06}}, {"toml": SEVERAL}):
             self.export(c, "toml", **params, name="take")
             for kind, mark in (("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")):
-                picture, line = self.export(c, kind, **params, name="take")
+                picture = self.export(c, kind, **params, name="take")
                 self.assertTrue(picture.startswith(mark))
-                self.assertEqual(self.run_line(line), picture)
+                self.assertEqual(self.made("plot", "take.toml", f"take.{kind}"), picture)
         params = {"path": "M 0 0 L 40 30", "options": {"phantom": "barycentric"}}
-        text, line = self.export(c, "json", **params)
+        text = self.export(c, "json", **params)
         self.assertEqual(json.loads(text), c.ok("plan", **params))
-        self.export(c, "toml", **params)
-        self.assertEqual(json.loads(self.run_line(line))["bursts"], json.loads(text)["bursts"])
+        self.export(c, "toml", **params, name="path")
+        self.assertEqual(self.plan("path.toml")["bursts"], json.loads(text)["bursts"])
 
     def test_bad_parameters_are_named(self):
         c = self.serve(config='[serve]\nmax_level_dbfs = -12\nmax_stroke_s = 100\n').client()

@@ -100,8 +100,6 @@ class Looks(Drawn):
         for name in ("device", "others", "share", "save", "keys"):
             p.value(f"document.querySelector('#p-{name}').showPopover()")
             p.until(f"document.querySelector('#p-{name}').matches(':popover-open')")
-            if name == "save":
-                p.until("document.querySelector('#command').textContent.startsWith('tactor')")
             self.look(p, f"popover-{name}")
         p.value("document.querySelector('#p-keys').hidePopover(); document.querySelector('.more-button').click()")
         self.look(p, "popover-take", SIZES[:1])

@@ -113,12 +113,4 @@ TEST_CASE("names of files are letters, digits, blanks, - and _")
     CHECK(make_file_name(std::string(99, 'x') + "\u7dda") == std::string(99, 'x'));
 }
 
-TEST_CASE("words are quoted for a shell")
-{
-    CHECK(server::quote_word("noise:50-300") == "noise:50-300");
-    CHECK(server::quote_word("two words") == "'two words'");
-    CHECK(server::quote_word("it's $HOME") == "'it'\\''s $HOME'");
-    CHECK(server::quote_word("") == "''");
-}
-
 } // namespace service_files_test

@@ -294,9 +294,6 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
         if (value)
             service.array[key] = *value;
     service.plans = make_planning(s, e, highest.dbfs, service.limits);
-    service.array_name = e.array_file.empty() ? e.tactors.name : e.array_file;
-    if (service.plans.owner.render.marker_channel) // the tool has no option for it
-        service.config_name = e.config_name;
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);

@@ -115,19 +115,9 @@ function show_kinds() {
 show_kinds();
 let shown = null; // the greeting whose formats the list has
 on_change(() => { if (state.hello !== shown) { shown = state.hello; show_kinds(); } }, "link");
-listen("p-save", "beforetoggle", async e => {
-  if (e.newState !== "open") return;
+listen("p-save", "beforetoggle", () => {
   const take = current_take();
   all_of("#save-list [data-kind]").forEach(b => show_only_if(b, !(has_only_points(b.dataset.kind) && take?.strokes.length > 1)));
-  // Breaks lines between words, not after dashes in them.
-  const show_words = (id, line) => by_id(id).replaceChildren(...line.split(" ").flatMap((w, i) => [i > 0 && " ", make("span", {}, w)]).filter(Boolean));
-  const show = (render, play = render) => { show_words("command", render); show_words("play-line", play); };
-  if (!take?.strokes.length) return show("There is nothing to save yet.");
-  show("…");
-  try {
-    const {command} = await export_as(take, "toml");
-    show(command, command.replace(/^(tactor) render (.*) -o .*/, "$1 play $2"));
-  } catch (x) { show(fault_sentence(x)); }
 });
 async function copy(id) {
   try { await navigator.clipboard.writeText(by_id(id).textContent); say("Copied"); } catch {
