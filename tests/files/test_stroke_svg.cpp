@@ -329,8 +329,8 @@ TEST_CASE("equal shapes in one place are said")
 {
     const std::string d = "<path d='M 0 0 C 1 2 3 4 5 6'/>";
     CHECK(parse("<svg>" + d + d + d + "</svg>").front().warnings ==
-          std::vector<std::string>{"a.svg:1:38: <path> has the same shape as an earlier element, as does 1 "
-                                   "element more: it plays again"});
+          std::vector<std::string>{"a.svg:1:38: <path> has the same shape as an earlier element (and 1 "
+                                   "element more): it plays again"});
     CHECK(parse("<svg>" + d + "<g transform='translate(1)'>" + d + "</g></svg>").front().warnings.empty());
     CHECK(parse("<svg>" + d + "<path data-start-s='3' d='M 0 0 C 1 2 3 4 5 6'/></svg>")
               .front()
@@ -346,16 +346,6 @@ TEST_CASE("shapes ease")
     CHECK(s[0].motion.duration_s() == 2.0);
     CHECK(s[0].motion.position(0.5).x_mm == doctest::Approx(40.0 * 0.103515625));
     CHECK(s[1].motion.position(0.25 * s[1].motion.duration_s()).x_mm == doctest::Approx(10.0));
-}
-
-TEST_CASE("a line's width and opacity are no intensity, and a drawing that asks for it is told")
-{
-    const auto all = tactor::parse_strokes_svg("<svg><path d='M 0 0 H 9' stroke-width='4' opacity='0.5' "
-                                               "data-intensity-from='stroke-width'/></svg>",
-                                               "d.svg");
-    CHECK(all.at(0).motion.intensity(0.0) == 1.0);
-    REQUIRE(all.at(0).warnings.size() == 1);
-    CHECK(all.at(0).warnings[0].find("data-intensity-from") != std::string::npos);
 }
 
 } // namespace stroke_svg_test

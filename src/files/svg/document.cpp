@@ -406,23 +406,23 @@ std::optional<double> svg_document::number(pugi::xml_node n, const char* attribu
 }
 
 void svg_document::note(std::optional<std::size_t> offset, std::string_view key, std::string text,
-                        const char* more, const char* end) const
+                        const char* end) const
 {
     const auto [at, first] = notes_.try_emplace(std::string(key));
     if (first)
-        at->second = {offset, std::move(text), more, end};
+        at->second = {offset, std::move(text), end};
     ++at->second.elements;
 }
 
 void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why) const
 {
-    note(offset(n), what, fmt::format("{} of {} is not supported{}", what, called(n), why), ", nor of",
+    note(offset(n), what, fmt::format("{} of {} is not supported{}", what, called(n), why),
          ": a shape that it hides or moves plays as if it were not there");
 }
 
 void svg_document::note_other_file(pugi::xml_node n, std::string_view what) const
 {
-    note(offset(n), "stylesheet", fmt::format("{} names another file, which is not read", what), ", as do",
+    note(offset(n), "stylesheet", fmt::format("{} names another file, which is not read", what),
          ": a shape that its rules hide or move plays as if they were not there (put the rules into the "
          "drawing)");
 }
@@ -455,7 +455,7 @@ void svg_document::note_rules(pugi::xml_node style)
                 if (property < svg_paints || notes_.contains("style"))
                     return;
                 note(offset(style), "style",
-                     fmt::format("{} in {} is not supported", svg_properties[property], called(style)), "",
+                     fmt::format("{} in {} is not supported", svg_properties[property], called(style)),
                      ": a shape that it hides or moves plays as if it were not there (export presentation "
                      "attributes)");
             });
@@ -488,11 +488,9 @@ std::vector<std::string> svg_document::warnings() const
 {
     std::vector<std::string> all;
     for (const auto& [key, n] : notes_)
-        all.push_back(fmt::format("{}: {}{}{}", place(n.offset).text(), n.text,
-                                  n.elements == 1
-                                      ? std::string()
-                                      : fmt::format("{} {} more", n.more, counted(n.elements - 1, "element")),
-                                  n.end));
+        all.push_back(fmt::format(
+            "{}: {}{}{}", place(n.offset).text(), n.text,
+            n.elements == 1 ? "" : fmt::format(" (and {} more)", counted(n.elements - 1, "element")), n.end));
     return all;
 }
 

@@ -141,8 +141,8 @@ public:
     std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
 
     /// Adds a warning: the place, `text` and `end`. If several have the same key, only the first is shown; it
-    /// counts the others after `more`.
-    void note(std::optional<std::size_t> offset, std::string_view key, std::string text, const char* more,
+    /// counts the others.
+    void note(std::optional<std::size_t> offset, std::string_view key, std::string text,
               const char* end) const;
     void note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why = {}) const;
     std::vector<std::string> warnings() const;
@@ -151,7 +151,6 @@ private:
     struct noted {
         std::optional<std::size_t> offset;
         std::string text;
-        const char* more = ""; ///< ", nor of"
         const char* end = "";
         std::size_t elements = 0;
     };

@@ -120,7 +120,7 @@ public:
             throw doc_.to_error(*omission_);
         if (hidden_)
             doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
-                      "remove display, visibility and styles such as &st0;");
+                      "remove display and visibility");
         throw doc_.to_error(
             {std::nullopt, "it has no shape",
              "use path, line, polyline, polygon, rect, circle or ellipse; convert text to paths"});
@@ -209,7 +209,7 @@ private:
             if (!c.attribute("systemLanguage"))
                 return c;
             doc_.note(doc_.offset(c), "systemLanguage",
-                      fmt::format("systemLanguage of {} is not supported", doc_.called(c)), ", nor of",
+                      fmt::format("systemLanguage of {} is not supported", doc_.called(c)),
                       ": a <switch> plays its first shape without one");
             if (!first)
                 first = c;
@@ -267,7 +267,7 @@ private:
 
     void note_omission(const omission& f) const
     {
-        doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), ", and", "");
+        doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), "");
     }
 
     // Notes an element that browsers draw although it is not a shape. Elements of other programs have a
@@ -280,7 +280,7 @@ private:
                          "linearGradient", "radialGradient", "style", "script", "title", "desc", "metadata"});
         if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos && !silent &&
             (tag == "svg" || svg_tag(n.parent()) != "switch") && !is_hidden(n, svg_style(n)))
-            doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.called(n)), ", nor",
+            doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.called(n)),
                       ": only shapes do, and text converted to paths");
     }
 
@@ -291,24 +291,13 @@ private:
             hidden_ = n;
     }
 
-    void note_unknown(xml_node n, const char* property, std::string_view value) const
-    {
-        doc_.note(doc_.offset(n), property,
-                  fmt::format("{} of {} is unknown ({})", property, doc_.called(n), detail::quoted(value)),
-                  ", nor of", ": the element counts as hidden");
-    }
-
-    // Returns true if display is "none". Also returns true, with a note, if display is not understood.
     bool is_hidden(xml_node n, const svg_style& style) const
     {
         const std::string_view display = style.value("display");
-        if (display.empty() && doc_.hides(n))
-            return true;
-        if (is_one(display, {"", "inline", "block", "inline-block", "flex", "grid", "inherit", "initial"}))
-            return false;
-        if (display != "none")
-            note_unknown(n, "display", display);
-        return true;
+        if (!is_one(display,
+                    {"", "none", "inline", "block", "inline-block", "flex", "grid", "inherit", "initial"}))
+            doc_.note_unfollowed(n, "display", fmt::format(" ({})", detail::quoted(display)));
+        return display == "none" || (display.empty() && doc_.hides(n));
     }
 
     // Applies the element's own transform, visibility, paint and data-...
@@ -320,11 +309,10 @@ private:
         else if (const auto own = doc_.follow(n, "transform", transform, detail::parse_svg_transform))
             s.to_mm = s.to_mm * *own;
         const std::string_view visibility = style.value("visibility");
-        if (!is_one(visibility, {"", "inherit"})) {
+        if (is_one(visibility, {"visible", "initial", "hidden", "collapse"}))
             s.visible = is_one(visibility, {"visible", "initial"});
-            if (!s.visible && !is_one(visibility, {"hidden", "collapse"}))
-                note_unknown(n, "visibility", visibility);
-        }
+        else if (!is_one(visibility, {"", "inherit"}))
+            doc_.note_unfollowed(n, "visibility", fmt::format(" ({})", detail::quoted(visibility)));
         s.clear = s.clear || is_zero(style.value("opacity"));
         const auto set = [&style](const char* property, bool& to, bool (*is)(std::string_view)) {
             if (const auto text = style.value(property); !is_one(text, {"", "inherit"}))
@@ -350,10 +338,6 @@ private:
                           "linear, in-out or minimum-jerk");
             s.easing = *k;
         }
-        if (n.attribute("data-intensity-from"))
-            doc_.note(doc_.offset(n), "data-intensity-from",
-                      fmt::format("data-intensity-from of {} is not supported", doc_.called(n)), ", nor of",
-                      ": use data-intensity for the strength of a line");
     }
 
     void use(xml_node n, scope s)
@@ -406,12 +390,12 @@ private:
         keep_drawn(n, paths);
         if (!looks_.insert(look).second && !n.attribute("data-start-s"))
             doc_.note(doc_.offset(n), "twice",
-                      fmt::format("{} has the same shape as an earlier element", doc_.called(n)), ", as does",
+                      fmt::format("{} has the same shape as an earlier element", doc_.called(n)),
                       ": it plays again");
         if (!s.is_painted() && !doc_.has_rules())
             doc_.note(doc_.offset(n), "unpainted",
                       fmt::format("{} has neither fill nor stroke, or no opacity", doc_.called(n)),
-                      ", nor has", ": it still plays");
+                      ": it still plays");
         add(n, s, paths);
     }
 
