@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,7 +75,7 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
         const colour rim = looks.plays[i] ? ink : grey;
         const style look =
             f.radius < 1.5 ? style{.fill = rim} : style{.fill = white, .stroke = rim, .width = 0.7};
-        taken.block_disc(at, f.radius, label_placer::forbidden);
+        taken.block_disc(at, f.radius);
         const group one(c, {.id = fmt::format("tactor-{}", i),
                             .kind = "tactor",
                             .title = fmt::format("tactor {}, channel {}, at {}, {} mm", i, t.channel,
@@ -139,11 +141,11 @@ public:
                                            {"y0", fmt::format("{:.9g}", frame_.origin.y)},
                                            {"stride", fmt::format("{}", stride_)}}});
         const tactor_looks looks = find_looks();
-        for (const stroke& s : scene_.strokes) // first, before lighter obstacles: their number is limited
+        for (const stroke& s : scene_.strokes) {
             paths_.push_back(path_on_page(frame_, s.motion));
-        for (const auto& parts : paths_)
-            for (const std::vector<spot>& part : parts)
-                taken_.block_line(part, 2.0, 6.0);
+            for (const std::vector<spot>& part : paths_.back())
+                taken_.avoid_line(part);
+        }
         draw_joins();
         draw_paths();
         draw_tactors(canvas_, frame_, scene_.tactors, looks, taken_);
@@ -277,7 +279,6 @@ private:
             const group one(canvas_, {.kind = "joins", .data = {{"burst", fmt::format("{}", b.number)}}});
             for (const drive& d : b.what->drives) {
                 const spot to = frame_(scene_.tactors.tactors[d.tactor].position);
-                taken_.block_line({at, to}, 2.0, 0.1);
                 canvas_.line(
                     at, to,
                     {.stroke = with_alpha(join_colour(c), fine_.alpha), .width = join_width(d.amplitude)},
@@ -309,7 +310,7 @@ private:
     {
         const group all(canvas_, {.id = "bursts"});
         for_each_shown([&](const shown_burst& b, spot at, colour c) {
-            taken_.block_disc(at, fine_.dot, 6.0);
+            taken_.avoid_disc(at, fine_.dot);
             const std::string end = b.to_s > b.from_s ? fmt::format(" to {} s", number(b.to_s, 6)) : " s";
             canvas_.circle(
                 at, fine_.dot, {.fill = c, .stroke = ink, .width = 0.35},
@@ -441,33 +442,27 @@ private:
                s.y <= frame_.area.bottom();
     }
 
-    box arrow_box(spot at) const
-    {
-        const double r = arrow_length / 2.0 + 0.7;
-        return {at.x - r, at.y - r, 2.0 * r, 2.0 * r};
-    }
-
-    // Returns the time near `wanted` at which an arrow covers the least.
-    double clear_time(const trajectory& motion, double wanted, double range) const
+    // Returns the time near `wanted` at which an arrow covers the least; nothing if it has no place.
+    std::optional<double> find_arrow(const trajectory& motion, double wanted, double range) const
     {
         constexpr int tries = 40;
-        double best = wanted;
-        double least = taken_.cost(arrow_box(frame_(motion.position(wanted))));
-        for (int k = 1; k <= tries; ++k)
-            for (const double side : {1.0, -1.0}) {
-                const double t = wanted + side * range * k / tries;
-                const double c = taken_.cost(arrow_box(frame_(motion.position(t)))) + 1.0 * k;
-                if (c < least) {
-                    least = c;
-                    best = t;
-                }
+        constexpr double r = arrow_length / 2.0 + 0.7;
+        std::optional<double> best;
+        double least = std::numeric_limits<double>::infinity();
+        for (int k = 0; k <= 2 * tries; ++k) { // the middle, then alternately after and before it
+            const double t = wanted + (k % 2 == 0 ? -1.0 : 1.0) * range * ((k + 1) / 2) / tries;
+            const spot at = frame_(motion.position(t));
+            const auto covered = taken_.cover({at.x - r, at.y - r, 2.0 * r, 2.0 * r});
+            if (covered && *covered + 0.5 * k < least) {
+                least = *covered + 0.5 * k;
+                best = t;
             }
+        }
         return best;
     }
 
-    void draw_arrow(const trajectory& motion, double wanted, double range)
+    void draw_arrow(const trajectory& motion, double t)
     {
-        const double t = clear_time(motion, wanted, range);
         const double step = 1e-3 * motion.duration_s();
         const spot from = frame_(motion.position(t - step));
         const spot to = frame_(motion.position(t + step));
@@ -480,7 +475,7 @@ private:
             return spot{at.x + forward * along.x - aside * along.y,
                         at.y + forward * along.y + aside * along.x};
         };
-        taken_.block(arrow_box(at), 8.0);
+        taken_.block_disc(at, arrow_length / 2.0);
         canvas_.poly({corner(arrow_length / 2.0, 0.0), corner(-arrow_length / 2.0, arrow_half_width),
                       corner(-arrow_length / 2.0, -arrow_half_width)},
                      true, {.fill = ink, .stroke = white, .width = 0.4}, {.kind = "direction"});
@@ -494,7 +489,8 @@ private:
             std::min({static_cast<std::size_t>(wanted), most_arrows / strokes, most_arrows / 6});
         const double each = motion.duration_s() / static_cast<double>(n);
         for (std::size_t k = 0; k < n; ++k)
-            draw_arrow(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each);
+            if (const auto t = find_arrow(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each))
+                draw_arrow(motion, *t);
     }
 
     // Returns the radius of the ring at a start, and half a side of the square at an end, pt.
@@ -512,8 +508,8 @@ private:
             canvas_.circle(start, r, look, {.kind = "start"});
         if (on_page(end))
             canvas_.rect({end.x - r, end.y - r, 2.0 * r, 2.0 * r}, look, {.kind = "end"});
-        taken_.block_disc(start, r, 12.0);
-        taken_.block_disc(end, r, 12.0);
+        taken_.block_disc(start, r);
+        taken_.block_disc(end, r);
     }
 
     // Labels a place. Returns false if there is no space.

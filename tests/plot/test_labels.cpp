@@ -31,7 +31,7 @@ bool overlap(box a, box b)
 TEST_CASE("labels of one place do not cover each other, nor the place")
 {
     label_placer p({0.0, 0.0, 200.0, 200.0});
-    p.block_disc({100.0, 100.0}, 5.0, 20.0);
+    p.block_disc({100.0, 100.0}, 5.0);
     std::vector<box> boxes{{95.0, 95.0, 10.0, 10.0}};
     for (const std::string text : {"start 1", "end 1", "ch 4", "start 2"}) {
         const box b = label_box(p.place(text, 6.0, {{100.0, 100.0}}, 0, 6.0, 20.0).value(), text, 6.0);
@@ -61,7 +61,7 @@ TEST_CASE("a label of one of many sites is nearest to that one, or left out")
             sites.push_back({30.0 + 18.0 * column, 30.0 + 18.0 * row});
     label_placer p({0.0, 0.0, 120.0, 120.0});
     for (const spot s : sites)
-        p.block_disc(s, 4.0, label_placer::forbidden);
+        p.block_disc(s, 4.0);
     std::vector<box> boxes;
     for (std::size_t i = 0; i < sites.size(); ++i) {
         const auto place = p.place("88", 5.2, sites, i, 5.2, 3.0);
@@ -86,14 +86,14 @@ TEST_CASE("a label is left out rather than put on another")
 {
     label_placer p({0.0, 0.0, 100.0, 100.0});
     CHECK(p.place("1", 6.0, {{50.0, 50.0}}, 0, 3.0, 20.0));
-    p.block({0.0, 0.0, 100.0, 100.0}, label_placer::forbidden);
+    p.block({0.0, 0.0, 100.0, 100.0});
     CHECK_FALSE(p.place("2", 6.0, {{50.0, 50.0}}, 0, 3.0, 20.0));
 }
 
 TEST_CASE("labels avoid a line")
 {
     label_placer p({0.0, 0.0, 100.0, 100.0});
-    p.block_line({{0.0, 56.0}, {100.0, 56.0}}, 2.0, 4.0); // where the label would go first
+    p.avoid_line({{0.0, 56.0}, {100.0, 56.0}}); // where the label would go first
     const box b = label_box(p.place("end", 6.0, {{50.0, 48.0}}, 0, 3.0, 12.0).value(), "end", 6.0);
     CHECK_FALSE(overlap(b, {0.0, 55.0, 100.0, 2.0}));
 }

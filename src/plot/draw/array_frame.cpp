@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include <fmt/format.h>
@@ -17,8 +19,7 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_obstacles = 4000; // more would not change the places in a crowded picture
-constexpr double refused = 1e6; // cost of a place for a label on a tactor, on a label or off the page
+constexpr std::size_t most_avoided = 4000; // more would not change the places in a crowded picture
 
 // Directions in order of preference: below, right, left, above, then the corners; y down.
 struct direction {
@@ -95,41 +96,46 @@ void size_tactors(array_frame& f, const array& a)
 
 } // namespace
 
-void label_placer::block_disc(spot centre, double radius, double weight)
+void label_placer::block_disc(spot centre, double radius)
 {
-    block({centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius}, weight);
+    block({centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius});
 }
 
-void label_placer::block_line(const std::vector<spot>& line, double width, double weight)
+void label_placer::avoid_disc(spot centre, double radius)
 {
-    const double step = std::max(2.0, width);
-    for (std::size_t i = 1; i < line.size() && taken_.size() < most_obstacles; ++i) {
+    if (avoided_.size() < most_avoided)
+        avoided_.push_back({centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius});
+}
+
+std::optional<double> label_placer::cover(box b) const
+{
+    const auto overlap = [b](box o) { return overlap_area(b, o); };
+    if (b.x < area_.x || b.y < area_.y || b.right() > area_.right() || b.bottom() > area_.bottom() ||
+        std::ranges::any_of(blocked_, [&](box o) { return overlap(o) > 0.0; }))
+        return std::nullopt;
+    return std::transform_reduce(avoided_.begin(), avoided_.end(), 0.0, std::plus(), overlap);
+}
+
+void label_placer::avoid_line(const std::vector<spot>& line)
+{
+    constexpr double step = 2.0; // pt
+    for (std::size_t i = 1; i < line.size(); ++i) {
         const spot a = line[i - 1];
         const spot b = line[i];
-        const auto n = static_cast<int>(std::min(std::hypot(b.x - a.x, b.y - a.y) / step, 200.0)) + 1;
-        for (int k = 0; k < n; ++k) {
-            const double t = (k + 0.5) / n;
-            block_disc({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}, step / 2.0, weight);
-        }
+        const double n = std::min(std::floor(std::hypot(b.x - a.x, b.y - a.y) / step), 200.0) + 1.0;
+        for (double k = 0.5; k < n; ++k)
+            avoid_disc({a.x + k / n * (b.x - a.x), a.y + k / n * (b.y - a.y)}, 0.5 * step);
     }
-}
-
-double label_placer::cost(box b) const
-{
-    double sum = forbidden * (b.width * b.height - overlap_area(b, area_));
-    for (const obstacle& o : taken_)
-        sum += o.weight * overlap_area(b, o.b);
-    return sum;
 }
 
 std::optional<spot> label_placer::place(std::string_view text, double size, const std::vector<spot>& sites,
                                         std::size_t own, double gap, double reach)
 {
-    const double w = text_width(text, size);
-    const double h = cap_height(size);
     constexpr double air = 0.8;
+    const double w = text_width(text, size) + 2.0 * air;
+    const double h = cap_height(size) + 2.0 * air;
     const spot at = sites[own];
-    const auto nearest_own = [&](box b) {
+    const auto is_nearest = [&](box b) {
         const double near = clearly * distance(b, at);
         for (std::size_t i = 0; i < sites.size(); ++i)
             if (i != own && distance(b, sites[i]) <= near)
@@ -137,23 +143,19 @@ std::optional<spot> label_placer::place(std::string_view text, double size, cons
         return true;
     };
     std::optional<box> best;
-    double least = refused;
-    double preference = 0.0;
-    for (double more = 0.0; more <= reach; more += farther)
+    double least = std::numeric_limits<double>::infinity();
+    for (double away = gap - air; away <= gap - air + reach; away += farther)
         for (const direction& d : directions) {
-            const double away = (gap + more) * (d.x != 0.0 && d.y != 0.0 ? 0.72 : 1.0);
-            const box b{at.x + d.x * (away + w / 2.0) - w / 2.0 - air,
-                        at.y + d.y * (away + h / 2.0) - h / 2.0 - air, w + 2.0 * air, h + 2.0 * air};
-            const double c = cost(b) + preference;
-            preference += 0.2;
-            if (c < least && nearest_own(b)) {
-                least = c;
+            const box b{at.x + d.x * (away + 0.5 * w) - 0.5 * w, at.y + d.y * (away + 0.5 * h) - 0.5 * h, w,
+                        h};
+            if (const auto covered = cover(b); covered && *covered < least && is_nearest(b)) {
+                least = *covered;
                 best = b;
             }
         }
     if (!best)
         return std::nullopt;
-    block(*best, forbidden);
+    block(*best);
     return spot{best->x + air, best->bottom() - air};
 }
 

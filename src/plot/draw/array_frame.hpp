@@ -14,36 +14,32 @@
 
 namespace tactor::plot {
 
-/// Chooser of places for labels: it finds the place at which a label covers the least.
+/// Chooser of places for labels and arrows: they lie on nothing that is blocked, and where they cover the
+/// least of what they should avoid.
 class label_placer {
 public:
     /// Starts with no place taken. Labels stay inside `area`.
     explicit label_placer(box area) : area_(area) {}
 
-    /// Weight of a tactor or label, on which no label may lie.
-    static constexpr double forbidden = 1e9;
+    void block(box b) { blocked_.push_back(b); }
+    void block_disc(spot centre, double radius);
+    void avoid_disc(spot centre, double radius);
+    void avoid_line(const std::vector<spot>& line);
 
-    /// Blocks a box. `weight`: cost of covering a square point.
-    void block(box b, double weight) { taken_.push_back({b, weight}); }
-    void block_disc(spot centre, double radius, double weight);
-    void block_line(const std::vector<spot>& line, double width, double weight);
+    /// Returns how many square points of what to avoid a box covers; nothing if it leaves the area or covers
+    /// something blocked.
+    std::optional<double> cover(box b) const;
 
-    /// Returns the start of the baseline of `text` next to one of many sites, from `gap` up to `reach` pt
-    /// farther away, and takes that place. Returns nothing if each place is off the area, on a tactor or
-    /// label, or not clearly nearer to that site than to the others.
+    /// Returns the start of the baseline of `text` in one of eight directions from one of many sites, from
+    /// `gap` up to `reach` pt farther away, and blocks that place. Returns nothing if each place is off the
+    /// area, blocked, or not clearly nearer to that site than to the others.
     std::optional<spot> place(std::string_view text, double size, const std::vector<spot>& sites,
                               std::size_t own, double gap, double reach);
 
-    /// Returns the sum of the covered square points, each with its weight.
-    double cost(box b) const;
-
 private:
-    struct obstacle {
-        box b;
-        double weight;
-    };
     box area_;
-    std::vector<obstacle> taken_;
+    std::vector<box> blocked_;
+    std::vector<box> avoided_;
 };
 
 /// A rectangle on the skin, mm.
