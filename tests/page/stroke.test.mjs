@@ -2,6 +2,8 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import * as s from "../../src/server/page/takes/stroke.js";
+import * as g from "../../src/server/page/geometry.js";
+import {strokes_toml} from "../../src/server/page/takes/stroke_file.js";
 
 const circle = (seconds = 2, n = 200) => Array.from({length: n + 1}, (_, i) => {
   const a = 2 * Math.PI * 0.75 * i / n;
@@ -136,7 +138,7 @@ test("ten minutes of drawing stay below what a message may have, and their work 
   const timed = ink => { const began = performance.now(), stroke = s.from_drawing(ink, "long"); return [stroke, performance.now() - began]; };
   timed(drawn(3600));
   const [, minute] = timed(drawn(3600)), [stroke, ten] = timed(drawn(36000));
-  const toml = s.strokes_toml([stroke]);
+  const toml = strokes_toml([stroke]);
   assert.ok(toml.length < 1 << 20, `${toml.length} bytes`);
   assert.ok(ascends(stroke.timed));
   assert.ok(Math.abs(s.duration_s(stroke) - 599.98) < 0.05);
@@ -157,12 +159,12 @@ test("a line has its speed, and is never shorter than 60 ms", () => {
 });
 
 test("the hull knows what lies outside of it", () => {
-  const edge = s.hull([[0, 0], [20, 0], [40, 0], [0, 40], [40, 40], [20, 20]]);
+  const edge = g.hull([[0, 0], [20, 0], [40, 0], [0, 40], [40, 40], [20, 20]]);
   assert.equal(edge.length, 4);
-  assert.equal(s.outside_mm(edge, [20, 20]), 0);
-  assert.equal(s.outside_mm(edge, [40, 0]), 0);
-  assert.ok(Math.abs(s.outside_mm(edge, [47, 20]) - 7) < 1e-9);
-  assert.ok(Math.abs(s.outside_mm(s.hull([[0, 0], [30, 0]]), [10, 4]) - 4) < 1e-9);
+  assert.equal(g.outside_mm(edge, [20, 20]), 0);
+  assert.equal(g.outside_mm(edge, [40, 0]), 0);
+  assert.ok(Math.abs(g.outside_mm(edge, [47, 20]) - 7) < 1e-9);
+  assert.ok(Math.abs(g.outside_mm(g.hull([[0, 0], [30, 0]]), [10, 4]) - 4) < 1e-9);
 });
 
 test("strokes fit the array, on a single row, too", () => {
@@ -174,7 +176,7 @@ test("strokes fit the array, on a single row, too", () => {
 });
 
 test("names cannot break out of TOML", () => {
-  const text = s.strokes_toml([{name: 'a"\n[x]\\', start_s: 2, timed: [[0, 1, 2, 1], [1, 3, 4, 0.5]]}]);
+  const text = strokes_toml([{name: 'a"\n[x]\\', start_s: 2, timed: [[0, 1, 2, 1], [1, 3, 4, 0.5]]}]);
   assert.match(text, /^name = "a\\" \[x\]\\\\"$/m);
   assert.match(text, /^start_s = 2$/m); // its start is in the file
   assert.match(text, /^timed = \[\[0, 1, 2, 1\], \[1, 3, 4, 0.5\]\]$/m);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {read_take, rest_comment, take_toml, with_level} from "../../src/server/page/takes/stroke_file.js";
-import {as_drawn, strokes_toml} from "../../src/server/page/takes/stroke.js";
+import {read_take, rest_comment, strokes_toml, take_toml, with_level} from "../../src/server/page/takes/stroke_file.js";
+import {as_drawn} from "../../src/server/page/takes/stroke.js";
 
 const LINE = {name: "line", start_s: 0, timed: [[0, 5, 20, 1], [1, 35, 20, 1]]};
 const ROWS = "algorithm phantom faces soa burst carrier waveform noise_seed am timing snap sl".split(" ").map(name => ({name}));

@@ -158,7 +158,7 @@ class Body(StudioTest):
             outlines += a[0] instanceof Path2D; return f.apply(this, a); }; })(CanvasRenderingContext2D.prototype.fill)""")
         self.draw(p, *self.way([5, 5], [35, 30]))
         self.assertEqual(p.value("outlines"), 0)
-        p.click("#zoom-in")
+        p.key("Equal", "+")
         p.until("outlines > 0")
 
 

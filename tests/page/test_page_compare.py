@@ -63,7 +63,7 @@ class Compare(StudioTest):
         p.key("Digit2", "2")
         p.until("tactor.state.compare.on === 1")
         p.value("document.querySelector('[data-value=continuous]').click()")
-        p.until(f"{TEXT.format('.side:nth-child(2)')}.includes('Continuous') && /mm from the path · (slightly )?(un)?even/.test({TEXT.format('.side:nth-child(2)')})")
+        p.until(f"{TEXT.format('.side:nth-child(2)')}.includes('Continuous') && /mm from the path, (slightly )?(un)?even/.test({TEXT.format('.side:nth-child(2)')})")
         self.assertIn("Park 2016", p.value(TEXT.format(".side")))
         self.assertEqual(self.take(p)["options"], {})
         p.until("tactor.state.plan.continuous && !tactor.state.compare.rest.continuous")
@@ -83,7 +83,7 @@ class Compare(StudioTest):
             card = p.value("tactor.state.compare.order.indexOf(0)")
             p.click(f"#votes button:nth-child({3 if i == 2 else card + 1})")
             p.until(f"tactor.state.compare.answers.length === {i + 1}")
-        p.until(f"{TEXT.format('#tally')} === '2 of 3 for the same one. A look, not a study'")
+        p.until(f"{TEXT.format('#tally')} === '2 of 3 for the same one; too few for a result'")
         p.click("#blind")
         p.until(f"{TEXT.format('#tally')}.startsWith('2 of 3 for Park 2016')")
 
@@ -217,7 +217,7 @@ class Felt(StudioTest):
         p = self.felt()
         points = self.diamonds(p)
         at = len(points) // 2
-        self.assertRegex(self.pull(p, points[at], [-6, points[at][1]]), r"Nearest there is: [6-9]\.\d mm short")
+        self.assertRegex(self.pull(p, points[at], [-6, points[at][1]]), r"Cannot be felt there: [6-9]\.\d mm away at best")
         self.assertEqual(p.value("tactor.state.outside.length"), 0)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The first minute in a real Chromium: a page that plays itself, the gallery and the tour. Usage: test_page_first.py TOOL SOURCE_ROOT"""
+"""The first minute in a real Chromium: a page that plays sounds, the gallery and the tour. Usage: test_page_first.py TOOL SOURCE_ROOT"""
 import re
 import sys
 
@@ -21,10 +21,10 @@ class Simulated(StudioTest):
         p.value(LISTEN)
         return p
 
-    def test_without_a_card_the_page_plays_itself(self):
+    def test_without_a_card_the_page_plays_sounds(self):
         p = self.simulated()
         self.assertEqual(p.value("[document.querySelector('#device').dataset.tone, document.querySelector('#banner').hidden]"), ["off", True])
-        self.assertIn("No card, so this page plays itself.", p.value("document.querySelector('#hint').innerText"))
+        self.assertIn("No card, so this page plays sounds.", p.value("document.querySelector('#hint').innerText"))
         p.click("#hint-example")
         p.until("tactor.state.at_s > 0")
         self.assertEqual(p.value("[...document.querySelectorAll('#examples b')].map(b => b.textContent)"), ["Three-quarter circle"])
@@ -32,7 +32,7 @@ class Simulated(StudioTest):
         self.assertEqual(p.value("heard.map(o => Math.round(o.frequency.value))"), [880] * 3 + [539] * 3 + [330] * 3)
         self.assertEqual(p.value("[tactor.state.takes.length, document.querySelector('#take-name').textContent]"), [0, "Three-quarter circle"])
         self.assertNotRegex(p.value("document.body.innerText"), re.compile(r"you feel|feel on|felt, predicted", re.I))
-        self.assertIn("where it would be felt", p.value("document.body.innerText"))
+        self.assertIn("orange is the predicted feel", p.value("document.body.innerText"))
         p.click("#stop")
         p.until("!tactor.state.playing")
 
@@ -82,7 +82,9 @@ class Simulated(StudioTest):
 
     def test_share_shows_the_command_where_no_other_device_can_open_the_address(self):
         p, _ = self.ready(self.serve())
-        p.open_popover("#share", "#p-share")
+        p.open_popover("#more", "#p-more")
+        p.click("[data-press=p-share]")
+        p.until("document.querySelector('#p-share').matches(':popover-open')")
         self.assertRegex(p.value("document.querySelector('#link').textContent"), r"^tactor serve --http 0\.0\.0\.0:\d+ --config FILE$")
         self.assertFalse(p.value("document.querySelector('#qr').checkVisibility()"))
 
@@ -90,7 +92,8 @@ class Simulated(StudioTest):
         s = self.serve(config='[serve]\nallow_hosts = ["pi.test"]\n')
         s.where["http"] = s.where["http"].replace("127.0.0.1", "pi.test")
         p, _ = self.ready(s)
-        p.click("#share")
+        p.open_popover("#more", "#p-more")
+        p.click("[data-press=p-share]")
         p.until("document.querySelector('#qr path')?.getAttribute('d').startsWith('M0 0h1v1h-1z')")
         self.assertEqual(p.value("document.querySelector('#link').textContent"), s.where["http"])
 
@@ -165,8 +168,10 @@ class Gallery(StudioTest):
 class Tour(StudioTest):
     def test_six_steps_that_play(self):
         p, watcher = self.ready(self.serve(), size=PHONE, fingers=True)
-        p.open_popover("#more", "#p-more")
-        p.click("#p-more [data-press=tour-open]")
+        p.click("#settings")
+        p.click("button[data-sheet=takes]")
+        p.until("document.querySelector('#tour-open').checkVisibility()")
+        p.click("#tour-open")
         p.until("document.querySelector('#p-tour').textContent.startsWith('One tactorTactor 4 buzzes')")
         for step in range(1, 7):
             p.until(f"document.querySelector('#p-tour small').textContent === '{step} of 6'")

@@ -29,7 +29,7 @@ class Safety(StudioTest):
     def test_the_token_is_required(self):
         s = self.serve(config=self.token("secret"))
         p = self.open(s)
-        self.banner(p, "asks for its token")
+        self.banner(p, "needs a token")
         self.says(p, "Locked")
         self.says(self.open(s, "#token=secret"), "Running")
 

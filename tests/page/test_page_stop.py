@@ -88,10 +88,10 @@ class Stop(StudioTest):
         p.until("document.querySelector('#stop').textContent.startsWith('Stop again')")
         p.until(STOPS + " > 2")
         self.says(p, "No answer")
-        self.assertNotEqual(p.value("document.querySelector('#toast').textContent"), "Stopped, everybody's strokes")
+        self.assertNotEqual(p.value("document.querySelector('#toast').textContent"), "Stopped everybody's strokes")
         os.kill(s.process.pid, signal.SIGCONT)
         self.assertEqual(watcher.await_end(number)["state"], "cancelled")
-        self.toast(p, "Stopped, everybody's strokes")
+        self.toast(p, "Stopped everybody's strokes")
         p.until("document.querySelector('#banner').hidden && !document.querySelector('#stop').dataset.state")
 
     def test_a_stop_that_is_not_sent_says_so_and_is_sent_once_it_can_be(self):

@@ -99,6 +99,9 @@ class Takes(TakesTest):
         self.assertGreater(len(drawn["ink"]), 50)
         text = "document.querySelector('#shape-curve').textContent"
         pressed = "document.querySelector('#shape [aria-pressed=true]').id"
+        # The switch comes with the points, and stays while an edit can be taken back.
+        self.assertTrue(p.value("document.querySelector('#shape').hidden"))
+        p.click("[data-tool=points]")
         p.until("!document.querySelector('#shape').hidden")
         self.assertEqual(p.value(f"[{pressed}, {text}]"), ["shape-ink", "Fitted, within 0.2 mm"])
         p.click("#shape-curve")
@@ -228,7 +231,7 @@ class Takes(TakesTest):
             p.click(f"[data-tab={tab}]")
             p.until(f"document.querySelector('#pane').getAttribute('aria-labelledby') === 'tab-{tab}'")
             shown[tab] = p.value("document.querySelector('#pane').textContent")
-        for tab, words in (("method", ("Beyond the array", "Tactors of a point")), ("timing", ("Slope of the law", "Shortest burst")),
+        for tab, words in (("method", ("Beyond the array", "Tactors for each point")), ("timing", ("Slope of the law", "Shortest burst")),
                            ("vibration", ("Amplitude modulation", "Seed of the noise", "Scale of strength"))):
             for word in words:
                 self.assertEqual([t for t in shown if word in shown[t]], [tab], word)
@@ -247,7 +250,7 @@ class Takes(TakesTest):
         p.click("#hint-example")
         for name in ("park2016", "continuous"):
             p.click(f"[data-value={name}]")
-            p.until(f"document.querySelector('[data-value={name}] .error').textContent.match(/^\\d+\\.\\d mm, (slightly )?(un)?even$/)")
+            p.until(f"document.querySelector('[data-value={name}] .error').textContent.match(/^\\d+\\.\\d mm from the path, (slightly )?(un)?even$/)")
             self.assertEqual(p.value("[...document.querySelectorAll('#pane .error')].filter(e => e.textContent).length"), 1)
 
     def test_four_phantoms_are_behind_more(self):
@@ -374,7 +377,7 @@ class Kept(TakesTest):
         p.until("tactor.state.drawing.tracks[0].points.length > 3")
         self.reload(p)
         p.until("tactor.state.takes.length === 1")
-        self.assertRegex(self.take(p)["name"], r"^Drawing of \d\d:\d\d, not finished$")
+        self.assertRegex(self.take(p)["name"], r"^Drawing of \d\d:\d\d, unfinished$")
         self.assertGreater(self.take(p)["strokes"][0]["timed"][-1][1], 25)
 
     def test_what_was_deleted_is_in_a_bin_for_thirty_days(self):
@@ -420,7 +423,7 @@ class Kept(TakesTest):
         a.until(f"{TAKE}.name === 'Slow S, edited'")
         a.until("[...document.querySelectorAll('#takes .note')].some(e => e.textContent === 'changed in another tab')")
         a.click("#undo")
-        self.toast(a, "was changed in another tab; that stays")
+        self.toast(a, "has changed in another tab; the page keeps that change")
         self.assertEqual(a.value(f"{TAKE}.name"), "Slow S, edited")
         # Both change one take before they hear of each other: both stay.
         a.value("BroadcastChannel.prototype.postMessage = () => {}")

@@ -36,10 +36,10 @@ test("errors are said by what they mean, and the rest on demand", () => {
   assert.equal(lag_word(e.lag_s), "late by 35 ms");
   assert.equal(even_word(e.speed_cv), "uneven");
   assert.deepEqual([path_word(1 / 20), path_word(4 / 20), lag_word(0), even_word(0.3), even_word(0)],
-    ["near the path", "off the path", "in time", "slightly uneven", "even"]);
+    ["near the path", "off the path", "on time", "slightly uneven", "even"]);
   assert.deepEqual(Object.fromEntries(error_facts(e)), {"To the path": "0.2 mm RMS, to its nearest point",
     "At equal times": "2.1 mm RMS, at most 5.4 mm", "Along the path": "2.1 mm RMS, at most 5.3 mm", "Across it": "0.3 mm RMS, at most 0.8 mm",
-    "Lag": "late by 35 ms; shifted by that, 1.7 mm RMS", "Speed": "uneven: its standard deviation is 0.68 of its mean (CV)"});
+    "Lag": "late by 35 ms; without the lag 1.7 mm RMS", "Speed": "uneven: its standard deviation is 0.68 of its mean (CV)"});
   // What is not predicted is not there: a touch at rest has no direction and no speed.
   assert.deepEqual(error_facts({rms_error_mm: 0, largest_error_mm: 0, lag_s: 0, rms_at_lag_mm: 0, along_rms_mm: null, rms_to_path_mm: 0, speed_cv: null})
     .map(([name]) => name), ["To the path", "At equal times", "Lag"]);

@@ -3,11 +3,12 @@
 import {state, changed, on_change, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms, SILENT_DB} from "./state.js";
 import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
-import {connect, call, on_hello, page_link} from "./service/connection.js";
+import {connect, call, on_hello} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
 import {open_takes, write_at_once} from "./takes/keeping.js";
+import {clamp} from "./geometry.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
-import {view, set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {view, set_array, look_at_all, resize, place_in_page} from "./drawing/view.js";
 import {label_boxes} from "./drawing/labels.js";
 import {felt_points} from "./drawing/felt.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
@@ -20,7 +21,7 @@ import {draw_card, open_tour} from "./takes/gallery.js";
 import "./service/simulated.js";
 import {own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
-import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
+import {full, lane_tactors, lane_height, show_all_time} from "./time/time_axis.js";
 import "./takes/files.js";
 import "./takes/shape_switch.js";
 import "./settings/inspector.js";
@@ -42,7 +43,7 @@ function set_theme(theme) {
 }
 set_theme(remembered("theme"));
 // A page that is opened again is not louder than before.
-state.level_db = Math.min(0, Math.max(SILENT_DB, Number(remembered("level") ?? 0) || 0));
+state.level_db = clamp(Number(remembered("level") ?? 0) || 0, SILENT_DB, 0);
 on_change(() => remember("level", state.level_db), "level");
 listen(dark, "change", () => { if (!remembered("theme")) set_theme(null); });
 on_click("theme", () => {
@@ -60,30 +61,24 @@ on_click("stop", e => { if (e.detail === 0) stop(); });
 on_click("undo", undo);
 on_click("redo", redo);
 on_click("new-take", () => { new_take(); say("Draw a new take"); });
-on_click("zoom-in", () => zoom(1.3));
-on_click("zoom-out", () => zoom(1 / 1.3));
-on_click("zoom-all", () => { look_at_all(); show_all_time(); });
+on_click("show-all", () => { look_at_all(); show_all_time(); });
 // The keys of a headset and of a screen that is locked.
 for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 for (const name of SWITCHES) on_click(name, () => { state[name] = !state[name]; changed("playing", "curves"); });
-on_click("scrub", () => say(state.scrub ? "Scrub is felt" : "Scrub is silent"));
+on_click("scrub", () => say(`Scrubbing is ${state.scrub ? "felt" : "silent"}`));
 on_click("speaker", () => {
   if (!state.speaker) return silence_speaker();
-  say(is_simulated() ? "You hear it while you draw" : "Play sounds on this computer's loudspeakers; they must not be on the array's card");
+  say(is_simulated() ? "You hear it while you draw" : "Play uses this computer's loudspeakers, too; they must not be on the array's card");
 });
 on_click("point-curve", () => change_point({corner: false}));
 on_click("point-corner", () => change_point({corner: true}));
 on_click("point-bin", remove_point);
-on_click("play-from", () => play({from_s: state.at_s}));
-on_click("time-out", () => zoom_time(1.5));
-on_click("time-in", () => zoom_time(1 / 1.5));
-on_click("time-all", show_all_time);
 on_click("time-fold", fold_time);
 for (const b of all_of("[data-press]")) listen(b, "click", () => {
   const pressed = by_id(b.dataset.press);
-  by_id("p-more").hidePopover();
   if (pressed.popover) pressed.showPopover(); else pressed.click();
 });
+listen("p-more", "click", () => by_id("p-more").hidePopover(), {capture: true}); // before what it shows
 on_click("pill", () => open_sheet("inspector"));
 on_click("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on_click("sheet-close", () => open_sheet(""));
@@ -97,7 +92,7 @@ on_change(() => {
   const take = current_take(), p = state.playing;
   by_id("undo").disabled = !can_undo();
   by_id("redo").disabled = !can_redo();
-  by_id("play").disabled = by_id("play-from").disabled = !take?.strokes.length;
+  by_id("play").disabled = !take?.strokes.length;
   by_id("play").dataset.on = p !== null;
   set_text("play-text", p ? "Playing" : "Play");
   show_stop();
@@ -173,12 +168,6 @@ on_hello(async h => {
 open_takes(steps_of_undo, restore_undo);
 connect(own_name());
 changed("takes", "take", "theme", "tool");
-
-// Lets browsers install the page from a secure address, such as this computer's. It keeps the token of the link.
-document.head.append(make("link", {rel: "manifest", href: URL.createObjectURL(new Blob([JSON.stringify({
-  name: "tactor", short_name: "tactor", start_url: page_link(), display: "standalone", background_color: "#efeeea",
-  theme_color: "#f8f7f4", icons: [{src: document.querySelector('link[rel="icon"]').href, sizes: "any", type: "image/svg+xml"}],
-})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
 globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height, felt_points, curve_points: handles};

@@ -81,7 +81,7 @@ export function marks() {
 // Returns the stroke that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 // Returns true if the service plays to the PCM null, its default.
-export const plays_to_nobody = () => state.hello?.stream.pcm === "null";
+const plays_to_nobody = () => state.hello?.stream.pcm === "null";
 // Returns true if the service has never had a card, so it plays nothing.
 export const is_cardless = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
 // Returns true if nobody can feel the strokes, so the page makes them audible.

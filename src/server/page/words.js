@@ -7,13 +7,13 @@ export const ALGORITHMS = {
 };
 export const PHANTOMS = {
   "inverse-distance": ["Inverse distance", "As Park published it. Constant energy; jumps a little from triangle to triangle."],
-  "barycentric": ["Barycentric", "The centre of the energies lies exactly at the point within each triangle."],
+  "barycentric": ["Barycentric", "Within each triangle, the energies balance exactly at the point."],
   "linear": ["Linear", "Amplitudes fall evenly with the distance to each tactor."],
   "log": ["Logarithmic", "Amplitudes fall with the logarithm of the distance."],
-  "gaussian": ["Gaussian", "Each tactor reaches smoothly around itself, so its neighbours join in."],
+  "gaussian": ["Gaussian", "All tactors near the point play, the nearest most."],
 };
 export const OPTION_NAMES = {
-  faces: "Tactors of a point", compensate: "Move bursts to where they are felt", sigma_mm: "Uncertainty of a place",
+  faces: "Tactors for each point", compensate: "Correct the predicted error", sigma_mm: "Uncertainty of position",
   sigma_v_mm_s: "Spread of speeds", outside: "Beyond the array", snap: "Move ends onto the grid", drop_points: "Drop crossings",
   overlap: "Where bursts overlap", soa: "Interval, onset to onset (SOA)", burst: "Burst", slope: "Slope of the law",
   intercept: "Intercept of the law", timing: "Interval", min_duration: "Shortest burst", carrier: "Carrier", am: "Amplitude modulation",
@@ -22,8 +22,11 @@ export const OPTION_NAMES = {
 };
 // Words for a prediction: its distance from the path as a part of the pitch, its lag, and the coefficient of variation of its speed.
 export const path_word = part => part < 0.03 ? "on the path" : part < 0.1 ? "near the path" : "off the path";
-export const lag_word = s => s >= 0.0005 ? `late by ${Math.round(1000 * s)} ms` : "in time";
+export const lag_word = s => s >= 0.0005 ? `late by ${Math.round(1000 * s)} ms` : "on time";
 export const even_word = cv => cv < 0.25 ? "even" : cv < 0.5 ? "slightly uneven" : "uneven";
+// Returns a number and a word: the distance from the path, and how even the speed is; empty if neither is predicted.
+export const short_facts = ({rms_to_path_mm: mm, speed_cv: cv}) => [typeof mm === "number" && `${number_text(mm)} mm from the path`,
+  typeof cv === "number" && even_word(cv)].filter(Boolean).join(", ");
 // Returns names and values of all errors of a prediction, without those that it does not have.
 export function error_facts(e) {
   const mm = v => `${number_text(v)} mm`, has = v => typeof v === "number";
@@ -33,7 +36,7 @@ export function error_facts(e) {
     "At equal times": part(e.rms_error_mm, e.largest_error_mm),
     "Along the path": part(e.along_rms_mm, e.along_max_mm),
     "Across it": part(e.across_rms_mm, e.across_max_mm),
-    "Lag": has(e.lag_s) && `${lag_word(e.lag_s)}${e.lag_s > 0 ? `; shifted by that, ${mm(e.rms_at_lag_mm)} RMS` : ""}`,
+    "Lag": has(e.lag_s) && `${lag_word(e.lag_s)}${e.lag_s > 0 ? `; without the lag ${mm(e.rms_at_lag_mm)} RMS` : ""}`,
     "Speed": has(e.speed_cv) && `${even_word(e.speed_cv)}: its standard deviation is ${number_text(e.speed_cv, 2)} of its mean (CV)`,
   }).filter(([, text]) => text);
 }

@@ -3,6 +3,7 @@ import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from
 import {by_id} from "../../../net/page/dom.js";
 import {paint, write, disc} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
+import {distance} from "../geometry.js";
 import {array, view, layers, stale, start_layer, trace, trace_rows, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
@@ -67,7 +68,7 @@ function draw_disc(q, i, share) {
   disc(pen, c, filled);
   paint(pen, {fill: "felt"});
   draw_share(pen, i, share);
-  const [x, y] = number_place(i), reach = Math.hypot(x - c[0], y - c[1]);
+  const [x, y] = number_place(i), reach = distance([x, y], c);
   draw_number(pen, i, filled > reach + Math.min(6, 0.2 * r) ? "on-felt" : "ink");
 }
 function draw_arms(now) {

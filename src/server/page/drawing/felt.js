@@ -4,7 +4,8 @@ import {state, changed, on_change, current_take, current_stroke, say, now_ms} fr
 import {plot, paint, disc} from "../look.js";
 import {array, trace_rows, to_px, view} from "./view.js";
 import {edit_stroke} from "../takes/takes.js";
-import {editable, changed_knot, nearest_knot, handles_apart, knot_times, interpolate, within} from "../takes/stroke.js";
+import {editable, changed_knot, nearest_knot, handles_apart, knot_times, interpolate} from "../takes/stroke.js";
+import {within} from "../geometry.js";
 import {number_text} from "../words.js";
 
 const GRASP_PX = 22, WISH_STEPS = 24, LEAST_PART = 0.2;
@@ -58,7 +59,7 @@ function solve() {
   const by = solved ? [0, 0] : part > LEAST_PART ? best.error.map(v => v * part) : [far * Math.cos(2.4 * steps), far * Math.sin(2.4 * steps)];
   const [x, y] = within(array.edge, best.at.map((v, i) => v + by[i])).map(v => +v.toFixed(3));
   wish.steps = solved ? -1 : steps - 1;
-  if (solved) say(best.off < HERE_MM ? `Felt here, within ${number_text(Math.max(0.1, best.off))} mm` : `Nearest there is: ${number_text(best.off)} mm short`);
+  if (solved) say(best.off < HERE_MM ? `Felt here, within ${number_text(Math.max(0.1, best.off))} mm` : `Cannot be felt there: ${number_text(best.off)} mm away at best`);
   if (x !== k.x || y !== k.y) edit_stroke(q => changed_knot({...q, ink: q.ink ?? q.timed}, wish.knot, {x, y}), wish.key);
   else if (!solved) solve();
   wish.after = current_stroke();

@@ -2,6 +2,7 @@
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font, paint, disc} from "../look.js";
 import {array, view, layers, start_layer, trace_rows, to_px} from "./view.js";
+import {clamp, distance} from "../geometry.js";
 import {editable, shape} from "../takes/stroke.js";
 import {place_labels, number_place, draw_labels} from "./labels.js";
 import {draw_felt_points, felt_points} from "./felt.js";
@@ -30,8 +31,8 @@ function draw_ring(p, q, i) {
 }
 // Writes a tactor's number: over its disc while it is driven, and above a stroke that covers all free places.
 export function draw_number(p, i, tone) {
-  const [x, y, crossed] = number_place(i), r = array.radius * view.scale, number = String(array.tactors[i].tactor ?? i);
-  p.font = font(Math.max(11, Math.min(16, r * 0.5)), 600);
+  const [x, y, crossed] = number_place(i), r = array.radius * view.scale, number = String(i);
+  p.font = font(clamp(r * 0.5, 11, 16), 600);
   p.textAlign = "center";
   p.textBaseline = "middle";
   p.fillStyle = colour(tone);
@@ -44,7 +45,7 @@ export function draw_number(p, i, tone) {
   p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {
-  const ribbon = {line: "felt", width: Math.min(9, Math.max(5, view.scale * 0.8)), alpha: is_dark() ? 0.5 : 0.45};
+  const ribbon = {line: "felt", width: clamp(view.scale * 0.8, 5, 9), alpha: is_dark() ? 0.5 : 0.45};
   for (const rows of plan.felt_rows) { trace_rows(p, rows); paint(p, ribbon); }
   // Draws the ribbon of the other method hollow.
   for (const rows of state.compare?.rest?.felt_rows ?? []) {
@@ -64,11 +65,11 @@ function draw_stroke(p, s, own) {
 }
 function draw_dots(p, plan) {
   if (plan.continuous) return;
-  const n = plan.onsets.length, size = Math.min(6, Math.max(2.2, view.scale * 0.55)), many = n > 1200;
+  const n = plan.onsets.length, size = clamp(view.scale * 0.55, 2.2, 6), many = n > 1200;
   let last = [-1e9, 0];
   for (let i = 0; i < n; ++i) {
     const c = to_px([plan.positions[2 * i], plan.positions[2 * i + 1]]);
-    if (many && Math.hypot(c[0] - last[0], c[1] - last[1]) < size) continue;
+    if (many && distance(c, last) < size) continue;
     last = c;
     disc(p, c, size);
     p.fillStyle = viridis(plan.onsets[i] / (plan.total_s || 1), is_dark());

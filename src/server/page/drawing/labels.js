@@ -2,6 +2,7 @@
 import {state} from "../state.js";
 import {colour, font} from "../look.js";
 import {array, view, to_px} from "./view.js";
+import {clamp, distance} from "../geometry.js";
 
 const HIGH_PX = 15, SHARE_PX = 40; // "100 %"
 const FAR_PX = [9, 20, 34];
@@ -11,7 +12,7 @@ const POINTS = 200; // number of a stroke's points that labels avoid
 let circles = [], boxes = [], share_places = [], number_places = [];
 
 const labels_touch = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
-const circle_touches = ([x, y, r], b) => Math.hypot(x - Math.min(b[2], Math.max(b[0], x)), y - Math.min(b[3], Math.max(b[1], y))) < r;
+const circle_touches = ([x, y, r], b) => Math.hypot(x - clamp(x, b[0], b[2]), y - clamp(y, b[1], b[3])) < r;
 function is_free(b) {
   return b[0] > 2 && b[1] > 2 && b[2] < view.width - 2 && b[3] < view.height - 2
     && !boxes.some(o => labels_touch(o, b)) && !circles.some(c => circle_touches(c, b));
@@ -42,8 +43,8 @@ export function place_labels(strokes, marks = []) {
     const step = Math.max(1, Math.floor(s.timed.length / POINTS));
     return s.timed.filter((_, i) => i % step === 0).map(q => [...to_px(q.slice(1)), 6]);
   });
-  const marked = [...path, ...marks.map(q => [...q, 9])], reach_px = i => 4 + 3 * String(array.tactors[i].tactor ?? i).length;
-  const off = r > 16 ? r * 0.6 : 0, hidden = ([x, y], i) => marked.some(q => Math.hypot(q[0] - x, q[1] - y) < q[2] + reach_px(i));
+  const marked = [...path, ...marks.map(q => [...q, 9])], reach_px = i => 4 + 3 * String(i).length;
+  const off = r > 16 ? r * 0.6 : 0, hidden = (at, i) => marked.some(q => distance(q, at) < q[2] + reach_px(i));
   number_places = centres.map(([x, y], i) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q, i)) ?? [x, y, true]);
   circles.push(...path);
 }
@@ -55,7 +56,7 @@ export function draw_labels(p, {timed: rows}) {
   p.textAlign = "center";
   const first = to_px(rows[0].slice(1)), last = to_px(rows.at(-1).slice(1));
   draw_end(p, "start", first, to_px(rows[Math.min(rows.length - 1, 3)].slice(1)));
-  if (Math.hypot(first[0] - last[0], first[1] - last[1]) > 24) draw_end(p, "end", last, to_px(rows[Math.max(0, rows.length - 4)].slice(1)));
+  if (distance(first, last) > 24) draw_end(p, "end", last, to_px(rows[Math.max(0, rows.length - 4)].slice(1)));
 }
 function draw_end(p, text, at, next) {
   const place = take_place(p.measureText(text).width + 4, places_round(at, p.measureText(text).width, Math.atan2(at[1] - next[1], at[0] - next[0])));

@@ -13,7 +13,7 @@ const part_picture = (p, ...more) => make("svg", {class: "outline", viewBox: p.b
   make("path", {d: p.outline, transform: `scale(${mirror(p)} 1)`}), ...more);
 const set_and_fit = values => { set_body(values); look_at_all(); };
 const turn_to = v => set_body({turn: 180 - (540 - Math.round(v)) % 360}); // -179 to 180
-const tiles = choice({label: "Part of the body", shape: "waves parts", visible_label: false, get: () => body.part,
+const tiles = choice({label: "Part of the body", shape: "parts", visible_label: false, get: () => body.part,
   set: name => { if (name !== body.part) set_and_fit(usual_place(name, body.right)); },
   values: Object.keys(PARTS).slice(1).map(value => ({value, update: b => b.replaceChildren(part_picture(PARTS[value]), plain_name(value),
     value === body.part && !is_in_file() ? make("small", {}, "not in the array’s file") : "")}))});

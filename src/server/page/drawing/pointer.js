@@ -6,7 +6,8 @@ import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, view, tactor_at, zoom, zoom_by_two, pan, ARROWS} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
 import {say_if_kept} from "../takes/keeping.js";
-import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
+import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s} from "../takes/stroke.js";
+import {distance, outside_mm} from "../geometry.js";
 import {felt_points, grasp_felt, pull, step_felt} from "./felt.js";
 import {test_tactor, tap_tactor, tell_level, on_stop} from "../service/player.js";
 import {press, let_go} from "../service/hold.js";
@@ -62,12 +63,12 @@ function moved(id, px, e) {
   f.at = mm;
   f.strength = strength(e, f.strength);
   if (f.off) {
-    if (!f.moved && Math.hypot(px[0] - f.px[0], px[1] - f.px[1]) < LEAST_PX) return;
+    if (!f.moved && distance(px, f.px) < LEAST_PX) return;
     f.moved = true;
     const place = [mm[0] + f.off[0], mm[1] + f.off[1]];
     return f.mode === "felt" ? pull(place) : move_knot(f.knot, place, f.key);
   }
-  if (f.mode === "tap" && Math.hypot(mm[0] - f.from[0], mm[1] - f.from[1]) > LEAST_MM && state.tool !== "points") begin(f);
+  if (f.mode === "tap" && distance(mm, f.from) > LEAST_MM && state.tool !== "points") begin(f);
   if (f.mode === "draw") record(f, mm, e.timeStamp);
 }
 
@@ -123,7 +124,7 @@ setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, now_ms(), tr
 // Drives a tactor until the function that it returns is called, or somebody stops. It is a stroke that rests: it ends by itself where this
 // page is gone, and at a tactor this phantom drives no other.
 export function drive_tactor(i) {
-  if (!is_connected()) return void say("No connection: nothing is driven");
+  if (!is_connected()) return void say("No connection: nothing plays");
   const began_ms = now_ms(), f = {at: array.places[i], strength: 1, number: null, sent_ms: 0, track: {down: true}};
   if (is_simulated()) tap_tactor(i, Infinity);
   if (!is_cardless()) begin_live(f, {algorithm: "continuous", phantom: "barycentric"});
@@ -208,7 +209,7 @@ function finish(take_name) {
 export function finish_early() {
   if (!state.drawing) return;
   fingers.clear();
-  finish(`Drawing of ${new Date().toTimeString().slice(0, 5)}, not finished`);
+  finish(`Drawing of ${new Date().toTimeString().slice(0, 5)}, unfinished`);
 }
 function lift_all() {
   key = null;
@@ -248,7 +249,7 @@ function choose_stroke(mm) {
   const take = current_take();
   let best = {off: REACH_PX / view.scale, i: -1};
   take?.strokes.forEach((s, i) => s.timed.forEach(p => {
-    const off = Math.hypot(p[1] - mm[0], p[2] - mm[1]);
+    const off = distance(p.slice(1), mm);
     if (off < best.off) best = {off, i};
   }));
   if (best.i < 0) return false;

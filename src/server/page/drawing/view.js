@@ -2,7 +2,7 @@
 // The array to scale: millimetres to pixels, zoom, and the layers that are drawn again when something changes.
 import {state, changed, on_change} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
-import {hull, box} from "../takes/stroke.js";
+import {box, clamp, distance, hull} from "../geometry.js";
 import {body_corners} from "./body.js";
 
 const canvas = by_id("field");
@@ -15,8 +15,7 @@ export let array = null; // {tactors, edge, pitch, radius}
 export function set_array(a) {
   const places = a.tactors.map(t => [t.x_mm, t.y_mm]);
   let pitch = Infinity;
-  places.forEach((p, i) => places.slice(i + 1).forEach(q => { pitch = Math.min(pitch, Math.hypot(p[0] - q[0], p[1] - q[1])
-    || Infinity); }));
+  places.forEach((p, i) => places.slice(i + 1).forEach(q => { pitch = Math.min(pitch, distance(p, q) || Infinity); }));
   if (pitch === Infinity) pitch = 40;
   array = {...a, places, edge: hull(places), box: box(places), pitch, radius: pitch * 0.215};
   look_at_all();
@@ -25,16 +24,15 @@ export const to_px = ([x, y]) => [view.left + (x - array.box.middle[0]) * view.s
   view.top + (y - array.box.middle[1]) * view.scale];
 export const to_mm = (px, py) => [(px - view.left) / view.scale + array.box.middle[0],
   (py - view.top) / view.scale + array.box.middle[1]];
-export const place_in_page = p => { const r = canvas.getBoundingClientRect(), [x, y] = to_px(p); return [r.left + x, r.top + y];
-  };
+export const place_in_page = p => { const r = canvas.getBoundingClientRect(), [x, y] = to_px(p); return [r.left + x, r.top + y]; };
 export const handle_px = () => Math.max(...array.box.size) / 2 * view.scale + 44; // distance of the handle that turns the body from the middle of the array
-export function tactor_at([x, y]) {
-  return array ? array.places.findIndex(p => Math.hypot(p[0] - x, p[1] - y) <= array.radius * 1.05) : -1;
+export function tactor_at(at) {
+  return array ? array.places.findIndex(p => distance(p, at) <= array.radius * 1.05) : -1;
 }
 
 export function look_at_all() { Object.assign(view, {zoom: 1, x: 0, y: 0}); resize(); }
 export function zoom(by, at = null) {
-  const before = at && to_mm(...at), zoomed = Math.min(12, Math.max(0.5, view.zoom * by));
+  const before = at && to_mm(...at), zoomed = clamp(view.zoom * by, 0.5, 12);
   view.zoom = zoomed;
   place();
   if (before) { const now = to_px(before); view.x += at[0] - now[0]; view.y += at[1] - now[1]; place(); }
@@ -42,7 +40,7 @@ export function zoom(by, at = null) {
 }
 // Keeps two places of the array under two fingers that move from a and b to c and d, in pixels.
 export function zoom_by_two([a, b], [c, d]) {
-  const apart = (p, q) => Math.max(20, Math.hypot(p[0] - q[0], p[1] - q[1])), middle = (p, q) => [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
+  const apart = (p, q) => Math.max(20, distance(p, q)), middle = (p, q) => [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
   const from = middle(a, b), to = middle(c, d);
   pan(to[0] - from[0], to[1] - from[1]);
   zoom(apart(c, d) / apart(a, b), to);

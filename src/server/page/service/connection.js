@@ -94,7 +94,7 @@ async function hello() {
     changed("link", "array", "stream");
   } catch (e) {
     if (e.code === CODE_TOKEN) {
-      state.asks_token = token ? "The token is wrong." : "This tactor asks for its token.";
+      state.asks_token = token ? "The token is wrong." : "This service needs a token.";
       state.link = "token";
       changed("link");
     } else if (e.code !== 0) {

@@ -14,14 +14,14 @@ const STOPPED_MS = 6000;
 function describe() {
   const s = state.stream;
   if (state.link === "connecting") return ["waiting", "Connecting", "off", ""];
-  if (state.link === "token") return ["barred", "Locked", "warn", "a token is needed"];
+  if (state.link === "token") return ["barred", "Locked", "warn", "it needs a token"];
   if (state.link === "lost") return ["broken", "No connection", "bad",
-    `again in ${Math.max(0, Math.ceil((state.retry_at - now_ms()) / 1000))} s`];
+    `tries again in ${Math.max(0, Math.ceil((state.retry_at - now_ms()) / 1000))} s`];
   if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
   if (is_cardless()) return ["barred", "Simulated", "off", "no card"];
-  if (s.state === "lost") return ["broken", "Card lost", "bad", "it is looked for"];
+  if (s.state === "lost") return ["broken", "Card lost", "bad", "tactor looks for it"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
-  if (s.state === "closing") return ["stop", "Closing", "warn", "tactor ends"];
+  if (s.state === "closing") return ["stop", "Closing", "warn", "tactor shuts down"];
   if (state.stopped && now_ms() - state.stopped.at < STOPPED_MS) return ["stop", "Stopped", "off",
     `by ${state.stopped.name}`];
   const other = state.status?.strokes.find(k => k.state === "started" && k.client !== state.hello?.client);
@@ -37,15 +37,15 @@ function warn() {
   const s = state.stream;
   if (unanswered_s()) return [`Stop is ${stop_words()[1]}. Switch the amplifier off.`, "bad", ""];
   if (state.link === "token") return [state.asks_token, "warn",
-    "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
+    "Ask the owner, whose token_file has it, or open the link that ends in #token=…"];
   if (state.link === "lost") return ["No connection to tactor. The page tries again; nothing is lost.", "bad", state.lost_reason
     || "The WebSocket to the service is closed."];
   if (state.unkept.size) return [`Takes are not kept: ${state.storage_fault}.`, "warn",
     "The page tries again with each change. Save what you need as a file; the page asks before it closes."];
   if (state.link === "connected" && state.slow) return null;
-  if (s.state === "lost" && !is_cardless()) return ["The sound card is gone. Drawings are kept; plug it in again.", "bad", s.reason];
-  if (s.state === "muted") return ["Muted: the sound broke up. It comes back when it is steady.", "warn", s.reason];
-  if (s.state === "closing") return ["Tactor ends. Drawings are kept.", "warn", s.reason];
+  if (s.state === "lost" && !is_cardless()) return ["The sound card is gone. Plug it in again; the page keeps your drawings.", "bad", s.reason];
+  if (s.state === "muted") return ["Muted, because the sound broke up. It returns when it is steady.", "warn", s.reason];
+  if (s.state === "closing") return ["tactor shuts down. The page keeps your drawings.", "warn", s.reason];
   if (state.fault) return [state.fault, "bad", ""];
   return null;
 }
@@ -105,15 +105,14 @@ listen("p-device", "beforetoggle", () => {
     Period: `${period_frames} frames (${number_text(1000 * period_frames / rate)} ms), buffer ${number_text(1000 * latency_s)} ms`,
     State: `${stream.state}${stream.reason ? `: ${stream.reason}` : ""}`, Amplifier: status?.amplifier, Xruns: status?.stream.xruns,
     "Real time": status && (status.stream.realtime ? "yes" : "no"), Ceiling: `${number_text(ceiling_dbfs(), 0)} dBFS`, Version: hello.version,
-    Takes: state.storage_fault ? `not kept: ${state.storage_fault}` : "kept in this browser",
   });
 });
 on_change(() => {
   if (!state.hello) return;
   by_id("tactor-facts").replaceChildren();
-  by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => {
-    const b = make("button", {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i),
-      onfocus: () => show_tactor(i), onpointerdown: () => show_tactor(i)}, String(t.tactor ?? i));
+  by_id("try").replaceChildren(...state.hello.array.tactors.map((_, i) => {
+    const b = make("button", {class: "button outlined", "aria-label": `Try tactor ${i}`, onclick: () => test_tactor(i),
+      onfocus: () => show_tactor(i), onpointerdown: () => show_tactor(i)}, i);
     on_hold(b, () => drive_tactor(i));
     return b;
   }));
@@ -134,7 +133,7 @@ export const own_name = () => remembered("name") || (matchMedia("(pointer: coars
 function show_tactor(i) {
   const t = state.hello.array.tactors[i];
   list_facts("tactor-facts", {
-    Tactor: t.tactor ?? i, Place: `${t.x_mm}, ${t.y_mm} mm`, Channel: t.channel, Gain: t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`,
+    Tactor: i, Place: `${t.x_mm}, ${t.y_mm} mm`, Channel: t.channel, Gain: t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`,
     Limit: `${number_text(t.max_dbfs ?? 0)} dBFS`, Threshold: typeof t.threshold_dbfs === "number" ? `${number_text(t.threshold_dbfs)} dBFS` : "not measured",
     Polarity: t.polarity < 0 ? "reversed" : "as wired",
   });

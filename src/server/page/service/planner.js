@@ -63,8 +63,8 @@ export function limit_text({tactors: count, amplitudes}, dbfs) {
     for (let k = i; k < amplitudes.length; k += count) most = Math.max(most, amplitudes[k]);
     return t.max_dbfs < max_level_dbfs ? dbfs + 20 * Math.log10(most) - t.max_dbfs : -Infinity;
   });
-  const worst = over.indexOf(Math.max(...over)), {tactor, max_dbfs} = array.tactors[worst];
-  return over[worst] > 0 ? `tactor ${tactor ?? worst} is limited to ${number_text(max_dbfs, max_dbfs % 1 ? 1 : 0)} dBFS` : "";
+  const worst = over.indexOf(Math.max(...over)), {max_dbfs} = array.tactors[worst];
+  return over[worst] > 0 ? `tactor ${worst} is limited to ${number_text(max_dbfs, max_dbfs % 1 ? 1 : 0)} dBFS` : "";
 }
 // Sets a take's gain so that it can be played; the level of other takes stays. Returns false if it is not too strong, and for strokes that are only
 // tried.

@@ -3,6 +3,7 @@ import {state, changed, on_change, current_take, take_by_id, is_cardless, is_sim
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
+import {clamp} from "../geometry.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 import {fault_text, fault_sentence} from "../words.js";
 
@@ -41,7 +42,7 @@ export async function play(part = part_to_play()) {
   const take = current_take();
   if (!take?.strokes.length) return;
   const round = make_round(take, part);
-  if (round.lead_s === Infinity) return say("Nothing plays in this part of the time");
+  if (round.lead_s === Infinity) return say("Nothing plays in this range");
   // Ends the current round, so that copies never add up.
   end_round(state.playing);
   silence_speaker();
@@ -115,7 +116,7 @@ async function ask_to_play() {
   changed("playing");
 }
 function say_refusal(e) {
-  if (state.plan_fault) say("It cannot play: see the warning at its settings");
+  if (state.plan_fault) say("It cannot play; Settings says why");
   else if (e.code !== 0) { state.fault = fault_sentence(e); changed("link"); }
 }
 
@@ -141,7 +142,7 @@ export function tick() {
   const p = state.playing;
   if (!p) return;
   const is_new = begin_round(p), t = (now_ms() - p.began_ms) / 1000;
-  if (is_shown(p)) state.at_s = p.from_s + Math.max(0, Math.min(p.waits ? p.lead_s : p.total_s, t));
+  if (is_shown(p)) state.at_s = p.from_s + clamp(t, 0, p.waits ? p.lead_s : p.total_s);
   if (is_new) hear_it();
   if (p.felt && !p.waits && !p.next) follow_changes(p, t);
   if (t < p.total_s || p.waits || p.next || p.repeats) return;
@@ -243,7 +244,7 @@ on_lost(() => { if (state.playing?.felt) end_playing(); });
 on_notification("stops", s => {
   const own = s.client === state.hello?.client;
   state.stopped = {name: own ? "you" : s.client === 0 ? "the owner" : s.name ? `“${s.name}”` : "somebody", at: now_ms()};
-  say(own ? "Stopped, everybody's strokes" : `Stopped by ${state.stopped.name}`);
+  say(own ? "Stopped everybody's strokes" : `Stopped by ${state.stopped.name}`);
   changed("link", "playing");
 });
 // Handles levels in a hidden tab, too, which has no frames: a loop continues.
@@ -263,7 +264,7 @@ export function stop() {
     changed("link");
   }, e => {
     own.fault = e;
-    if (!is_connected()) say("No connection: use the amplifier's switch");
+    if (!is_connected()) say("No connection: switch the amplifier off");
   });
   end_playing();
   lift_fingers?.();
@@ -317,6 +318,6 @@ on_change(() => { if (!speaker && state.playing && !state.playing.waits) hear_it
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {
   if (state.playing) return;
-  state.at_s = Math.max(0, Math.min(state.plan?.total_s ?? take_s(current_take()), s));
+  state.at_s = clamp(s, 0, state.plan?.total_s ?? take_s(current_take()));
   changed("moment");
 }

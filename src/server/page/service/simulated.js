@@ -3,6 +3,7 @@ import {state, changed, on_change, is_cardless, is_simulated, ceiling_dbfs, take
 import {by_id, on_click, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {array} from "../drawing/view.js";
+import {distance} from "../geometry.js";
 import {play, silence_speaker} from "./player.js";
 import {start_tones} from "./loudspeaker.js";
 import {open_example, try_entry} from "../takes/gallery.js";
@@ -43,7 +44,7 @@ function hear_touches() {
   }
   const parts = array.places.map(() => 0);
   for (const [, x, y, strength] of touches) {
-    const near = array.places.map(p => 1 / (Math.hypot(p[0] - x, p[1] - y) + 0.1) ** 4), sum = near.reduce((a, b) => a + b);
+    const near = array.places.map(p => 1 / (distance(p, [x, y]) + 0.1) ** 4), sum = near.reduce((a, b) => a + b);
     near.forEach((v, i) => { parts[i] = Math.max(parts[i], strength * Math.sqrt(v / sum)); });
   }
   tones ??= start_tones(array.tactors);

@@ -7,7 +7,7 @@ import {with_level} from "../takes/stroke_file.js";
 import {file_name, give_toml} from "../takes/files.js";
 import {study_files, study_command} from "./study.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
-import {ALGORITHMS, PHANTOMS, even_word, facts_text, number_text} from "../words.js";
+import {ALGORITHMS, PHANTOMS, facts_text, short_facts} from "../words.js";
 
 const LONGEST_WAIT_S = 0.07; // longest wait for the next burst; message and ramp take up to 30 ms more
 const LEAD_S = 0.02;         // time before the burst at which the side changes
@@ -65,15 +65,13 @@ on_click("blind", () => {
 function tally_text({answers, blind}) {
   const n = answers.length, often = [0, 1].map(side => answers.filter(v => v === side).length), most = Math.max(...often);
   const who = blind || often[0] === often[1] ? "the same one" : side_name(often.indexOf(most));
-  return !n ? blind ? "Which one?" : "" : `${most} of ${n} for ${who}${n < FEW ? ". A look, not a study" : ""}`;
+  return !n ? blind ? "Which one?" : "" : `${most} of ${n} for ${who}${n < FEW ? "; too few for a result" : ""}`;
 }
 function side_name(side) {
   const word = (words, name) => words[with_side(current_take(), side).options[name] ?? row(name)?.default]?.[0];
   return `${word(ALGORITHMS, "algorithm")}, ${word(PHANTOMS, "phantom")}`;
 }
-const side_facts = e => !e ? "not possible"
-  : typeof e.rms_to_path_mm !== "number" ? "not predicted"
-  : `${number_text(e.rms_to_path_mm)} mm from the path${typeof e.speed_cv === "number" ? ` · ${even_word(e.speed_cv)}` : ""}`;
+const side_facts = e => e ? short_facts(e) || "not predicted" : "not possible";
 
 const side_cards = all_of(".side"), votes = by_id("votes");
 side_cards.forEach((b, card) => listen(b, "click", () => choose_side(card)));

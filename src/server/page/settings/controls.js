@@ -2,6 +2,7 @@
 // Controls of a value: each has an element, and an update() that shows the value again.
 import {make, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
+import {clamp} from "../geometry.js";
 import {on_hold} from "../service/hold.js";
 
 let last_id = 0;
@@ -13,13 +14,13 @@ export function slider({label, get, set, least, most, text, done, step = 0, log 
   const to = v => log ? 1000 * Math.log(v / least) / Math.log(most / least) : 1000 * (v - least) / (most - least);
   const from = p => {
     const v = log ? least * (most / least) ** (p / 1000) : least + (most - least) * p / 1000;
-    return Math.min(most, Math.max(least, step ? Math.round(v / step) * step : +v.toPrecision(4)));
+    return clamp(step ? Math.round(v / step) * step : +v.toPrecision(4), least, most);
   };
   const input = make("input", {id, type: "range", min: 0, max: 1000, step: step && !log ? 1000 * step / (most - least) : 1});
   listen(input, "input", () => { set(from(Number(input.value))); update(); });
   listen(input, "change", () => done?.());
   function update() {
-    const v = get(), p = Math.min(1000, Math.max(0, to(v)));
+    const v = get(), p = clamp(to(v), 0, 1000);
     if (document.activeElement !== input || Math.abs(Number(input.value) - p) > 2) input.value = p;
     input.style.setProperty("--part", `${p / 10}%`);
     const words = text(v);

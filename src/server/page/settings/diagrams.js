@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT Small pictures, computed from the formulas that they explain.
 import {make} from "../../../net/page/dom.js";
 import {is_dark} from "../look.js";
+import {sampled} from "../geometry.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 const picture = (width, height, ...parts) => make("svg", {viewBox: `0 0 ${width} ${height}`, class: "diagram",
@@ -32,17 +33,6 @@ export function algorithm_picture(name) {
   }
   return picture(56, 36, ...parts);
 }
-// Draws bursts and the interval between their onsets, to scale.
-export function timing_picture(burst_s, soa_s) {
-  const scale = 250 / Math.max(3 * soa_s, 2 * soa_s + burst_s), x = i => 22 + i * soa_s * scale;
-  const parts = [0, 1, 2].map(i => make("rect", {x: x(i), y: 34, width: Math.max(2, burst_s * scale - 1), height: 24,
-    fill: tone(0.2 + 0.25 * i), opacity: burst_s > soa_s ? 0.75 : 1}));
-  parts.push(line([[10, 58.5], [286, 58.5]], {stroke: "var(--line2)", "stroke-width": 1}),
-    line([[x(0), 28], [x(0), 22], [x(1), 22], [x(1), 28]], {stroke: "var(--ink2)", "stroke-width": 1.2}));
-  const word = (at, y, t) => make("text", {x: at, y, "text-anchor": "middle", "font-size": 11, fill: "var(--ink2)"}, t);
-  parts.push(word((x(0) + x(1)) / 2, 17, "interval"), word(x(0) + burst_s * scale / 2, 72, "burst"));
-  return picture(296, 80, ...parts);
-}
 // Returns the window of a burst at a part of its duration. Rise and fall are parts of the duration, too.
 export function window_at(part, rise, fall, kind) {
   const shorter = Math.min(1, 1 / (rise + fall)), up = rise * shorter, down = fall * shorter;
@@ -56,9 +46,8 @@ export function window_at(part, rise, fall, kind) {
 // Draws one burst with its carrier.
 export function envelope_picture(burst_s, attack_s, release_s, carrier_hz, kind) {
   const at = v => window_at(v, attack_s / burst_s, release_s / burst_s, kind);
-  const n = 600, cycles = Math.min(40, burst_s * carrier_hz);
-  const wave = Array.from({length: n + 1}, (_, i) => [14 + 268 * i / n,
-    40 - 30 * at(i / n) * Math.sin(2 * Math.PI * cycles * i / n)]);
-  const top = Array.from({length: 121}, (_, i) => [14 + 268 * i / 120, 40 - 30 * at(i / 120)]);
+  const cycles = Math.min(40, burst_s * carrier_hz);
+  const wave = sampled(600, part => [14 + 268 * part, 40 - 30 * at(part) * Math.sin(2 * Math.PI * cycles * part)]);
+  const top = sampled(120, part => [14 + 268 * part, 40 - 30 * at(part)]);
   return picture(296, 80, line(wave, {stroke: "var(--ink3)", "stroke-width": 0.9}), line(top, {"stroke-width": 2}));
 }

@@ -6,8 +6,8 @@ import {icon} from "../look.js";
 import {slider, choice, toggle, entry, button, choose_by_arrows} from "./controls.js";
 import {set_option, end_edit, edit_stroke, edit_take, put_stroke, row, value, algorithm} from "../takes/takes.js";
 import {play_by} from "../service/player.js";
-import {algorithm_picture, timing_picture, envelope_picture} from "./diagrams.js";
-import {ALGORITHMS, PHANTOMS, OPTION_NAMES, error_facts, facts_text, even_word, number_text, plain_name, seconds_text} from "../words.js";
+import {algorithm_picture, envelope_picture} from "./diagrams.js";
+import {ALGORITHMS, PHANTOMS, OPTION_NAMES, error_facts, facts_text, short_facts, number_text, plain_name, seconds_text} from "../words.js";
 import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
 import {set_strength, strengths, set_speed, touch_curve} from "../time/curves.js";
 import {toggle_compare} from "./compare.js";
@@ -44,24 +44,22 @@ function cards(label, name, words, picture) {
     const error = picture && make("span", {class: "error"}), [title, text] = words[id] ?? [plain_name(id), ""];
     return {value: id, content: [picture?.(id), make("b", {}, title), error, make("p", {}, text)].filter(Boolean), update: b => {
       const e = value(name) === id ? state.plan?.errors : null;
-      if (picture) { error.textContent = predicted_text(e); error.title = facts_text(e); } else b.hidden = !all_phantoms && value(name) !== id;
+      if (picture) { error.textContent = short_facts(e ?? {}); error.title = facts_text(e); } else b.hidden = !all_phantoms && value(name) !== id;
     }};
   });
   const list = choice({label, visible_label: false, shape: picture ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v), values,
     hold: v => play_by({[name]: v})});
-  return join("section", {}, make("h2", {}, label, picture && make("span", {}, "from the path, speed")), list, picture
-    ? make("p", {class: "hint-text"}, "Hold a card to feel the take by it.")
+  return join("section", {}, make("h2", {}, label), list, picture
+    ? make("p", {class: "hint-text"}, "Hold a card to feel the take with that method.")
     : button("More", null, e => { all_phantoms = !all_phantoms; e.currentTarget.setAttribute("aria-expanded", all_phantoms); list.update(); },
       {class: "button small outlined", "aria-label": "More phantoms", "aria-expanded": String(all_phantoms)}));
 }
-// Returns a number and a word: the distance from the path, and how even the speed is.
-function predicted_text(e) {
-  return [typeof e?.rms_to_path_mm === "number" && `${number_text(e.rms_to_path_mm)} mm`, typeof e?.speed_cv === "number" && even_word(e.speed_cv)]
-    .filter(Boolean).join(", ");
-}
 function all_errors() {
+  const o = row("observer"), observer = choice({label: "Predicted by", get: () => state.observer ?? o?.default ?? "centroid",
+    set: v => { state.observer = v; changed("observer"); },
+    values: (o?.choices ?? ["centroid", "low-speed"]).map(v => ({value: v, name: plain_name(v)}))});
   const list = make("dl", {id: "all-errors"});
-  return join("details", {class: "more"}, make("summary", {}, "All predicted errors"), {element: list, update() {
+  return join("details", {class: "more"}, make("summary", {}, "All predicted errors"), observer, {element: list, update() {
     const facts = error_facts(state.plan?.errors ?? {});
     list.replaceChildren(...facts.length > 0 ? facts.flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, text)])
       : [make("dd", {}, "There is no prediction.")]);
@@ -72,7 +70,7 @@ function all_errors() {
 const stroke = () => editable(current_stroke());
 function pace_controls() {
   const kinds = [["even", "Even"], ["soft", "Soft ends"], ["reach", "Like a reach"], ["drawn", "As drawn"]];
-  const parts = ["at the start", "a quarter on", "half-way", "three quarters on", "at the end"];
+  const parts = ["at the start", "at a quarter", "half-way", "at three quarters", "at the end"];
   const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true, get: () => duration_s(stroke()),
     set: v => edit_stroke(s => with_duration(s, Math.min(MOST_S, +v.toPrecision(3))), "duration"), done: end_edit,
     text: v => v < 1 ? ms(v) : seconds_text(v)});
@@ -121,8 +119,7 @@ function burst_controls() {
     if (value("burst") === null && v > 0.07) set_option("burst", +burst().toFixed(4), "option soa");
     set_option("soa", v);
   }});
-  const picture = {element: make("div", {class: "picture"}), update() { this.element.replaceChildren(timing_picture(Math.max(0.001, burst()), soa())); }};
-  const law = {element: make("div", {class: "law"}), update() {
+  const law = {element: make("div", {class: "law row hint-text"}), update() {
     const wanted = slope() * burst() + intercept(), wanted_ms = Math.round(wanted * 1000), off = Math.round((soa() - wanted) * 1000);
     const sum = `${+slope().toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round(intercept() * 1000)} = ${wanted_ms} ms`;
     this.element.classList.toggle("off", off !== 0);
@@ -131,7 +128,7 @@ function burst_controls() {
       make("span", {}, `${Math.abs(off)} ms ${off < 0 ? "shorter than the law: may blur" : "longer than the law: may be felt as taps"}`),
       button(`Use ${wanted_ms} ms`, null, () => set_option("soa", +wanted.toFixed(4))));
   }};
-  return join("section", {}, make("h2", {}, "Bursts"), picture, bursts, interval, law);
+  return join("section", {}, make("h2", {}, "Bursts"), bursts, interval, law);
 }
 
 const WAVE_NAMES = [["sine", "Sine"], ["square", "Square"], ["triangle", "Triangle"], ["sawtooth", "Saw"], ["noise", "Noise"]];
@@ -175,21 +172,13 @@ function others(tab) {
   return list.length > 0 && more("More settings", list.some(o => current_take()?.options[o.name] !== undefined), ...list.map(from_row));
 }
 
-function observer_choice() {
-  const o = row("observer");
-  return choice({label: "Predicted by", get: () => state.observer ?? o?.default ?? "centroid",
-    set: v => { state.observer = v; changed("observer"); },
-    values: (o?.choices ?? ["centroid", "low-speed"]).map(v => ({value: v, name: plain_name(v)}))});
-}
-
 function build() {
   const names = current_take()?.strokes.map(s => s.name) ?? [];
   const now = JSON.stringify([state.tab, state.options.length, algorithm(), names, document.documentElement.dataset.theme]);
   if (now === structure) return;
   structure = now;
   const parts = {
-    method: () => [algorithm_choice(), phantom_choice(), button("Compare two by feeling", null, toggle_compare, {class: "button outlined"}),
-      observer_choice(), all_errors(), others("method")],
+    method: () => [algorithm_choice(), phantom_choice(), button("Compare two by feeling", null, toggle_compare, {class: "button outlined"}), all_errors(), others("method")],
     timing: () => [current_stroke() && pace_controls(), current_stroke() && stroke_controls(), algorithm() === "park2016" && burst_controls(),
       others("timing")],
     vibration: () => [vibration_controls(), others("vibration")],

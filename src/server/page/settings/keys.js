@@ -12,13 +12,13 @@ import {remove_point} from "../drawing/pointer.js";
 import {show_place} from "../drawing/place.js";
 import {toggle_compare, close_compare, choose_side} from "./compare.js";
 
-const KEYS = [["Space, X, Esc", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E, W", "draw, straight line, edit points, move what is felt"],
-  ["B, 1, 2", "compare two methods, feel the one, the other"], ["F", "feel, or hear, on or off"], ["N", "new take"], ["G", "gallery"], ["0, +, −", "show all, larger, smaller"],
-    ["T", "timeline: open, close"], ["J, Alt", "in the timeline: scrub is felt or silent, no snapping"], ["H, arrows", "place on the body"], ["Enter, Shift Enter", "in the timeline: start, range"],
-    ["Shift Home", "clear both"], ["Ctrl D", "copy the stroke"], ["[, ], Z", "more time, less time, all of it"],
-  [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
-    ["Enter, arrows", "in the array: touch and lift, move"], ["Tab, arrows, Enter", "with Points, Felt: next point, move it (shift: less), curve or corner"],
-    ["Space, Esc", "in silence: press the button; close what is open"]];
+const KEYS = [["Space, X, Esc", "stop everybody's strokes"], ["P, Shift P", "play, play from this moment"], ["L", "loop"], ["F", "Feel on or off"],
+  ["D, S, E, W", "Draw, Line, Points, Felt"], ["N", "new take"], ["G", "gallery"], ["B, 1, 2", "compare two methods, play the first, the second"],
+  ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["H, arrows", "place on the body, move it"], ["0, +, −, Ctrl wheel", "array: show all, larger, smaller, zoom"],
+  ["T", "timeline: open, close"], ["Z, ], [, Ctrl wheel", "show all of it, less, more, zoom"], [", .", "one burst back, on"], ["J, Alt", "scrub felt or silent, no snapping"],
+  ["Enter, Shift Enter", "start here, range until here"], ["Shift Home", "clear both"], ["Ctrl D", "copy the stroke"],
+  ["Enter, arrows", "array: begin or end a touch, move it"], ["Tab, arrows, Enter", "Points and Felt: next point, move it (Shift: less), curve or corner"],
+  ["Delete", "delete the point"], ["Space, Esc", "in silence: press the button, close what is open"]];
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
 const is_field = e => e instanceof HTMLInputElement && ["text", "password"].includes(e.type);
@@ -32,7 +32,7 @@ export function new_take() {
 const ACTIONS = {
   p: e => play(e.shiftKey ? {from_s: state.at_s} : undefined), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
     w: () => choose_tool("felt"), b: toggle_compare, 1: () => choose_side(0), 2: () => choose_side(1), f: press("feel"), j: press("scrub"), n: new_take, g: press("gallery-open"), x: () => stop(),
-  0: press("zoom-all"), "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
+  0: press("show-all"), "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
   h: () => { open_sheet(""); show_place(); }, t: () => fold_time(), "[": () => zoom_time(1.5), "]": () => zoom_time(1 / 1.5), z: show_all_time,
   ",": () => step_burst(-1), ".": () => step_burst(1),
 };

@@ -59,7 +59,7 @@ let metered = "";
 export function draw_meter() {
   const at = state.dbfs.reduce((best, v, i) => v !== null && (best < 0 || v > state.dbfs[best]) ? i : best, -1);
   const below_db = at < 0 ? -Infinity : Math.min(0, state.dbfs[at] - ceiling_dbfs());
-  const text = at < 0 ? "quiet" : `loudest: tactor ${state.hello.array.tactors[at].tactor ?? at}, ${Math.round(100 * 10 ** (below_db / 20))} %`;
+  const text = at < 0 ? "quiet" : `loudest: tactor ${at}, ${Math.round(100 * 10 ** (below_db / 20))} %`;
   if (text === metered) return;
   metered = text;
   set_text("loudest", text);

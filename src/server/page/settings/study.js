@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT The definition of a study of two methods, for `tactor experiment`, and its files: the array, and each stroke of the
 // take.
-import {quoted, strokes_toml} from "../takes/stroke.js";
+import {quoted, strokes_toml} from "../takes/stroke_file.js";
 
 // Options of a method, see tactor-experiment(5), without the level in dBFS, which the experiment sets.
 const OF_METHOD = ("algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap compensate sigma_mm " +

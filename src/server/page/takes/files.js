@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Files that are opened and saved; the service reads and writes them as the tool does.
 import {state, changed, on_change, current_take, say} from "../state.js";
-import {by_id, make, show_only_if, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
+import {by_id, make, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
 import {add_take, make_request} from "./takes.js";
-import {stroke_csv} from "./stroke.js";
-import {with_level, rest_comment, take_toml, read_take} from "./stroke_file.js";
+import {stroke_csv, with_level, rest_comment, take_toml, read_take} from "./stroke_file.js";
 import {is_own_host} from "./address.js";
 import {fault_text, fault_sentence} from "../words.js";
 
@@ -13,7 +12,7 @@ const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
 // Formats of strokes that the page writes without a connection, too, and their words.
 const OWN_FORMATS = [{name: "toml", written: true}, {name: "csv", written: true, only_points: true}];
 const FORMAT_WORDS = {toml: ["Stroke", "for the tool, a study and this page"], csv: ["Timed points", "a table: time, place, intensity"]};
-const OTHER_KINDS = [["svg", "Figure, SVG", "for a paper, to be edited"], ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""],
+const OTHER_KINDS = [["svg", "Figure, SVG", "for a paper; can be edited"], ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""],
   ["wav", "Samples", "exactly what each channel plays"], ["json", "Plan", "all bursts as numbers"]];
 const formats = () => state.hello?.formats ?? OWN_FORMATS;
 const has_only_points = kind => formats().some(f => f.name === kind && f.only_points);
@@ -41,7 +40,7 @@ async function open_files(files) {
 async function import_file(file, source) {
   try { return await call("import", source); } catch (e) {
     if (!e.data?.hint?.includes("intensity_max")) throw e;
-    const most = Number(prompt(`“${file.name}”: ${e.data.why}. ` + "Which value is the full level? 100 is per cent, 127 MIDI, 255 8 bits.", "127"));
+    const most = Number(prompt(`“${file.name}”: ${e.data.why}. ` + "Which value is the full level? 100 for per cent, 127 for MIDI, 255 for 8 bits.", "127"));
     if (!most) throw e;
     return call("import", {...source, intensity_max: most});
   }
@@ -55,16 +54,10 @@ async function what_to_import(file) {
   if (file.size > MOST_BYTES) throw new Error(`it is larger than ${MOST_BYTES >> 10} KiB`);
   return {name: file.name, text};
 }
-on_click("open", () => by_id("file").click());
 listen("file", "change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
-let over = 0;
-addEventListener("dragenter", e => { if (e.dataTransfer?.types.includes("Files")) { ++over; by_id("drop").hidden = false; } });
-addEventListener("dragleave", () => { over = Math.max(0, over - 1); if (!over) by_id("drop").hidden = true; });
 addEventListener("dragover", e => e.preventDefault());
 addEventListener("drop", e => {
   e.preventDefault();
-  over = 0;
-  by_id("drop").hidden = true;
   open_files([...e.dataTransfer?.files ?? []]);
 });
 
@@ -96,7 +89,7 @@ async function save_as(kind) {
       give(r.name, r.mime, decoded(r.base64), await more[kind]?.() ?? "");
     } else if (kind === "toml") give_toml(file_name(take), take_toml(take));
     else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`, "text/csv", stroke_csv(take.strokes[0]));
-    else throw new Error("without a connection only a stroke, as TOML or CSV, can be saved");
+    else throw new Error("without a connection the page saves only TOML, and CSV of a single stroke");
     say(`Saved “${take.name}” as ${file_name(take)}.${kind}`);
   } catch (e) { say(fault_sentence(e)); }
 }
@@ -117,12 +110,12 @@ let shown = null; // the greeting whose formats the list has
 on_change(() => { if (state.hello !== shown) { shown = state.hello; show_kinds(); } }, "link");
 listen("p-save", "beforetoggle", () => {
   const take = current_take();
-  all_of("#save-list [data-kind]").forEach(b => show_only_if(b, !(has_only_points(b.dataset.kind) && take?.strokes.length > 1)));
+  all_of("#save-list [data-kind]").forEach(b => { b.hidden = has_only_points(b.dataset.kind) && take?.strokes.length > 1; });
 });
 async function copy(id) {
   try { await navigator.clipboard.writeText(by_id(id).textContent); say("Copied"); } catch {
     getSelection().selectAllChildren(by_id(id));
-    say("Marked; copy it with Ctrl C");
+    say("Selected; copy it with Ctrl C");
   }
 }
 all_of("[data-copy]").forEach(b => listen(b, "click", () => copy(b.dataset.copy)));
@@ -131,14 +124,14 @@ all_of("[data-copy]").forEach(b => listen(b, "click", () => copy(b.dataset.copy)
 listen("p-share", "beforetoggle", async e => {
   if (e.newState !== "open") return;
   const own = is_own_host(location.hostname);
-  show_only_if(by_id("qr"), !own);
+  by_id("qr").hidden = own;
   set_text("link", own ? `tactor serve --http 0.0.0.0:${location.port} --config FILE` : page_link());
-  set_text("share-text", own ? "Only this computer opens this address. For a phone, start the service like this, with a token_file under [serve] in FILE."
+  set_text("share-text", own ? "Only this computer can open this address. For a phone, start the service like this, with token_file under [serve] in FILE."
     : page_link().includes("#token=") ? "The link contains the token: anybody with the link can draw." : "Open it on a phone in the same network.");
   if (own) return;
   try {
     const {size, path} = await call("qr", {text: page_link()});
     by_id("qr").replaceChildren(make("svg", {viewBox: `0 0 ${size} ${size}`, role: "img", "aria-label": "QR code of the link",
       "shape-rendering": "crispEdges"}, make("path", {d: path, fill: "#000"})));
-  } catch { show_only_if(by_id("qr"), false); }
+  } catch { by_id("qr").hidden = true; }
 });

@@ -6,7 +6,8 @@ import {array} from "../drawing/view.js";
 import {play} from "../service/player.js";
 import {add_take, choose_take, try_take} from "./takes.js";
 import {thumb, draw_thumb, facts} from "./takes_panel.js";
-import {box, outside_mm, parts_reached, trimmed} from "./stroke.js";
+import {parts_reached, trimmed} from "./stroke.js";
+import {box, distance, outside_mm, sampled} from "../geometry.js";
 
 const BURST_S = 0.07; // by Park's law the interval is the same
 
@@ -16,7 +17,7 @@ function path(seconds, places) {
   return rows.map(([i, ...q]) => [seconds * parts_reached(rows)[i][0], ...q]);
 }
 const resting = (u, seconds, v = 0.5, strength = 1) => [[0, u, v, strength], [seconds, u, v, strength]];
-const curve = (f, n = 60) => Array.from({length: n + 1}, (_, i) => f(i / n));
+const curve = (f, n = 60) => sampled(n, f);
 const wave = turns => Math.sin(2 * Math.PI * turns);
 const ring = (turn, radius = 0.5) => [0.5 + radius * wave(turn), 0.5 - radius * wave(turn + 0.25)]; // clockwise from the top
 // Returns strokes, [start_s, rows, keys].
@@ -39,7 +40,7 @@ const GALLERY = [
   ["Half circle", "A curve from three tactors at a time.", 4, one(1.4, curve(p => ring(-p / 2)))],
   ["Three-quarter circle", "Where does it begin, and which way does it turn?", 4, one(2.1, curve(p => ring(0.5 + 0.75 * p)))],
   ["Nothing there", "Two tactors, felt as one point between them.", 0, [[0, resting(0.5, 1)]], CONTINUOUS],
-  ["Between two", "The point wanders to a neighbour and back.", 0, one(1.6, BACK), CONTINUOUS],
+  ["Between two", "The point moves to a neighbour and back.", 0, one(1.6, BACK), CONTINUOUS],
   ["Taps to motion", "Taps at 400 ms, a stroke at 70.", 1, [0.4, 0.2, 0.13, 0.1, 0.07].map((s, i) => [1.6 * i, path(1.2, ROW), taps(s)])],
   ["Three laws", "0.6, 1 and 1.6 of Park’s law: blurs, flows, breaks up.", 4,
     [0.6, 1, 1.6].flatMap((part, i) => at_law(path(1.6, curve(p => ring(p))), part, 2 * i)), {}, -6],
@@ -62,8 +63,8 @@ const GALLERY = [
 
 // Returns two neighbours near the middle of the array; the second one is nearer, and a horizontal pair wins over a vertical one.
 function middle_pair() {
-  const {places, box: {middle}} = array, apart = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
-  return places.flatMap((p, i) => places.map((q, k) => [i, k, i === k ? Infinity : apart(p, q) + apart(p, middle) + 1.01 * apart(q, middle)
+  const {places, box: {middle}} = array;
+  return places.flatMap((p, i) => places.map((q, k) => [i, k, i === k ? Infinity : distance(p, q) + distance(p, middle) + 1.01 * distance(q, middle)
     + 0.001 * Math.abs(p[1] - q[1])])).sort((a, b) => a[2] - b[2])[0].slice(0, 2);
 }
 // Returns strokes scaled to the array without a tenth at each edge; smaller if its hull is narrower than its box.
@@ -114,18 +115,18 @@ const tour = ([a, b], feel) => [
   ["One tactor", `Tactor ${b} buzzes where it is.`, 0, ["Tap it", [[0, resting(1, 0.5)]]]],
   ["A point where nothing is", `Now ${a} and ${b} play together, equally strong. You ${feel} one point between them: a phantom.`, 0,
     ...[["Again", 0.5], [`Only ${a}`, 0], [`Only ${b}`, 1]].map(([name, u]) => [name, [[0, resting(u, 1)]]])],
-  ["It moves", `The strength goes over from ${a} to ${b} while both play, and the point wanders along.`, 0,
+  ["It moves", `The strength moves from ${a} to ${b} while both play, and the point moves with it.`, 0,
     ...[["Again", 1.2], ["Slower", 3.6]].map(([name, s]) => [name, [[0, path(s, ROW)]]])],
   ["From taps to a stroke", "Ten short bursts along a line. Make the interval shorter until they become a stroke.", 1,
     ...[400, 200, 70].map(ms => [`${ms} ms`, [[0, path(0.009 * ms + 0.001, ROW), taps(ms / 1000)]]])],
-  ["Park’s law", "A burst of 70 ms wants 0.32 × 70 + 47 = 69 ms until the next. Shorter blurs; longer breaks into taps.", 1,
+  ["Park’s law", "After the onset of a 70 ms burst, the next one should begin 0.32 × 70 + 47 = 69 ms later. Earlier, the stroke blurs; later, it breaks into taps.", 1,
     ...[["0.6 of it", 0.6], ["The law", 1], ["1.6 of it", 1.6]].map(([name, part]) => [name, at_law(path(1.6, ROW), part)])],
-  ["Your turn", `Draw on the array. You ${feel} it while you draw, and it is kept as a take.`]];
+  ["Your turn", `Draw on the array. You ${feel} it while you draw, and the page keeps it as a take.`]];
 
 const card = by_id("p-tour"), gallery = by_id("p-gallery");
 // Shows a step. A step that can be tried begins by itself.
 function show_step(n) {
-  const steps = tour(middle_pair().map(i => array.tactors[i].tactor ?? i), is_simulated() ? "hear" : "feel");
+  const steps = tour(middle_pair(), is_simulated() ? "hear" : "feel");
   const [title, text, over, ...tried] = steps[n], next = steps[n + 1];
   const button = (name, onclick, disabled) => make("button", {class: "button outlined", onclick, disabled}, name);
   const actions = tried.map(([name, strokes]) => [name,

@@ -176,5 +176,5 @@ function keep_both(other) {
   unwritten.delete(other.id);
   unwritten.set(copy.id, copy);
   show(takes.set(other.id, other).set(copy.id, copy), state.current === other.id ? copy.id : state.current);
-  say(`“${own.name}” was changed in another tab, too; both are kept`);
+  say(`“${own.name}” has changed in another tab, too; the page keeps both`);
 }

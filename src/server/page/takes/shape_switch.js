@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT The switch at the bottom of the canvas: the stroke plays as drawn, or as the curve through its points.
 import {state, on_change, current_stroke} from "../state.js";
-import {by_id, on_click, show_pressed, show_only_if, listen, set_text} from "../../../net/page/dom.js";
+import {by_id, on_click, show_pressed, listen, set_text} from "../../../net/page/dom.js";
 import {edit_stroke} from "./takes.js";
 import {shape, as_drawn, as_edited, points_moved, fitted_within, FIT_MM} from "./stroke.js";
 
@@ -12,10 +12,10 @@ function curve_text(s, edited, points) {
 function show_shape() {
   const s = current_stroke(), now = shape(s), edited = now === "edited" ? s : s?.edited;
   const points = s && state.tool === "points", slider = by_id("fit-mm");
-  by_id("shape").hidden = now === null && !points || state.drawing !== null;
+  by_id("shape").hidden = state.drawing !== null || !(points || edited || now === "fitted");
   if (by_id("shape").hidden) return;
-  for (const id of ["shape-ink", "shape-curve"]) show_only_if(by_id(id), now !== null);
-  show_only_if(slider, points);
+  for (const id of ["shape-ink", "shape-curve"]) by_id(id).hidden = now === null;
+  slider.hidden = !points;
   slider.value = s.fit_mm ?? FIT_MM;
   slider.style.setProperty("--part", `${100 * (slider.value - slider.min) / (slider.max - slider.min)}%`);
   show_pressed(by_id("shape-ink"), now === "drawn");

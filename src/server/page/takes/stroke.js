@@ -6,6 +6,8 @@
 // [[part, factor], ...]. A drawing has {ink} too, [[t_s, x_mm, y_mm, pressure], ...], which never changes, and
 // {edited} while it plays as drawn: what it was before.
 
+import {blend, box, clamp, distance, sampled, segment_mm} from "../geometry.js";
+
 const SMOOTH_S = 0.012;
 export const FIT_MM = 0.2; // greatest distance of curve and base from each other
 const LOOK_MM = 0.25;      // distance of the places where they are compared
@@ -19,9 +21,6 @@ const CORNER_RAD = 50 * Math.PI / 180; // within 1 mm
 export const duration_s = s => s.timed.at(-1)[0];
 export const end_s = s => s.start_s + duration_s(s);
 export const total_s = strokes => strokes.reduce((most, s) => Math.max(most, end_s(s)), 0);
-
-const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
-const between = (a, b, part) => a + (b - a) * part;
 
 // Finds the index of the last row whose first value is at most v, by halving.
 function row_before(rows, v) {
@@ -38,7 +37,7 @@ export function interpolate(rows, v) {
   if (v <= rows[0][0]) return rows[0];
   if (v >= rows.at(-1)[0]) return rows.at(-1);
   const i = row_before(rows, v), a = rows[i], b = rows[i + 1], part = (v - a[0]) / (b[0] - a[0] || 1);
-  return a.map((x, k) => between(x, b[k], part));
+  return a.map((x, k) => blend(x, b[k], part));
 }
 
 // Makes a function of immutable values that caches its result for as long as the value exists.
@@ -49,7 +48,7 @@ export function kept_for(f) {
 // Returns the length of path up to each point, mm.
 const lengths_mm = kept_for(timed => {
   let sum = 0;
-  return timed.map((p, i) => i ? sum += Math.hypot(p[1] - timed[i - 1][1], p[2] - timed[i - 1][2]) : 0);
+  return timed.map((p, i) => i ? sum += distance(p.slice(1), timed[i - 1].slice(1)) : 0);
 });
 export const length_mm = timed => lengths_mm(timed).at(-1);
 // Returns the parts of path and time at each point. On a path without length, both parts are equal.
@@ -97,7 +96,7 @@ function path_piece(s, i) {
   const reached = lengths_mm(rows), total = reached.at(-1);
   const by_time = rows.map(([t], k) => [t, total > 0 ? reached[k] / total : (t - from) / span]);
   const n = Math.max(1, Math.ceil(long / STEP_MM), Math.ceil(span / STEP_S));
-  const times = [...rows.map(r => r[0]), ...Array.from({length: n - 1}, (_, k) => from + span * (k + 1) / n)];
+  const times = [...rows.map(r => r[0]), ...sampled(n, part => from + span * part).slice(1, -1)];
   return times.sort((a, b) => a - b).map(t => [t, ...interpolate(line, long * interpolate(by_time, t)[1]).slice(1),
     interpolate(rows, t)[3]]);
 }
@@ -108,7 +107,7 @@ const bent = (at, next, then) => ({x: 3 * (at.x - next.x) + then.x, y: 3 * (at.y
 const mirrored = (at, from) => ({x: 2 * at.x - from.x, y: 2 * at.y - from.y});
 function catmull_rom(a, b, c, d, part) {
   const gap = (p, q) => Math.max(1e-4, Math.sqrt(Math.hypot(p.x - q.x, p.y - q.y)));
-  const t1 = gap(a, b), t2 = t1 + gap(b, c), t3 = t2 + gap(c, d), t = between(t1, t2, part);
+  const t1 = gap(a, b), t2 = t1 + gap(b, c), t3 = t2 + gap(c, d), t = blend(t1, t2, part);
   return ["x", "y"].map(k => {
     const mix = (p, q, from, to) => ((to - t) * p + (t - from) * q) / (to - from);
     const ab = mix(a[k], b[k], 0, t1), bc = mix(b[k], c[k], t1, t2), cd = mix(c[k], d[k], t2, t3);
@@ -156,15 +155,15 @@ function place_to_cut(rows, knots, i, fit_mm) {
   if (long > LONGEST_MM) return (from + to) / 2;
   if (long < 2 * LOOK_MM) return null;
   const n = Math.ceil(long / LOOK_MM), curve = along(spline_piece(knots, i)), whole = curve.at(-1)[0];
-  const sampled = (table, first, length) => Array.from({length: n + 1}, (_, k) => interpolate(table, first + length * k / n).slice(1, 3));
-  const path = sampled(rows, from, long), spline = sampled(curve, 0, whole);
+  const places = (table, first, length) => sampled(n, part => interpolate(table, first + length * part).slice(1, 3));
+  const path = places(rows, from, long), spline = places(curve, 0, whole);
   let worst = {off: fit_mm * 0.9, k: 0}; // keeps a margin for places between the samples
   for (let k = 0; k <= n; ++k) {
     const off = Math.max(from_line_mm(path[k], spline, k), from_line_mm(spline[k], path, k));
     if (off > worst.off) worst = {off, k};
   }
   if (!worst.k) return null;
-  return from + long * Math.min(0.8, Math.max(0.2, worst.k / n));
+  return from + long * clamp(worst.k / n, 0.2, 0.8);
 }
 // Returns the distance of a place from a line, near the number k of its places.
 function from_line_mm(p, line, k) {
@@ -199,26 +198,22 @@ export function pace_table(pace, n = 200) {
   if (pace.kind === "drawn") return pace.table;
   if (pace.kind === "points") {
     let t = 0;
-    const table = [[0, 0]];
-    for (let i = 1; i <= n; ++i) {
-      t += 1 / Math.max(0.02, interpolate(pace.speeds, (i - 0.5) / n)[1]);
-      table.push([i / n, t]);
-    }
+    const table = sampled(n, part => [part, part && (t += 1 / Math.max(0.02, interpolate(pace.speeds, part - 0.5 / n)[1]))]);
     return table.map(([part, v]) => [part, v / t]);
   }
   if (pace.kind === "even") return [[0, 0], [1, 1]];
   const easing = {soft: v => v * v * (3 - 2 * v), reach: v => v ** 3 * (10 - 15 * v + 6 * v * v)}[pace.kind];
-  return Array.from({length: n + 1}, (_, i) => [easing(i / n), i / n]);
+  return sampled(n, time => [easing(time), time]);
 }
 
 // Returns speeds at some parts of the path, relative to the mean speed, as movable points.
 export function find_speeds(pace, n = 5) {
   if (pace.kind === "points") return pace.speeds;
   const table = pace_table(pace);
-  return Array.from({length: n}, (_, i) => {
-    const part = i / (n - 1), a = Math.max(0, part - 0.06), b = Math.min(1, part + 0.06);
+  return sampled(n - 1, part => {
+    const a = Math.max(0, part - 0.06), b = Math.min(1, part + 0.06);
     const dt = interpolate(table, b)[1] - interpolate(table, a)[1];
-    return [part, Math.min(5, Math.max(0.1, (b - a) / Math.max(dt, 1e-3)))];
+    return [part, clamp((b - a) / Math.max(dt, 1e-3), 0.1, 5)];
   });
 }
 
@@ -237,8 +232,8 @@ export function rebuild(s, seconds = duration_s(s)) {
     }))};
   }
   const table = pace_table(s.pace), by_time = table.map(([part, t]) => [t, part]);
-  const n = Math.min(MOST_POINTS, Math.max(2, Math.ceil(seconds / STEP_S)));
-  const cuts = new Set(Array.from({length: n + 1}, (_, i) => i / n));
+  const n = clamp(Math.ceil(seconds / STEP_S), 2, MOST_POINTS);
+  const cuts = new Set(sampled(n, part => part));
   for (const [, t] of table) cuts.add(t);
   for (const [mm] of rows) cuts.add(interpolate(table, mm / total)[1]);
   const timed = [...cuts].sort((a, b) => a - b).map(t => {
@@ -286,7 +281,7 @@ function farthest(rows, a, b, weights) {
   for (let i = a + 1; i < b; ++i) {
     const r = rows[i], part = (r[0] - p[0]) / (q[0] - p[0] || 1);
     weights.forEach((weight, k) => {
-      const d = weight * Math.abs(between(p[k + 1], q[k + 1], part) - r[k + 1]);
+      const d = weight * Math.abs(blend(p[k + 1], q[k + 1], part) - r[k + 1]);
       if (d > off) { off = d; at = i; }
     });
   }
@@ -358,7 +353,7 @@ export const without_knot = (s, i) => rebuild({...s, knots: s.knots.map((k, n) =
   .filter((_, n) => n !== i).map((k, n, all) => n === 0 ? {...k, at: 0} : n + 1 === all.length ? {...k, at: s.knots.at(-1).at} : k)});
 
 export function straight(from, to, speed_mm_s, name, start_s, strength = 1) {
-  const seconds = Math.max(0.06, Math.hypot(to[0] - from[0], to[1] - from[1]) / speed_mm_s);
+  const seconds = Math.max(0.06, distance(from, to) / speed_mm_s);
   return editable({name, start_s, timed: [[0, ...from, strength], [+seconds.toFixed(4), ...to, strength]]});
 }
 
@@ -376,12 +371,10 @@ export function trimmed(s, from_s, to_s) {
 }
 
 // Returns the knot that is nearest to a place: {index, off}.
-export function nearest_knot(knots, [x, y]) {
-  return knots.reduce((best, k, index) => {
-    const off = Math.hypot(k.x - x, k.y - y);
-    return off < best.off ? {index, off} : best;
-  }, {index: -1, off: Infinity});
-}
+export const nearest_knot = (knots, place) => knots.reduce((best, k, index) => {
+  const off = distance([k.x, k.y], place);
+  return off < best.off ? {index, off} : best;
+}, {index: -1, off: Infinity});
 export function insert_knot(s, place) {
   let best = {off: Infinity};
   path_pieces(s).forEach((rows, after) => rows.forEach(([at, x, y]) => {
@@ -394,47 +387,6 @@ export function insert_knot(s, place) {
   return {stroke: rebuild({...s, knots}), index: after + 1};
 }
 
-// Returns the convex hull of places, counter-clockwise in the mathematical sense.
-export function hull(places) {
-  const sorted = [...places].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
-  const half = list => {
-    const out = [];
-    for (const p of list) {
-      while (out.length > 1 && cross(out.at(-2), out.at(-1), p) <= 1e-9) out.pop();
-      out.push(p);
-    }
-    return out.slice(0, -1);
-  };
-  return [...half(sorted), ...half([...sorted].reverse())];
-}
-const cross = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-
-// Returns the distance of a place from a hull; 0 within.
-export function outside_mm(edge, p) {
-  if (edge.length < 3) return edge.length === 2 ? segment_mm(edge[0], edge[1], p) : 0;
-  let off = Infinity, inside = true;
-  edge.forEach((a, i) => {
-    const b = edge[(i + 1) % edge.length];
-    if (cross(a, b, p) < -1e-9) inside = false;
-    off = Math.min(off, segment_mm(a, b, p));
-  });
-  return inside ? 0 : off;
-}
-// Returns the part of a segment at which a place is nearest to it.
-function nearest_part(a, b, p) {
-  const dx = b[0] - a[0], dy = b[1] - a[1];
-  return Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
-}
-const nearest_on = (a, b, p) => [0, 1].map(k => between(a[k], b[k], nearest_part(a, b, p)));
-// Returns the distance of a place from a segment. Uses plain numbers, because this is most of a fit's work.
-function segment_mm(a, b, p) {
-  const part = nearest_part(a, b, p), x = between(a[0], b[0], part) - p[0], y = between(a[1], b[1], part) - p[1];
-  return Math.sqrt(x * x + y * y);
-}
-// Returns the place of a hull that is nearest to p.
-export const within = (edge, p) => outside_mm(edge, p) === 0 ? p : edge.map((a, i) => nearest_on(a, edge[(i + 1) % edge.length], p))
-  .reduce((best, q) => distance(q, p) < distance(best, p) ? q : best);
-
 // Scales and centres strokes to the box of a hull, but keeps their shape and times.
 export function fitted(strokes, edge) {
   const all = strokes.flatMap(s => s.timed.map(p => [p[1], p[2]]));
@@ -446,23 +398,3 @@ export function fitted(strokes, edge) {
   return strokes.map(s => ({...s, timed: moved(s.timed), ...s.base && {base: moved(s.base)}, ...s.ink && {placed: true},
     ...s.knots && {knots: s.knots.map(k => { const [x, y] = move(k.x, k.y); return {...k, x, y}; })}}));
 }
-export function box(places) {
-  const ends = (f, start) => [0, 1].map(k => places.reduce((v, p) => f(v, p[k]), start));
-  const least = ends(Math.min, Infinity), most = ends(Math.max, -Infinity);
-  return {least, most, size: most.map((v, k) => v - least[k]), middle: most.map((v, k) => (v + least[k]) / 2)};
-}
-
-// TOML and CSV of strokes.
-export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
-// Returns a stroke's own `keys`, as in a stroke file, such as {soa_s: 0.4}, without options that are set for all strokes, which win.
-export const keys_left = (s, options) => Object.fromEntries(Object.entries(s.keys ?? {}).filter(([key]) => key === "noise_seed"
-  ? options.waveform === undefined : options[key.replace(/_(s|hz|depth|profile)$/, "")] === undefined)
-  .map(([key, v]) => [key, key === "noise_seed" ? options.noise_seed ?? v : v]));
-const own_keys = (s, options) => Object.entries(keys_left(s, options))
-  .map(([key, v]) => `${key} = ${typeof v === "string" ? quoted(v) : JSON.stringify(v)}\n`).join("");
-export function strokes_toml(strokes, options = {}) {
-  const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s);
-  return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+s.start_s.toFixed(4)}\nstart_from = "piece"\n` +
-    `${own_keys(s, options)}timed = [${s.timed.map(p => `[${p.join(", ")}]`).join(", ")}]\n`).join("\n");
-}
-export const stroke_csv = s => "t_s,x_mm,y_mm,intensity\n" + s.timed.map(p => p.join(",")).join("\n") + "\n";

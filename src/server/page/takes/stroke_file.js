@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: MIT A take as a stroke file: options as keys of the file, the gain as its level, and other options in a comment at its
 // end.
-import {keys_left, strokes_toml} from "./stroke.js";
 
 const KEYS = {algorithm: "algorithm", phantom: "phantom", faces: "faces", soa: "soa_s", burst: "burst_s", carrier: "carrier_hz", waveform: "waveform"};
 const REST = /^# Options of the studio that a stroke file has no keys for: (\{.*\})$/m;
 const AM = /^([\d.]+)(?::([\d.]+))?$/; // HZ or HZ:DEPTH
+
+export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
+// Returns a stroke's own `keys`, as in a stroke file, such as {soa_s: 0.4}, without options that are set for all strokes, which win.
+export const keys_left = (s, options) => Object.fromEntries(Object.entries(s.keys ?? {}).filter(([key]) => key === "noise_seed"
+  ? options.waveform === undefined : options[key.replace(/_(s|hz|depth|profile)$/, "")] === undefined)
+  .map(([key, v]) => [key, key === "noise_seed" ? options.noise_seed ?? v : v]));
+const own_keys = (s, options) => Object.entries(keys_left(s, options))
+  .map(([key, v]) => `${key} = ${typeof v === "string" ? quoted(v) : JSON.stringify(v)}\n`).join("");
+export function strokes_toml(strokes, options = {}) {
+  const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s);
+  return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+s.start_s.toFixed(4)}\nstart_from = "piece"\n` +
+    `${own_keys(s, options)}timed = [${s.timed.map(p => `[${p.join(", ")}]`).join(", ")}]\n`).join("\n");
+}
+export const stroke_csv = s => "t_s,x_mm,y_mm,intensity\n" + s.timed.map(p => p.join(",")).join("\n") + "\n";
 
 // Splits options into keys of a stroke file and the others.
 function split({noise_seed, am, ...options}) {

@@ -2,7 +2,8 @@
 // so that it can be undone.
 import {state, changed, current_take, level_dbfs, say, LEAST_PART_S} from "../state.js";
 import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";
-import {total_s, duration_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
+import {total_s, duration_s, trimmed, fitted, editable} from "./stroke.js";
+import {strokes_toml} from "./stroke_file.js";
 
 const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // limits of undo
 const ROW_BYTES = 40;         // memory of a row of points
@@ -47,7 +48,7 @@ function step(from, to) {
   last_same = null;
   const other = s.changes.find(([id,, after]) => find_take(id)?.version !== after?.version || !find_take(id) !== !after);
   if (other) {
-    say(`“${(other[2] ?? other[1]).name}” was changed in another tab; that stays`);
+    say(`“${(other[2] ?? other[1]).name}” has changed in another tab; the page keeps that change`);
     return changed("take");
   }
   to.push({changes: s.changes.map(([id, before, after]) => [id, after, before]), current: [s.current[1], s.current[0]], stroke: state.stroke});

@@ -51,7 +51,7 @@ export function draw_thumb(c, strokes, at_s = null) {
     paint(p, {fill: "skin", line: "ink", width: 3});
   }
 }
-export const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
+export const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t)).replace(" ", "\u00a0")}`;
 
 const row_note = t => state.unkept.has(t.id) ? "not kept" : state.elsewhere.has(t.id) ? "changed in another tab" : "";
 
@@ -99,7 +99,7 @@ function show_bin() {
   set_text("bin-text", `${binned.length}, kept for ${BIN_DAYS} days`);
   by_id("binned").replaceChildren(...[...binned].sort((a, b) => b.deleted - a.deleted).map(t => make("li", {}, thumb(t.strokes),
     make("span", {}, make("b", {}, t.name), make("small", {}, `deleted ${when(days(t))}, ${BIN_DAYS - 1 - days(t)} days left`)),
-    make("button", {class: "button outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
+    make("button", {class: "button small outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
 }
 
 let listed = [], noted = "";
@@ -117,7 +117,6 @@ function show_takes() {
   }
   for (const b of list.querySelectorAll('[aria-current="true"]')) b.removeAttribute("aria-current");
   rows.get(state.current)?.element.firstChild.setAttribute("aria-current", "true");
-  by_id("no-takes").hidden = now.length > 0;
 }
 on_change(show_takes, "takes", "take");
 on_change(() => all_of(".thumb").forEach(c => c.draw()), "theme", "array");

@@ -35,7 +35,7 @@ export function copy_clip(from_s, same) {
 }
 export function toggle_append() {
   state.append = !state.append;
-  say(state.append ? "Draw: it follows the last stroke" : "Each drawing is a new take");
+  say(state.append ? "The next drawing follows the last stroke" : "Each drawing is a new take");
   changed("curves");
 }
 const clip_button = i => make("button", {onclick: () => choose_clip(i), onblur: end_edit, onkeydown: e => {

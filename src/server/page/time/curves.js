@@ -3,6 +3,7 @@ import {state, changed, current_take, current_stroke} from "../state.js";
 import {paint, write, plot} from "../look.js";
 import {left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
+import {clamp, distance, sampled} from "../geometry.js";
 import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
 
 const FELT_STEP_S = 0.07; // the SOA of the paper
@@ -25,11 +26,11 @@ export function draw_curves(p, l) {
   draw_handles(p, l);
 }
 const speed_rows = kept_for(timed => {
-  const d = timed.at(-1)[0], n = Math.min(160, Math.max(8, Math.round(d / 0.03)));
+  const d = timed.at(-1)[0], n = clamp(Math.round(d / 0.03), 8, 160);
   return Array.from({length: n}, (_, i) => {
     const middle = d * (i + 0.5) / n, half = Math.min(d / n, FELT_STEP_S) / 2;
     const a = interpolate(timed, middle - half), b = interpolate(timed, middle + half);
-    return [middle, Math.hypot(b[1] - a[1], b[2] - a[2]) / (2 * half)];
+    return [middle, distance(a.slice(1), b.slice(1)) / (2 * half)];
   });
 });
 function most_speed(take) {
@@ -44,11 +45,11 @@ const speeds_felt = kept_for(plan => plan.felt_rows.map(felt => {
     const step = Math.max(FELT_STEP_S, (felt.at(-1)[0] - felt[0][0]) / 400);
     for (let t = felt[0][0] + step / 2; t + step < felt.at(-1)[0]; t += step) {
       const a = interpolate(felt, t), b = interpolate(felt, t + step);
-      found.push([t + step / 2, Math.hypot(b[1] - a[1], b[2] - a[2]) / step]);
+      found.push([t + step / 2, distance(a.slice(1), b.slice(1)) / step]);
     }
     return found;
   }));
-export const felt_speeds = plan => plan ? speeds_felt(plan) : [];
+const felt_speeds = plan => plan ? speeds_felt(plan) : [];
 // The curve that is touched stands out, and has its points.
 const alpha = kind => !state.curve || state.curve === kind ? 1 : 0.3;
 export function touch_curve(kind) {
@@ -83,7 +84,7 @@ const y_strength = (v, top, bottom) => bottom - v * (bottom - top - 12);
 // Returns the part of the time at which a part of the path is reached.
 const reached = (s, part) => interpolate(s.pace.kind === "even" ? [[0, 0], [1, 1]] : parts_reached(s.timed), part)[1];
 function draw_strength(p, l, s, top, bottom) {
-  const rows = s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed, duration_s(s) * k / 199)) : s.timed;
+  const rows = s.timed.length > 400 ? sampled(200, part => interpolate(s.timed, duration_s(s) * part)) : s.timed;
   plot(p, ...rows.map(q => [to_x(l, s.start_s + q[0]), y_strength(Math.min(1, q[3] ?? 1), top, bottom)]));
   p.setLineDash([1, 4]);
   paint(p, {line: "ink2", width: 2, alpha: alpha("strength")});

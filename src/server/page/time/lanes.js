@@ -30,13 +30,13 @@ function draw_lane(l) {
   lanes.forEach((i, row) => {
     const y = top + (row + 1) * h;
     if (l.thin) { p.fillStyle = colour("well"); p.fillRect(left(l), y - h * 0.8, end - left(l), Math.max(1, h * 0.6)); return; }
-    const hot = i === state.hot, tone = hot ? "ink" : "ink2", number = String(array.tactors[i].tactor ?? i);
+    const hot = i === state.hot, tone = hot ? "ink" : "ink2", number = String(i);
     plot(p, [left(l), y - 0.5], [end, y - 0.5]);
     paint(p, {line: hot ? "ink2" : "grid"});
     write(p, number, left(l) - 8, y - 2, tone, {weight: hot ? 700 : 600, align: "right"});
     if (row === 0) write(p, "tactor", left(l) - 12 - p.measureText(number).width, y - 2, tone, {size: 11, align: "right"});
   });
-  if (silent_count() && !l.thin) write(p, `${silent_count()} silent of ${array.places.length}; the others in the order they begin`,
+  if (silent_count() && !l.thin) write(p, `${silent_count()} of ${array.places.length} are silent; the others are in the order in which they begin`,
     left(l), top + (lanes.length + 1) * h - 4, "ink3", {align: "left"});
   if (state.plan) draw_bars(p, l, h, top, lanes);
   p.restore();

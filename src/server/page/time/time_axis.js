@@ -5,6 +5,7 @@ import {by_id, make} from "../../../net/page/dom.js";
 import {take_s} from "../takes/takes.js";
 import {end_s, kept_for} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
+import {clamp} from "../geometry.js";
 import {seconds_text} from "../words.js";
 
 export const CLIP = 26;
@@ -63,12 +64,12 @@ export const silent_count = () => array.places.length - lane_tactors().length;
 const lane_count = () => Math.max(1, lane_tactors().length + (silent_count() ? 1 : 0));
 export function lane_height(l) {
   const h = (l.bottom - l.top) / lane_count();
-  return l.thin ? h : Math.min(MOST_LANE_PX, Math.max(LEAST_LANE_PX, h));
+  return l.thin ? h : clamp(h, LEAST_LANE_PX, MOST_LANE_PX);
 }
 // Returns the greatest scroll offset of the lanes, px.
 export const most_scroll = l => Math.max(0, lane_count() * lane_height(l) - (l.bottom - l.top));
 export function scroll_to(l, px) {
-  l.scroll = Math.min(most_scroll(l), Math.max(0, px));
+  l.scroll = clamp(px, 0, most_scroll(l));
   l.stale = true;
   changed("frame");
 }

@@ -3,6 +3,7 @@ import {listen} from "../../../net/page/dom.js";
 import {state, changed, current_take, marks, say, now_ms} from "../state.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
 import {trimmed, duration_s, end_s} from "../takes/stroke.js";
+import {clamp} from "../geometry.js";
 import {look_at} from "../service/player.js";
 import {PAUSE_S, begin_live, send} from "../drawing/pointer.js";
 import {full, mini, total, shown, left, to_x, to_time, clip_box, most_scroll, scroll_to, show_time, zoom_time, CLIP, LEAST_S} from "./time_axis.js";
@@ -75,20 +76,20 @@ function lane_moved(e) {
     return e.target === full.canvas ? touch_curve_at(full, e.clientX - r.left, e.clientY - r.top) : undefined;
   }
   const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x), s = held.stroke;
-  const high = (held.l.height - 8 - y) / (held.l.curves - 20) + held.rise, limited = (v, a, b) => Math.min(b, Math.max(a, v));
+  const high = (held.l.height - 8 - y) / (held.l.curves - 20) + held.rise;
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
   if (held.kind === "scroll") return scroll_to(held.l, held.from + (y - held.y) * held.by);
   // A handle that is only chosen does not move; a dragged one keeps its distance from the pointer.
   if (Math.abs(held.rise === undefined ? x - held.x : y - held.y) < 3 && !held.moved) return;
   const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t + held.off_s, e, held.index, held.kind !== "move");
   held.moved = true;
-  if (held.kind === "strength") return set_strength(held.index, limited(high, 0, 1), held.key);
-  if (held.kind === "speed") return set_speed(held.index, limited(+(high * held.most / held.mean).toFixed(2), 0.1, 5), held.key);
+  if (held.kind === "strength") return set_strength(held.index, clamp(high, 0, 1), held.key);
+  if (held.kind === "speed") return set_speed(held.index, clamp(+(high * held.most / held.mean).toFixed(2), 0.1, 5), held.key);
   if (held.kind === "look") return scrub_to(near, held.key);
-  if (held.kind === "range") return set_range(held.fixed, limited(near, 0, total()));
+  if (held.kind === "range") return set_range(held.fixed, clamp(near, 0, total()));
   if (held.kind === "trim-end") return pull_end(held, x - held.x, near);
   if (copies) held.index = copy_clip(s.start_s, held.key);
-  put_stroke(held.kind === "trim-start" ? () => trimmed(s, limited(near - s.start_s, 0, duration_s(s) - LEAST_S), duration_s(s))
+  put_stroke(held.kind === "trim-start" ? () => trimmed(s, clamp(near - s.start_s, 0, duration_s(s) - LEAST_S), duration_s(s))
     : k => starting_at(k, near), held.key, held.index);
 }
 // Zooms so that the moments under two fingers stay under them.
