@@ -356,7 +356,7 @@ std::shared_ptr<connection> connect_browser(asio::io_context& io,
 web_reply make_page(const page_document& document, std::string_view host)
 {
     return {200, "text/html; charset=utf-8", std::string(document.text),
-            fmt::format("default-src 'none'; {}; img-src data:; manifest-src blob:; "
+            fmt::format("default-src 'none'; {}; img-src data:; "
                         "connect-src 'self' ws://{}; frame-ancestors 'none'; base-uri 'none'; "
                         "form-action 'none'",
                         document.policy, host),
