@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The looks of the studio in a real Chromium, in each state, size and theme. Usage: test_page_looks.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
+import json
 import pathlib
 import re
 import sys
@@ -61,6 +62,20 @@ class Looks(Drawn):
         p.until("tactor.state.takes.length && !tactor.state.playing")
         self.planned(p)
         self.look(p, "take")
+
+    def test_a_moment_of_the_gallery(self):
+        """studio-moment-1440x900-light.png of the pictures is examples/studio.png, which README and the guide show."""
+        p = self.open(self.serve())
+        self.await_service(p)
+        self.add_example(p)
+        self.planned(p)
+        # The figures are those of the tool; a burst holds its place for one SOA, so the lag is half of it.
+        found = json.loads(self.ok("compare", self.saved(p, "toml"), "--array", "palm-3x3", "--algorithms", "park2016", "--format", "json").stdout)["results"][0]
+        self.assertEqual(p.value("[...document.querySelectorAll('#predicted .tile > *')].map(e => e.textContent)"),
+                         [f"{found['rms_to_path_mm']:.1f}mm", f"on the pathlate by {1000 * found['soa_s'] / 2:.0f} ms", f"{found['speed_cv']:.2f}CV", "uneven speed"])
+        p.until("!document.querySelector('#toast').classList.contains('on')")
+        p.value("tactor.state.at_s = 0.99, tactor.changed('moment')")
+        self.look(p, "moment", (*SIZES, (1024, 768)))
 
     def test_a_take_with_a_warning_and_its_points(self):
         p, _ = self.drawn(self.serve())
