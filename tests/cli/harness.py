@@ -140,9 +140,8 @@ class ToolTest(unittest.TestCase):
 
     def defaults(self, **keys):
         """Writes keys of [defaults] as a configuration. Returns the option that names it."""
-        name = "".join(f"{key}={value}," for key, value in keys.items()) + "defaults.toml"
-        self.write(name, "[defaults]\n" + "".join(f"{key.replace('_', '-')} = {json.dumps(value)}\n" for key, value in keys.items()))
-        return "--config", name
+        self.write("defaults.toml", "[defaults]\n" + "".join(f"{key.replace('_', '-')} = {json.dumps(value)}\n" for key, value in keys.items()))
+        return "--config", "defaults.toml"
 
     def until(self, condition, process=None):
         """Polls a condition that nothing announces, for as long as the process that causes it runs."""
