@@ -23,7 +23,7 @@ SCHEMAS = pathlib.Path(sys.argv[3]).resolve()
 TASKS = {
     "choose": (dict(attribute="similarity", trials=8), "preference.all.mean", "chosen"),
     "rate": (dict(attribute="similarity", trials=8), "paired.difference", "rating"),
-    "identify": (dict(trials=8), "correct.soft.all.mean", "correct"),
+    "identify": (dict(attribute="movement", trials=8), "correct.soft.all.mean", "correct"),
     "detect": (dict(catch=0.5, trials=16), "dprime.mean", "signal"),
     "same-different": (dict(trials=16), "dprime.mean", "positive"),
     "estimate": (dict(question="?", vary="length_mm", values=[5, 10, 20], trials=18), "exponent.mean", "estimate"),

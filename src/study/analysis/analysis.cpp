@@ -46,13 +46,14 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     run_analysis r;
     r.run = d.experiment.runs[which];
     run_people people{{}, has_groups(r.run, d.experiment.groups)};
+    const auto plan = task_in(r.run).plan_cells(r.run);
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
         r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
         if (find_run(d, i, which) != r.run)
             continue; // the results of the group have it
-        if (!task_in(r.run).is_enough(r.run, own.trials)) {
+        if (own.trials.empty() || (plan && !compute_cells(r.run, *plan, own.trials))) {
             r.missing.push_back({d.participants[i], own.trials.empty()
                                                         ? "no trial counts"
                                                         : "no trial counts in some of the cells"});

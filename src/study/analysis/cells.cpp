@@ -101,8 +101,8 @@ std::optional<cell_values> compute_cells(const run_outline& run, const cell_plan
     return sums;
 }
 
-std::vector<named_value> list_cells(const run_outline& run, const cell_plan& plan,
-                                    const std::vector<trial>& trials)
+std::vector<named_value> list_cell_values(const run_outline& run, const cell_plan& plan,
+                                          const std::vector<trial>& trials)
 {
     const auto cells = compute_cells(run, plan, trials);
     std::vector<named_value> all;

@@ -17,7 +17,7 @@ namespace tactor::study {
 /// Values by row (method; one row for choose between two) and motion.
 using cell_values = std::vector<std::vector<double>>;
 
-/// Cells of a run, and how trials become their values.
+/// Cells of a run, with what makes values of trials.
 struct cell_plan {
     std::vector<std::string> methods = {}; ///< of the rows
     /// Lists the rows that a trial is in, each with its value.
@@ -34,9 +34,9 @@ struct cell_plan {
 std::optional<cell_values> compute_cells(const run_outline& run, const cell_plan& plan,
                                          const std::vector<trial>& trials);
 
-/// Lists them by METHOD and MOTION; without values if a cell has no trial.
-std::vector<named_value> list_cells(const run_outline& run, const cell_plan& plan,
-                                    const std::vector<trial>& trials);
+/// Lists the values by METHOD and MOTION; without values if a cell has no trial.
+std::vector<named_value> list_cell_values(const run_outline& run, const cell_plan& plan,
+                                          const std::vector<trial>& trials);
 
 /// Returns the values of all participants, of whom none lacks a cell.
 std::vector<cell_values> compute_all_cells(const run_outline& run, const cell_plan& plan,
@@ -59,7 +59,7 @@ paired_list compare_in_pairs(const cell_means& means, double rounding);
 void add_groups(std::vector<result>& results, const run_outline& run, const run_people& people,
                 const std::vector<cell_values>& all, bool methods);
 
-/// The same of one value of each participant, who may lack it.
+/// Adds the same of one value of each participant, who may lack it.
 void add_groups(std::vector<result>& results, const run_people& people,
                 const std::vector<std::optional<double>>& values);
 

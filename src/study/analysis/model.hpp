@@ -9,7 +9,10 @@
 
 namespace tactor::study {
 
-/// A model as a task says it.
+/// Family of answers that say which of two is more.
+inline constexpr const char* probit = "family = binomial(\"probit\"), ";
+
+/// Parts of a model that depend on the task.
 struct r_model {
     std::string response;    ///< "lmer(rating"
     std::string family = {}; ///< "family = binomial, "

@@ -14,6 +14,64 @@
 namespace tactor::study {
 namespace {
 
+// A participant's trials of a run: as planned, and as the analysis has them.
+struct person_run {
+    std::string code;
+    std::vector<planned_trial> planned = {};
+    std::vector<trial> trials = {};
+};
+
+std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
+{
+    return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
+}
+
+// Prepares a run for n participants, without their answers.
+std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
+                                       const std::optional<std::uint64_t>& seed)
+{
+    const run_definition& r = d.runs[run];
+    std::vector<person_run> all;
+    for (std::size_t i = 1; i <= n; ++i) {
+        person_run p{fmt::format("{:02}", i)};
+        p.planned = make_run(d, run, p.code, seed.value_or(d.seed.value_or(default_seed(p.code)))).trials;
+        for (const planned_trial& t : p.planned) {
+            trial one;
+            one.place = static_cast<unsigned>(p.trials.size() + 1);
+            one.motion = place_in(r.motions, t.motion);
+            one.method_1 = place_in(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
+            if (t.method_2)
+                one.method_2 = place_in(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
+            if (d.methods[t.method_1].name == standard_name)
+                one.method_1 = one.method_2;
+            p.trials.push_back(one);
+        }
+        all.push_back(std::move(p));
+    }
+    return all;
+}
+
+// Fills the answers in; a trial that is void comes again until it is not.
+void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
+                const run_definition& r)
+{
+    const task& own = task_in(r.outline);
+    const auto values = own.choose_values(r);
+    for (std::size_t i = 0; i < p.trials.size(); ++i) {
+        planned_trial& t = p.planned[i];
+        values->choose(t);
+        simulated_answer a;
+        unsigned attempt = 0;
+        do
+            a = who.answer(t, p.trials[i].place, ++attempt, false);
+        while (a.is_void);
+        p.trials[i].value = find_value(d, t).value_or(0.0);
+        const std::string& method_1 = d.methods[t.method_1].name;
+        own.score(p.trials[i], r.outline, method_1, a.response);
+        values->take(t.track, method_1, static_cast<unsigned>(a.response));
+    }
+}
+
 // Tests one study by its first participants. One without a value lacks a cell and is left out, as in the
 // analysis.
 void count_study(power_at& at, std::span<const compared_person> people, const run_outline& run,

@@ -450,7 +450,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     r.choices = t.has("choices") ? r.outline.choices : own.usual_choices(d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
-    r.pairs = std::ranges::any_of(own.plan_cells(r), [](const auto& c) { return c.method_2.has_value(); });
+    r.pairs = std::ranges::any_of(own.list_cells(r), [](const auto& c) { return c.method_2.has_value(); });
     return r;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -14,6 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "core/split.hpp"
+#include "study/analysis/measures.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/tasks/task.hpp"
@@ -38,11 +38,6 @@ T simulation_value(std::string_view key, std::string_view text, T low, T high)
     return *v;
 }
 
-std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
-{
-    return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
-}
-
 // Returns the predicted error of a stimulus, or how uneven it is.
 double find_cost(const experiment_definition& d, const run_definition& r, const stimulus_set& stimuli,
                  std::size_t motion, std::size_t method)
@@ -59,50 +54,6 @@ double find_cost(const experiment_definition& d, const run_definition& r, const 
 }
 
 } // namespace
-
-std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
-                                       const std::optional<std::uint64_t>& seed)
-{
-    const run_definition& r = d.runs[run];
-    std::vector<person_run> all;
-    for (std::size_t i = 1; i <= n; ++i) {
-        person_run p{fmt::format("{:02}", i)};
-        p.planned = make_run(d, run, p.code, seed.value_or(d.seed.value_or(default_seed(p.code)))).trials;
-        for (const planned_trial& t : p.planned) {
-            trial one;
-            one.place = static_cast<unsigned>(p.trials.size() + 1);
-            one.motion = place_in(r.motions, t.motion);
-            one.method_1 = place_in(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
-            if (t.method_2)
-                one.method_2 = place_in(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
-            if (d.methods[t.method_1].name == standard_name)
-                one.method_1 = one.method_2;
-            p.trials.push_back(one);
-        }
-        all.push_back(std::move(p));
-    }
-    return all;
-}
-
-void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
-                const run_definition& r)
-{
-    const task& own = task_in(r.outline);
-    const auto values = own.choose_values(r);
-    for (std::size_t i = 0; i < p.trials.size(); ++i) {
-        planned_trial& t = p.planned[i];
-        values->choose(t);
-        simulated_answer a;
-        unsigned attempt = 0;
-        do
-            a = who.answer(t, p.trials[i].place, ++attempt, false);
-        while (a.is_void);
-        p.trials[i].value = find_value(d, t).value_or(0.0);
-        const std::string& method_1 = d.methods[t.method_1].name;
-        own.score(p.trials[i], r.outline, method_1, a.response);
-        values->take(t.track, method_1, static_cast<unsigned>(a.response));
-    }
-}
 
 simulation parse_simulation(std::string_view text)
 {

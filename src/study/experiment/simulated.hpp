@@ -62,19 +62,4 @@ private:
     simulated_run run_;
 };
 
-/// A participant's trials of a run: as planned, and as the analysis has them.
-struct person_run {
-    std::string code;
-    std::vector<planned_trial> planned = {};
-    std::vector<trial> trials = {};
-};
-
-/// Prepares a run for n participants, without their answers.
-std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
-                                       const std::optional<std::uint64_t>& seed);
-
-/// Fills the answers in; a trial that is void comes again until it is not.
-void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
-                const run_definition& r);
-
 } // namespace tactor::study

@@ -218,7 +218,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     auto blocks = part_blocks(d, r, task_in(r.outline).draw(r, r.outline.trials, numbers));
     if (mixes_motions &&
         !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
-        blocks = part_blocks(d, r, draw_by_turns(d, r, task_in(r.outline).plan_cells(r), numbers));
+        blocks = part_blocks(d, r, draw_by_turns(d, r, task_in(r.outline).list_cells(r), numbers));
     // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
     const std::size_t runs = square_rows(d.order, d.runs.size());

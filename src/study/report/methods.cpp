@@ -387,7 +387,11 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["valued"] = std::ranges::any_of(all["stimuli"], [](const json& s) { return s.at("value") != ""; });
     all["notes"] = list_notes(f);
     all["gap"] =
-        sections.contains("gap")
+        std::ranges::any_of(f.sessions,
+                            [](const session_facts& s) {
+                                return s.design &&
+                                       std::ranges::any_of(s.design->runs, &run_definition::pairs);
+                            })
             ? json(definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; }))
             : json(false);
     all["rest"] = definition([](const experiment_definition& e) {
@@ -421,7 +425,6 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                 task_in(r.outline).describe_procedure(r, section);
                 sections.insert(section);
             }
-    sections.erase("gap"); // with its own text
     for (const std::string_view section : sections)
         all[std::string(section)] = true;
     all["ordered"] = own;

@@ -55,7 +55,7 @@ const std::array<event_row, code_events>& list_events()
 // Returns the intervals in which an event may come.
 std::vector<unsigned> list_intervals(const experiment_definition& d, const run_definition& r, code_event e)
 {
-    const auto cells = task_in(r.outline).plan_cells(r);
+    const auto cells = task_in(r.outline).list_cells(r);
     std::vector<unsigned> all;
     for (const unsigned interval : {1U, 2U})
         if (std::ranges::any_of(cells, [&](const planned_trial& t) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -11,9 +12,13 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
+#include "study/experiment/definition.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/comparison.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -122,14 +127,6 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
 }
 
-std::string list_numbers(const std::vector<double>& numbers)
-{
-    std::vector<std::string> texts;
-    for (const double v : numbers)
-        texts.push_back(plain_number(v, 4));
-    return fmt::format("{}", fmt::join(texts, ", "));
-}
-
 class chooser final : public value_chooser {
 public:
     explicit chooser(const run_definition& r) : run_(r), tracks_(r) {}
@@ -148,6 +145,14 @@ private:
     const run_definition& run_;
     adaptive_tracks tracks_;
 };
+
+std::string list_numbers(const std::vector<double>& numbers)
+{
+    std::vector<std::string> texts;
+    for (const double v : numbers)
+        texts.push_back(plain_number(v, 4));
+    return fmt::format("{}", fmt::join(texts, ", "));
+}
 
 class adaptive final : public comparison_task {
 public:
@@ -170,7 +175,7 @@ public:
     }
     void read(const toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         std::vector<planned_trial> cells;
         unsigned track = 0;

@@ -99,7 +99,7 @@ public:
         refuse_method_blocks(t, r.outline);
     }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         return cross_motions(r, list_pairs);
     }
@@ -134,16 +134,7 @@ public:
 
     // Results.
 
-    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
-                                     sigmoid) const override
-    {
-        return list_cells(o, plan_choices(o), trials);
-    }
-
-    bool is_enough(const run_outline& o, const std::vector<trial>& trials) const override
-    {
-        return compute_cells(o, plan_choices(o), trials).has_value();
-    }
+    std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_choices(o); }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
@@ -189,17 +180,9 @@ public:
                 50.0, plan_choices(o).rounding()};
     }
 
-    compared_person compare(const run_outline& o, const std::vector<trial>& trials) const override
-    {
-        const auto cells = compute_cells(o, plan_choices(o), trials);
-        return {cells ? std::optional(mean(cells->back())) : std::nullopt};
-    }
-
     std::vector<std::string_view> list_columns(const run_outline& o) const override
     {
-        if (has_several(o))
-            return {"other"};
-        return {};
+        return has_several(o) ? std::vector<std::string_view>{"other"} : std::vector<std::string_view>{};
     }
 
     // A trial asks about the last of two methods; of three or more about the one felt first.
@@ -243,8 +226,8 @@ public:
     std::vector<std::string_view> list_sections(const run_outline& o) const override
     {
         if (has_several(o))
-            return {"gap", "has_cells", "worths"};
-        return {"gap", "has_cells"};
+            return {"has_cells", "worths"};
+        return {"has_cells"};
     }
 };
 

@@ -4,7 +4,10 @@
 /// second or the first word.
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "study/analysis/measures.hpp"
 #include "study/analysis/model.hpp"
@@ -59,28 +62,14 @@ public:
         return compare_with("pse", "t", o.standard);
     }
 
-    std::vector<std::string_view> list_columns(const run_outline&) const override
-    {
-        return {"value", "signal", "positive"};
-    }
-
-    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
-    {
-        return describe_measured(t, own);
-    }
-
     std::string model_in_r(const run_outline& o, bool grouped) const override
     {
-        return write_model(o, grouped,
-                           {"glmer(positive", "family = binomial(\"probit\"), ", "", write_value(o)});
+        return write_model(o, grouped, {"glmer(positive", probit, "", write_value(o)});
     }
 
-    std::vector<std::string_view> list_sections(const run_outline& o) const override
+    std::vector<std::string_view> list_sections(const run_outline&) const override
     {
-        std::vector<std::string_view> all{"has_functions", "has_comparisons"};
-        if (o.standard)
-            all.emplace_back("gap");
-        return all;
+        return {"has_functions", "has_comparisons"};
     }
 };
 

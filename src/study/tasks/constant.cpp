@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
 #include "study/tasks/comparison.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -22,7 +27,7 @@ public:
     }
     void read(const detail::toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         return list_value_cells(r, false);
     }

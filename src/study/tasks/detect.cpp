@@ -41,7 +41,7 @@ public:
     }
     std::vector<std::string> usual_choices(const page_words& w) const override { return {w["yes"], w["no"]}; }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         return list_value_cells(r, false);
     }
@@ -133,29 +133,12 @@ public:
         return compare_with(o.vary.empty() ? "dprime" : "threshold", "t", find_against(o));
     }
 
-    std::vector<std::string_view> list_columns(const run_outline& o) const override
-    {
-        if (o.vary.empty())
-            return {"signal", "positive"};
-        return {"value", "signal", "positive"};
-    }
-
-    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
-    {
-        named_texts all = describe_measured(t, own);
-        if (is_silent(t))
-            all.front().second = catch_name;
-        return all;
-    }
-
     // The slope over the values, or over whether there was a signal, is what the run is about. The method of
     // a trial without a stimulus is "none", which says it, too.
     std::string model_in_r(const run_outline& o, bool grouped) const override
     {
         const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;
-        return write_model(
-            o, grouped,
-            {"glmer(positive", "family = binomial(\"probit\"), ", "", by_signal ? "signal" : write_value(o)});
+        return write_model(o, grouped, {"glmer(positive", probit, "", by_signal ? "signal" : write_value(o)});
     }
 
     std::vector<std::string_view> list_sections(const run_outline& o) const override

@@ -38,7 +38,7 @@ public:
         read_trials(t, o);
     }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         return list_value_cells(r, true);
     }
@@ -140,10 +140,8 @@ public:
                           : fmt::format("log(value / {})", plain_number(o.standard.value_or(middle), 12))});
     }
 
-    std::vector<std::string_view> list_sections(const run_outline& o) const override
+    std::vector<std::string_view> list_sections(const run_outline&) const override
     {
-        if (o.standard)
-            return {"gap", "has_exponents"};
         return {"has_exponents"};
     }
 };

@@ -80,7 +80,7 @@ public:
             t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
     }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         return cross_motions(r, list_methods);
     }
@@ -133,19 +133,9 @@ public:
             distances.push_back(mean_distance(target, felt));
         return static_cast<double>(std::ranges::min_element(distances) - distances.begin() + 1);
     }
-
     // Results.
 
-    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
-                                     sigmoid) const override
-    {
-        return list_cells(o, plan_names(o), trials);
-    }
-
-    bool is_enough(const run_outline& o, const std::vector<trial>& trials) const override
-    {
-        return compute_cells(o, plan_names(o), trials).has_value();
-    }
+    std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_names(o); }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
@@ -178,14 +168,6 @@ public:
                 find_chance(o), plan_names(o).rounding()};
     }
 
-    compared_person compare(const run_outline& o, const std::vector<trial>& trials) const override
-    {
-        const auto cells = compute_cells(o, plan_names(o), trials);
-        return {cells ? std::optional(mean(cells->back())) : std::nullopt};
-    }
-
-    std::vector<std::string_view> list_columns(const run_outline&) const override { return {}; }
-
     named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
     {
         return {{"method", own.methods[t.method_1]},
@@ -203,8 +185,6 @@ public:
         return fmt::format("one stimulus ({}); the participant named one of {}", fmt::join(o.methods, ", "),
                            counted(o.motions.size(), "motion"));
     }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_cells"}; }
 };
 
 } // namespace

@@ -72,7 +72,7 @@ public:
         return o.visual ? nlohmann::ordered_json("vas") : nlohmann::ordered_json(o.scale);
     }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         return cross_motions(r, list_methods);
     }
@@ -119,19 +119,9 @@ public:
         const double felt = judge(who, t.motion, t.method_1, r) - who.mean_utility;
         return std::clamp(std::round((highest + lowest) / 2.0 + felt), lowest, highest);
     }
-
     // Results.
 
-    std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
-                                     sigmoid) const override
-    {
-        return list_cells(o, plan_ratings(o), trials);
-    }
-
-    bool is_enough(const run_outline& o, const std::vector<trial>& trials) const override
-    {
-        return compute_cells(o, plan_ratings(o), trials).has_value();
-    }
+    std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_ratings(o); }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
@@ -177,8 +167,6 @@ public:
         return {cells ? std::optional(subtract_methods(*cells, plan)) : std::nullopt};
     }
 
-    std::vector<std::string_view> list_columns(const run_outline&) const override { return {}; }
-
     named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
     {
         const std::string rating = fmt::format("{}", t.response);
@@ -195,8 +183,6 @@ public:
         return fmt::format("one stimulus ({}), which the participant rated from {}",
                            fmt::join(o.methods, ", "), rating_range(o));
     }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_cells"}; }
 };
 
 } // namespace

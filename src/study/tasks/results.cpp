@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parts of results that most tasks share.
+// The results that most tasks have in common.
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,13 +10,17 @@
 
 namespace tactor::study {
 
-bool task::is_enough(const run_outline&, const std::vector<trial>& trials) const
+std::vector<named_value> task::measure(const run_outline& o, const std::vector<trial>& trials, sigmoid) const
 {
-    return !trials.empty();
+    return list_cell_values(o, plan_cells(o).value(), trials);
 }
 
 compared_person task::compare(const run_outline& o, const std::vector<trial>& trials) const
 {
+    if (const auto plan = plan_cells(o)) {
+        const auto cells = compute_cells(o, *plan, trials);
+        return {cells ? std::optional(mean(cells->back())) : std::nullopt};
+    }
     return {measure(o, trials, sigmoid::normal).front().value};
 }
 
@@ -41,9 +45,23 @@ std::string task::describe(const run_outline& o) const
     return text;
 }
 
-std::string task::describe_procedure(const run_definition&, std::string_view&) const
+std::vector<std::string_view> task::list_columns(const run_outline& o) const
 {
-    return {};
+    if (plan_cells(o))
+        return {};
+    return o.vary.empty() ? std::vector<std::string_view>{"signal", "positive"}
+                          : std::vector<std::string_view>{"value", "signal", "positive"};
+}
+
+named_texts task::describe_trial(const trial& t, const run_outline& own, const run_outline&) const
+{
+    named_texts all{{"method", is_silent(t) ? std::string(catch_name) : own.methods[t.method_1]},
+                    {"response", fmt::format("{}", t.response)},
+                    {"signal", t.signal ? "1" : "0"},
+                    {"positive", t.positive ? "1" : "0"}};
+    if (!own.vary.empty() && t.signal)
+        all.emplace_back("value", fmt::format("{}", t.value));
+    return all;
 }
 
 main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against)
@@ -51,17 +69,6 @@ main_comparison compare_with(std::string_view figure, std::string_view test, std
     if (!against)
         return {"no standard: nothing to compare with"};
     return {fmt::format("{}, {} against {}", figure, test, *against), against};
-}
-
-named_texts describe_measured(const trial& t, const run_outline& own)
-{
-    named_texts all{{"method", own.methods[t.method_1]},
-                    {"response", fmt::format("{}", t.response)},
-                    {"signal", t.signal ? "1" : "0"},
-                    {"positive", t.positive ? "1" : "0"}};
-    if (!own.vary.empty() && t.signal)
-        all.emplace_back("value", fmt::format("{}", t.value));
-    return all;
 }
 
 } // namespace tactor::study

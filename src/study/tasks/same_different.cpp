@@ -42,7 +42,7 @@ public:
         return {w["same"], w["different"]};
     }
 
-    std::vector<planned_trial> plan_cells(const run_definition& r) const override
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
         std::vector<planned_trial> cells;
         for (const std::size_t motion : r.motions)
@@ -130,25 +130,14 @@ public:
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 
-    std::vector<std::string_view> list_columns(const run_outline&) const override
-    {
-        return {"signal", "positive"};
-    }
-
-    named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
-    {
-        return describe_measured(t, own);
-    }
-
     std::string model_in_r(const run_outline& o, bool grouped) const override
     {
-        return write_model(o, grouped,
-                           {"glmer(positive", "family = binomial(\"probit\"), ", "", "signal", false});
+        return write_model(o, grouped, {"glmer(positive", probit, "", "signal", false});
     }
 
     std::vector<std::string_view> list_sections(const run_outline&) const override
     {
-        return {"gap", "has_dprime", "has_differences"};
+        return {"has_dprime", "has_differences"};
     }
 };
 

@@ -20,6 +20,7 @@
 #include <tactor/path.hpp>
 
 #include "files/toml_reader.hpp"
+#include "study/analysis/cells.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
@@ -56,7 +57,7 @@ public:
     }
 };
 
-/// A run as a simulated observer knows it.
+/// What a simulated observer of a run knows.
 struct simulated_run {
     const simulation& truth;
     const experiment_definition& definition;
@@ -67,8 +68,6 @@ struct simulated_run {
     double mean_utility = 0.0;                    ///< rate: mean of -ln cost over the stimuli
     std::vector<std::vector<point>> targets = {}; ///< identify: by motion
 };
-
-struct run_definition;
 
 /// Main comparison of a run.
 struct main_comparison {
@@ -124,7 +123,7 @@ public:
     virtual nlohmann::ordered_json scale(const run_outline& o) const;
 
     /// Lists the cells of a run: trials that differ in stimuli or their order.
-    virtual std::vector<planned_trial> plan_cells(const run_definition& r) const = 0;
+    virtual std::vector<planned_trial> list_cells(const run_definition& r) const = 0;
     /// Draws n trials: each cell equally often as far as n allows, in no order.
     virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                             random_numbers& numbers) const;
@@ -149,45 +148,49 @@ public:
     /// Answers a trial as a person would: 1 or 2, the rating, the place of a motion in the run from 1, an
     /// estimate.
     virtual double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const = 0;
-
     // Results.
 
+    /// Returns the cells of a run in which each trial is a value; usually nothing: the run measures figures.
+    virtual std::optional<cell_plan> plan_cells(const run_outline&) const { return {}; }
     /// Lists a participant's values in a run: of each cell, or the figures, the main one first. Without
     /// trials, their names.
     virtual std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
-                                             sigmoid kind) const = 0;
-    /// Tests whether a participant's trials are enough for the figures. Usually one is.
-    virtual bool is_enough(const run_outline& o, const std::vector<trial>& trials) const;
-    /// Returns the rows of a run, after those of all runs. `people`: those whose trials are enough.
+                                             sigmoid kind) const;
+    /// Returns the rows of a run, after those of all runs. `people`: those with a trial in each cell.
     virtual std::vector<result> analyse(const run_outline& o, const run_people& people,
                                         sigmoid kind) const = 0;
-    /// Returns the methods of the conditions by which response times are summarised; empty: motions only.
+    /// Returns the methods by which response times are summarised, where a trial has one.
     virtual std::vector<std::string> list_timed_methods(const run_outline& o) const { return o.methods; }
     /// Tests whether the trial has no stimulus.
     virtual bool is_silent(const trial&) const { return false; }
 
     virtual main_comparison name_comparison(const run_outline& o) const = 0;
-    /// Returns a participant in the main comparison. Usually with the main figure.
+    /// Returns a participant in the main comparison: usually with the main figure, or the mean of the last
+    /// method's cells.
     virtual compared_person compare(const run_outline& o, const std::vector<trial>& trials) const;
     /// Tests the main comparison, usually by t. The text `seed` determines the draws.
     virtual compared test(const run_outline& o, std::span<const compared_person> people,
                           std::string_view seed) const;
 
     /// Lists the columns of --format tsv that only studies with such a run have.
-    virtual std::vector<std::string_view> list_columns(const run_outline& o) const = 0;
+    virtual std::vector<std::string_view> list_columns(const run_outline& o) const;
     /// Returns the cells of a trial there that its task has: column and text. `own`: the run as the
     /// participant's group has it.
     virtual named_texts describe_trial(const trial& t, const run_outline& own,
-                                       const run_outline& whole) const = 0;
+                                       const run_outline& whole) const;
     /// Returns the model of a run for R. `grouped`: groups differ in it.
     virtual std::string model_in_r(const run_outline& o, bool grouped) const = 0;
 
     /// Describes a trial in the methods section.
     virtual std::string describe(const run_outline& o) const;
     /// Lists the sections of methods.md that a run needs.
-    virtual std::vector<std::string_view> list_sections(const run_outline& o) const = 0;
-    /// Describes how values are chosen by answers. `section`: set to the one that it needs.
-    virtual std::string describe_procedure(const run_definition& r, std::string_view& section) const;
+    virtual std::vector<std::string_view> list_sections(const run_outline&) const { return {"has_cells"}; }
+    /// Describes how answers choose the values; usually empty. Sets `section` to the one that it needs.
+    virtual std::string describe_procedure(const run_definition&, std::string_view& section) const
+    {
+        section = {};
+        return {};
+    }
 
 protected:
     explicit task(facts f) : facts_(std::move(f)) {}
@@ -202,14 +205,6 @@ std::span<const task* const> list_tasks() noexcept;
 /// Returns the task with a name. \pre there is one.
 const task& find_task(std::string_view name) noexcept;
 
-/// Reads `task` of a [[run]]. \throws error (bad_input) with line and column.
-const task& read_task(const detail::toml_table& t);
-
-/// Lists answers from `lowest` on for a terminal: "1 (not at all) to 5 (exactly)", "1 yes, 2 no" if `named`;
-/// only the ends where `each` is false. `between`: the word between two.
-std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,
-                             std::string_view between);
-
 /// Returns the task of a run.
 inline const task& task_in(const run_outline& o) noexcept
 {
@@ -218,8 +213,12 @@ inline const task& task_in(const run_outline& o) noexcept
 
 /// Returns the comparison of a figure with a value, if there is one.
 main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against);
+/// Reads `task` of a [[run]]. \throws error (bad_input) with line and column.
+const task& read_task(const detail::toml_table& t);
 
-/// Returns what tasks that measure say of a trial; its method is the first.
-named_texts describe_measured(const trial& t, const run_outline& own);
+/// Lists answers from `lowest` on for a terminal: "1 (not at all) to 5 (exactly)", "1 yes, 2 no" if `named`;
+/// only the ends where `each` is false. `between`: the word between two.
+std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,
+                             std::string_view between);
 
 } // namespace tactor::study

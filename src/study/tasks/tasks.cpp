@@ -68,7 +68,7 @@ nlohmann::ordered_json task::scale(const run_outline&) const
 
 std::vector<planned_trial> task::draw(const run_definition& r, std::size_t n, random_numbers& numbers) const
 {
-    return draw_cells(r, plan_cells(r), n, numbers);
+    return draw_cells(r, list_cells(r), n, numbers);
 }
 
 std::unique_ptr<value_chooser> task::choose_values(const run_definition&) const
