@@ -28,6 +28,9 @@ constexpr file_key all_keys[] = {
 #include "cli/file_keys.inc"
 };
 
+/// Table whose keys are options, which help explains from theirs.
+constexpr std::string_view options_table = "[defaults]";
+
 std::string with_underscores(std::string_view word)
 {
     std::string name(word);
@@ -62,7 +65,7 @@ std::string describe_table(std::string_view name)
     std::vector<std::string_view> names;
     const file_key* first = nullptr;
     for (const file_key& k : all_keys)
-        if (bare_table(k.table) == name) {
+        if (bare_table(k.table) == name || k.name.starts_with(fmt::format("{}.", name))) {
             first = first == nullptr ? &k : first;
             names.push_back(k.name);
         }
@@ -84,7 +87,8 @@ std::string describe_key(std::string_view word, std::span<const std::string_view
     std::string text;
     const std::string name = with_underscores(word);
     for (const file_key& k : all_keys)
-        if (has_name(k, name) && std::find(besides.begin(), besides.end(), k.table) == besides.end())
+        if (has_name(k, name) && k.table != options_table &&
+            std::find(besides.begin(), besides.end(), k.table) == besides.end())
             append_block(text, describe_entry(k));
     append_block(text, describe_table(bare_table(word)));
     return text;
@@ -96,7 +100,7 @@ std::string describe_mention(std::string_view word)
     const std::string name = with_underscores(word);
     for (const file_key& k : all_keys) {
         const auto words = detail::split(k.mentions, ' ');
-        if (std::find(words.begin(), words.end(), name) != words.end())
+        if (k.table != options_table && std::find(words.begin(), words.end(), name) != words.end())
             append_block(text, describe_entry(k));
     }
     return text;

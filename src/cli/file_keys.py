@@ -93,7 +93,7 @@ def list_rows(page):
 
 def mentioned(text):
     """Returns the words of a text that are set as keys."""
-    words = re.findall(r"\\fB([a-z_]+)\\fR", text) + [w for line in re.findall(r"^\.Cm (.*)$", text, re.M) for w in re.findall(r"[a-z_]{2,}", line)]
+    words = re.findall(r"\\fB([a-z_]+)\\fR", text) + re.findall(r"([a-z_]+) =", " ".join(re.findall(r"\\fB(.*?)\\fR", text))) + [w for line in re.findall(r"^\.Cm (.*)$", text, re.M) for w in re.findall(r"[a-z_]{2,}", line)]
     return " ".join(dict.fromkeys(words))
 
 
@@ -104,7 +104,7 @@ def main():
         text = page.read_text(encoding="utf-8")
         name = re.sub(r"\.(\d)$", r"(\1)", page.name)
         for table, keys, span, default, meaning in (*table_rows(text), *list_rows(text.partition("\n.Sh EXAMPLES")[0])):
-            if table == "[defaults]":  # options, which help explains from their table
+            if not table.startswith("["):
                 continue
             said = prose(meaning.splitlines())
             for key in re.split(r" ?, ", keys):

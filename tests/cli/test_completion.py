@@ -60,7 +60,7 @@ class Completion(ToolTest):
                               ("render -o ", [":files"]), ("plot --output ", [":files"]), ("compare --phantoms l", ["linear", "log"]),
                               ("plan --soa ", []), ("status --socket ", [":files"]), ("serve --tcp ", []), ("analyze ", [":files"]), ("report ", [":files"]),
                               ("report -o ", [":files"]), ("experiment ", ["park2016", ":files"]), ("experiment park2016 -o ", [":files"]),
-                              ("experiment --display ", ["page", "terminal"]), ("analyze --format t", ["text", "tsv"]),
+                              ("experiment --display ", ["page", "terminal"]), ("analyze --format t", ["text", "tables", "tsv"]),
                               ("analyze --participants ", []), ("nonsense ", [])):
             self.assertEqual(self.offered(*line.split(" ")), offered, line)
         self.assertIn("null", self.offered("play", "-D", ""))

@@ -155,7 +155,12 @@ class Export(ServeTest):
     def words(self, options):
         """Returns the options of a request that the exported stroke file does not have, as the tool's."""
         in_file = {"algorithm", "phantom", "faces", "soa", "burst", "carrier", "waveform", "noise_seed", "am", "duration", "speed"}
-        return [word for name, value in options.items() if name not in in_file for word in (f"--{name.replace('_', '-')}", value)]
+        for_file = {"slope", "intercept", "min_duration", "sigma_v_mm_s", "stevens_exponent", "spread_seed"}  # no command line takes them
+        words = [(f"--{name.replace('_', '-')}", value) for name, value in options.items() if name not in in_file | for_file]
+        if lines := [f"{name.replace('_', '-')} = {json.dumps(value)}\n" for name, value in options.items() if name in for_file]:
+            self.write("rest.toml", '[array]\npreset = "palm-3x3"\n[defaults]\n' + "".join(lines))
+            words.append(("--array", "rest.toml"))
+        return list(itertools.chain(*words))
 
     def test_the_tool_makes_the_same_sound_of_the_exported_strokes(self):
         c = self.serve().client()

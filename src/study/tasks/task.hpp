@@ -57,7 +57,7 @@ public:
     }
 };
 
-/// What a simulated observer of a run knows.
+/// A run as a simulated observer knows it.
 struct simulated_run {
     const simulation& truth;
     const experiment_definition& definition;
