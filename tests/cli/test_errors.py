@@ -47,7 +47,7 @@ class Help(ErrorsTest):
         self.assertIn("  --level-dbfs DB ", self.ok("help", "level").stdout)
         self.assertEqual(re.findall(r"^  (?:-\w,)?--([a-z-]+)", self.ok("help", "reopen").stdout, re.M), ["reopen-s"])
         self.assertTrue(self.ok("help", "soa").stdout.startswith("--soa S\n"))
-        for key, table in (("max_dbfs", "[array]"), ("max_dbfs", "[[tactor]]"), ("max-level-dbfs", "[serve]"), ("[limits]", "[limits]")):
+        for key, table in (("max_dbfs", "[array]"), ("max_dbfs", "[[tactor]]"), ("max-level-dbfs", "[serve]")):
             self.assertIn(f"  In files:         {table}, see tactor.toml(5)\n", self.ok("help", key).stdout)
         for key, name in (("max_drive_s", "max_drive_s"), ("window_s", "window_s"), ("power_dbfs", "power_dbfs")):
             self.assertIn(f"  [limits]:         {name}\n", self.ok("help", key).stdout)

@@ -364,7 +364,7 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
         if (!has_table(row.value))
             continue;
         if (!row.heading.empty())
-            say(stdout, "  {}:\n", row.heading);
+            say(stdout, "{}", wrapped("  ", row.heading + ":"));
         std::visit(table_printer(r.run), row.value);
     }
     if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())

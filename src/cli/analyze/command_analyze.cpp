@@ -171,8 +171,7 @@ int run_analyze(command_line& line)
     add_picture_options(c, o.picture, "170, the width of a page");
     c.footer("tactor analyze study\n"
              "tactor analyze study --format tables\n"
-             "tactor analyze study --format json -o study.pdf\n"
-             "tactor analyze study --exclude 07:illness");
+             "tactor analyze study --format json -o study.pdf --exclude 07:illness");
     line.parse();
     return analyze(o);
 }
