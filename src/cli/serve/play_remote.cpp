@@ -40,11 +40,11 @@ void refuse_owners(const settings& s)
                           "leave it out with --socket");
 }
 
-// Rewords an error of the server about its parameter: names the stroke that was sent, and the place in it.
-error name_argument(const error& e, const std::string& argument)
+// Names the stroke that was sent, and the place in it, where an error of the server is about its parameter.
+error name_argument(const server_error& e, const std::string& argument)
 {
     const std::vector<std::string_view>& sources = session::source_names();
-    if (std::find(sources.begin(), sources.end(), e.subject()) == sources.end())
+    if (std::find(sources.begin(), sources.end(), e.param) == sources.end())
         return e;
     const source_place at{argument, e.place().line, e.place().column};
     return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
@@ -220,8 +220,8 @@ private:
             if (p.intensity > 1.0 && !std::exchange(is_loud_, true))
                 lines.warn(session::held_text(p.intensity * lines.intensity_max(), lines.intensity_max()));
             return true;
-        } catch (const error& e) {
-            if (e.subject() != "stroke")
+        } catch (const server_error& e) {
+            if (e.rpc_code != net::code_no_stroke)
                 throw;
             return false;
         }
@@ -243,7 +243,7 @@ private:
         server_.let_finish(to_finish);
         try {
             r = server_.call("play", params);
-        } catch (const error& e) {
+        } catch (const server_error& e) {
             throw name_argument(e, shown_name(out.name));
         }
         say_warnings(name_in(r["warnings"].get<std::vector<std::string>>(), out.name));

@@ -72,7 +72,7 @@ std::string mark_options(const std::string& text)
     return std::regex_replace(text, option, "{$1}");
 }
 
-error make_error(const net::json& e)
+server_error make_error(const net::json& e)
 {
     const int code = e.value("code", 0);
     const error_kind kind = code == net::code_bad_params  ? error_kind::bad_input
@@ -80,10 +80,12 @@ error make_error(const net::json& e)
                                                           : error_kind::runtime;
     const net::json data = e.value("data", net::json::object());
     if (!data.is_object() || !data.contains("why"))
-        return {kind, "server", e.value("message", "it refuses")};
-    return error(kind, mark_options(data.value("what", "server")), mark_options(data.value("why", "")),
-                 mark_options(data.value("hint", "")))
-        .with_place({"", data.value("line", 0U), data.value("column", 0U)});
+        return {error(kind, "server", e.value("message", "it refuses")), code, {}};
+    const std::string what = data.value("what", "server");
+    return {error(kind, mark_options(what), mark_options(data.value("why", "")),
+                  mark_options(data.value("hint", "")))
+                .with_place({"", data.value("line", 0U), data.value("column", 0U)}),
+            code, what};
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <tactor/error.hpp>
 
@@ -21,14 +22,25 @@ struct interrupted {
     int signal;
 };
 
+/// Error that a server answered, in its words.
+struct server_error : error {
+    server_error(const error& e, int code, std::string what)
+        : error(e), rpc_code(code), param(std::move(what))
+    {
+    }
+
+    int rpc_code;      ///< such as net::code_no_stroke
+    std::string param; ///< parameter of the request that is at fault
+};
+
+/// Client of a server.
 class rpc_client {
 public:
     /// Connects to the named server, else to that of XDG_RUNTIME_DIR, else to the system's. A signal at
     /// `stop` interrupts waiting for a reply. \throws error (not_available) if none listens.
     rpc_client(const std::optional<std::string>& socket, session::interrupt& stop);
 
-    /// Calls a method. Returns the result. \throws error with the server's words, or runtime if the server is
-    /// gone; interrupted.
+    /// Returns the result. \throws server_error; error (runtime) if the server went away; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
     /// Does the same. Returns false if a limit of the server is reached: try again.
     bool try_call(const std::string& method, const net::json& params);
