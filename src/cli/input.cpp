@@ -10,7 +10,6 @@
 
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "options/resolve.hpp"
 #include "session/process.hpp"
@@ -19,19 +18,6 @@ namespace tactor::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Fits the strokes for which their file sets `fit`. An error about the margin names the key of the file,
-// because no option sets it.
-void fit_by_file(const std::string& file, piece& p, const layout& faces)
-{
-    try {
-        p.strokes = apply_fits(std::move(p.strokes), faces);
-    } catch (const error& e) {
-        if (e.field() != "margin_mm")
-            throw;
-        throw e.reworded(file, fmt::format("fit_margin_mm: {}", e.why()), e.hint());
-    }
-}
 
 // Returns true for an option in place of a STROKE: --path, or --shape NAME.
 bool is_option(const std::string& argument)
@@ -64,20 +50,46 @@ error about_own(const error& x, const stroke& s)
     return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;
 }
 
-// Calls f(i) for each i below `count`. Errors of f(i) name stroke i.
+// Calls work(next). Errors of it name the stroke for which it called next() last.
 template <class F>
-void for_each_stroke(const piece& p, std::size_t count, F f)
+auto name_strokes(const piece& p, F work)
 {
     const std::string name = shown_name(p.name);
+    const std::size_t count = std::max(p.strokes.size(), p.plans.size());
     progress_line line(name);
-    for (std::size_t i = 0; i < count; ++i) {
-        line.update(i, count);
-        try {
-            f(i);
-        } catch (const error& x) {
-            throw of_stroke(x, p, i);
-        }
+    std::size_t at = count;
+    try {
+        return work([&](std::size_t i) {
+            at = i;
+            if (i < count)
+                line.update(i, count);
+        });
+    } catch (const error& x) {
+        throw of_stroke(x, p, at);
     }
+}
+
+// Returns the source for which a STROKE argument stands.
+session::source find_source(const settings& s, const environment& e, const std::string& argument)
+{
+    if (const auto planned = e.plans.find(argument); planned != e.plans.end()) {
+        files::check_same_array(argument, planned->second.tactors, e.tactors);
+        return planned->second.made;
+    }
+    if (names_samples(argument)) {
+        options::refuse_for_samples(s, argument);
+        return session::samples_file{argument};
+    }
+    if (s.path_data)
+        return session::path_data{*s.path_data};
+    if (s.shape)
+        return session::stroke_name{*s.shape};
+    if (const auto preset = find_preset(argument))
+        return session::stroke_name{preset->name};
+    if (argument == "-")
+        return e.standard_input;
+    session::check_readable(argument);
+    return session::stroke_file{argument};
 }
 
 } // namespace
@@ -164,31 +176,8 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
 
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
-    piece p{argument};
-    if (const auto planned = e.plans.find(argument); planned != e.plans.end()) {
-        files::check_same_array(argument, planned->second.tactors, e.tactors);
-        p = planned->second.made;
-        p.name = argument;
-        return p;
-    }
-    if (names_samples(argument)) {
-        options::refuse_for_samples(s, argument);
-        return p;
-    }
-    if (s.path_data)
-        p.strokes = session::read_strokes("path", *s.path_data, argument, s);
-    else if (s.shape)
-        p.strokes = session::read_strokes("stroke", *s.shape, argument, s);
-    else if (const auto preset = find_preset(argument))
-        p.strokes = {*preset};
-    else if (argument == "-")
-        p.strokes = e.standard_input;
-    else {
-        session::check_readable(argument);
-        p.strokes = load_strokes(argument, s.intensity_max.value_or(1.0));
-    }
-    fit_by_file(shown_name(argument), p, faces);
-    session::place_strokes(p, faces, s);
+    piece p = session::read_piece(find_source(s, e, argument), shown_name(argument), faces, s);
+    p.name = argument;
     return p;
 }
 
@@ -197,42 +186,20 @@ piece plan_one_piece(const settings& s, const environment& e)
     const layout faces(e.tactors);
     refuse_samples(stroke_arguments(s).front());
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
-    detail::start_times times;
-    for_each_stroke(p, p.strokes.size(), [&](std::size_t i) {
-        if (i == p.plans.size())
-            session::plan_stroke(p, i, e.tactors, faces, s);
-        times.start(p.plans[i].start_s, p.plans[i].anchor);
-        times.lasts(p.plans[i].plan.total_s);
-    });
+    name_strokes(p, [&](const auto& next) { session::plan_piece(p, e.tactors, faces, s, next); });
     return p;
 }
 
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render)
 {
-    if (names_samples(p.name))
-        return score::from_samples(e.tactors, load_samples(p.name), render);
-    score_builder made(e.tactors, render);
-    if (p.plans.empty())
-        for_each_stroke(p, p.strokes.size(), [&](std::size_t i) {
-            const stroke& k = p.strokes[i];
-            if (s.compensate)
-                made.add(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed).plan, k.start_s,
-                         k.anchor);
-            else
-                made.add(faces, k, s.plan);
-        });
-    for (placed_plan& q : std::exchange(p.plans, {}))
-        made.add(std::move(q.plan), q.start_s, q.anchor);
-    return made.take();
+    return name_strokes(
+        p, [&](const auto& next) { return session::make_score(p, e.tactors, faces, s, render, next); });
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)
 {
-    score_builder made(e.tactors, render);
-    for_each_stroke(p, p.plans.size(),
-                    [&](std::size_t i) { made.add(p.plans[i].plan, p.plans[i].start_s, p.plans[i].anchor); });
-    return made.take();
+    return name_strokes(p, [&](const auto& next) { return session::make_score(p, e.tactors, render, next); });
 }
 
 } // namespace tactor::cli

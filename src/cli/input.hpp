@@ -41,20 +41,19 @@ std::string name_stroke(const piece& p, std::size_t i, const environment& e);
 /// Returns the error as it is if the piece has no stroke i.
 error of_stroke(const error& x, const piece& p, std::size_t i);
 
-/// Reads one of the stroke_arguments(). The piece has plans only if the argument is a plan. For a WAV file it
-/// has no strokes, and the samples are not read yet. --fit fits strokes to `faces`. \throws error.
+/// Reads one of the stroke_arguments() as session::read_piece() does. \throws error.
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);
 
 /// Reads and plans the STROKE of a command that takes only one. \throws error, also for a stroke that does
 /// not begin in the piece.
 piece plan_one_piece(const settings& s, const environment& e);
 
-/// Makes the score of a piece. `render.rate` and the channels are settled. Uses up the plans of the piece, or
-/// plans its strokes and adds them to the score one by one. Reads the samples of a WAV file. \throws error.
+/// Makes the score of a piece as session::make_score() does, with `render.rate` and channels settled. Its
+/// errors name the stroke. \throws error.
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render);
 
-/// Makes the score of a piece that keeps its plans. \throws error.
+/// Makes the score of a piece that keeps its plans. Its errors name the stroke. \throws error.
 score make_score(const piece& p, const environment& e, const render_options& render);
 
 } // namespace tactor::cli

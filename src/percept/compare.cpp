@@ -279,9 +279,8 @@ comparison compare(const stroke& target, const array& a, const layout& faces, co
             o.algorithm = algorithm;
             o.phantom = phantom;
             try {
-                row.plan = choice.compensate
-                               ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).plan
-                               : make_plan(a, faces, s, o);
+                row.plan =
+                    plan_for(a, faces, s, o, choice.compensate ? &choice.observer.low_speed : nullptr).plan;
                 if (!targets)
                     targets.emplace(s.motion);
                 static_cast<prediction&>(row) = predict_on(a, s, *targets, *row.plan, choice.observer);

@@ -496,3 +496,14 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
 
 } // namespace v0
 } // namespace tactor
+
+namespace tactor::detail {
+
+compensated_plan plan_for(const array& a, const layout& l, const stroke& s, const plan_options& o,
+                          const low_speed_observer* observer)
+{
+    return observer == nullptr ? compensated_plan{.plan = make_plan(a, l, s, o)}
+                               : make_compensated_plan(a, l, s, o, *observer);
+}
+
+} // namespace tactor::detail

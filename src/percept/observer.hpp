@@ -35,4 +35,9 @@ percept_summary predict_summary(const array& a, const target_places& targets, do
                                 const plan& p, const person& who = {},
                                 const std::function<void(const percept_sample&)>& each = {});
 
+/// Plans a stroke. `observer`: moves its bursts for this observer; null: plans as make_plan() does, without
+/// the other results. \throws error (bad_input) as make_compensated_plan().
+compensated_plan plan_for(const array& a, const layout& l, const stroke& s, const plan_options& o,
+                          const low_speed_observer* observer);
+
 } // namespace tactor::detail

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plans and scores.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -16,7 +15,6 @@
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "options/option.hpp"
-#include "plan/curve_impl.hpp"
 #include "python/binding.hpp"
 #include "sink/wav/wav.hpp"
 
@@ -201,22 +199,13 @@ plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>&
     return moved;
 }
 
-// Fills in the channels that the array and the marker need, if no number is given.
-render_options with_channels(const array& a, render_options o)
-{
-    const unsigned marker = o.marker_channel ? *o.marker_channel + 1 : 0;
-    if (o.channels == 0)
-        o.channels = std::max(a.channels(), marker);
-    return o;
-}
-
 // Writes the tool's tactor-plan/1 object.
 std::string write_json(const plan_handle& p)
 {
     const without_lock free;
     const array& tactors = p.on->value();
-    const render_options sound = with_channels(tactors, p.sound);
-    return files::plans_text({p.one, tactors, score(tactors, p.one.plans, sound), sound});
+    const render_options sound = session::with_channels(tactors, p.sound);
+    return files::plans_text({p.one, tactors, session::make_score(p.one, tactors, sound), sound});
 }
 
 // Reads a plan; `named` stands for it in messages.
@@ -253,63 +242,6 @@ render_options find_sound(const plan_handle& p, const py::dict& keywords, bool e
     return w.render;
 }
 
-[[noreturn]] void refuse_different(const std::string& name, const std::string& a, const std::string& b)
-{
-    throw error(error_kind::bad_input, name, fmt::format("the plans differ: {} and {}", a, b),
-                fmt::format("give {}= here, which applies to all of them", name))
-        .with_field(name);
-}
-
-std::string value_text(const std::optional<double>& d)
-{
-    return d ? plain_number(*d) : "none";
-}
-
-// Refuses sounds that differ in options that a score has only once.
-void check_alike(const render_options& a, const render_options& b)
-{
-    const auto check = [](const char* name, const auto& x, const auto& y, auto text) {
-        if (x != y)
-            refuse_different(name, text(x), text(y));
-    };
-    check("rate", a.rate, b.rate, [](unsigned hz) { return fmt::format("{} Hz", hz); });
-    check("phase", a.phase, b.phase, [](phase_kind k) { return std::string(to_string(k)); });
-    check("ramp", a.ramp_s, b.ramp_s, value_text);
-    check("attack", a.envelope.attack_s, b.envelope.attack_s, value_text);
-    check("release", a.envelope.release_s, b.envelope.release_s, value_text);
-    check("envelope", a.envelope, b.envelope, envelope_text);
-    check("together", a.together, b.together, [](together_kind k) { return std::string(to_string(k)); });
-    if (a.sl_db.has_value() != b.sl_db.has_value())
-        refuse_different("sl", value_text(a.sl_db), value_text(b.sl_db));
-    if (a.marker_channel && b.marker_channel)
-        check("marker_channel", *a.marker_channel, *b.marker_channel,
-              [](unsigned c) { return std::to_string(c); });
-}
-
-double level_db(const render_options& o)
-{
-    return o.sl_db.value_or(o.level_dbfs);
-}
-
-// Returns the common sound, at the level of the loudest.
-render_options joined(std::span<const render_options> sounds)
-{
-    render_options all = sounds.front();
-    for (const render_options& o : sounds) {
-        check_alike(all, o);
-        all.channels = std::max(all.channels, o.channels);
-        if (!all.marker_channel && o.marker_channel) {
-            all.marker_channel = o.marker_channel;
-            all.marker_s = o.marker_s;
-        }
-        if (level_db(o) > level_db(all)) {
-            all.level_dbfs = o.level_dbfs;
-            all.sl_db = o.sl_db;
-        }
-    }
-    return all;
-}
-
 // Collects the values, besides plans and array, that change samples.
 py::tuple recipe(const render_options& o)
 {
@@ -321,34 +253,27 @@ py::tuple recipe(const render_options& o)
 // Returns the values that decide how the plan sounds alone, for Python to compare and hash.
 py::tuple plan_recipe(const plan_handle& p)
 {
-    return recipe(with_channels(p.on->value(), p.sound)) + py::make_tuple(level_db(p.sound));
+    return recipe(session::with_channels(p.on->value(), p.sound)) +
+           py::make_tuple(session::level_db(p.sound));
 }
 
 // Makes a score. Each plan keeps its level; other options are common.
 py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& keywords)
 {
-    if (plans.empty())
-        throw error(error_kind::bad_input, "plans", "there are none", "give at least one");
     std::vector<render_options> sounds;
-    std::vector<double> levels;
     for (const auto& [start_s, p, elsewhere, file] : plans) {
         check_same_array(*p, on.value());
         sounds.push_back(find_sound(*p, keywords, elsewhere, file));
-        levels.push_back(level_db(sounds.back()));
     }
-    const render_options common = with_channels(on.value(), joined(sounds));
-    const auto made = [&] {
+    const session::joined_score made = [&] {
         const without_lock free;
-        std::vector<placed_plan> all;
-        for (std::size_t i = 0; i < plans.size(); ++i) {
-            all.push_back(std::get<1>(plans[i])->at(std::get<0>(plans[i])));
-            if (levels[i] != level_db(common))
-                all.back().plan = detail::scaled(std::move(all.back().plan),
-                                                 std::pow(10.0, (levels[i] - level_db(common)) / 20.0));
-        }
-        return score(on.value(), std::move(all), common);
+        std::vector<session::sounding_plan> all;
+        for (std::size_t i = 0; i < plans.size(); ++i)
+            all.push_back({std::get<1>(plans[i])->at(std::get<0>(plans[i])), sounds[i]});
+        return session::join_plans(on.value(), std::move(all));
     }();
-    return py::make_tuple(made, recipe(common) + py::make_tuple(py::tuple(py::cast(levels))));
+    return py::make_tuple(made.samples,
+                          recipe(made.sound) + py::make_tuple(py::tuple(py::cast(made.levels))));
 }
 
 // Makes a score of interleaved samples of a format, which Python's array holds.
@@ -358,7 +283,7 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
     option_values w;
     w.place = options::in_score;
     take_options(w, given, 0, file);
-    const render_options o = with_channels(on.value(), w.render);
+    const render_options o = session::with_channels(on.value(), w.render);
     const py::buffer_info info = frames.request();
     const std::span bytes(static_cast<const std::byte*>(info.ptr),
                           static_cast<std::size_t>(info.size * info.itemsize));
@@ -472,9 +397,7 @@ session::piece place_stroke(const stroke& s, const layout& faces, const option_v
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
                     "its group is fitted as a whole",
                     "call apply_fits() with all strokes of the file, and pass its result here");
-    session::piece p{.strokes = {s}};
-    session::place_strokes(p, faces, w);
-    return p;
+    return session::read_piece(std::vector{s}, "stroke", faces, w);
 }
 
 void bind_plan(py::module_& m)

@@ -16,7 +16,6 @@
 #include "core/access.hpp"
 #include "core/path/impl.hpp"
 #include "core/trajectory/impl.hpp"
-#include "core/trajectory/recorded_points.hpp"
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "files/stroke_format.hpp"
@@ -336,13 +335,10 @@ void bind_path(py::module_& m)
 
 stroke timed(const std::string& name, const numbers& rows, double intensity_max)
 {
-    detail::recorded_points recorded(intensity_max);
-    for (const timed_point& p : read_rows(rows, [](const double* r) {
-             return timed_point{r[0], {r[1], r[2]}, r[3]};
-         }))
-        recorded.add(p);
-    const trajectory motion = trajectory::timed(recorded.take());
-    return {.name = name, .motion = motion, .warnings = recorded.warnings()};
+    const std::vector<timed_point> points = read_rows(rows, [](const double* r) {
+        return timed_point{r[0], {r[1], r[2]}, r[3]};
+    });
+    return session::points_stroke(name, points, intensity_max);
 }
 
 // Writes TOML. Writes a preset by its name, which keeps its note.

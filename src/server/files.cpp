@@ -339,7 +339,7 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
     const double frames = p.total_s() * s.render.rate;
     if (frames * static_cast<double>(s.render.channels * sample_bytes(format)) > most_file_bytes)
         too_large(); // checked before rendering
-    return wav::bytes(score(o.plans.tactors, p.plans, p.render), format, true);
+    return wav::bytes(session::make_score(p, o.plans.tactors, p.render), format, true);
 }
 
 // Makes the bytes of a file. Writes the strokes and reads them again, so that it has the digits that the tool

@@ -15,7 +15,6 @@
 
 #include "core/start_times.hpp"
 #include "core/suggest.hpp"
-#include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
 #include "options/resolve.hpp"
@@ -123,18 +122,17 @@ timed_point read_point(const json& p, std::size_t i, double intensity_max)
     return {value(0), {value(1), value(2)}, p.size() == 4 ? value(3) : intensity_max};
 }
 
-std::vector<stroke> read_points(const json& list, double intensity_max)
+std::vector<timed_point> read_points(const json& list, double intensity_max)
 {
     if (list.is_binary())
         return read_points(json::from_msgpack(list.get_binary()), intensity_max);
     if (!list.is_array())
         bad_param("points", "they are not a list", "[[t,x,y], ...]");
-    detail::recorded_points recorded(intensity_max);
-    recorded.reserve(list.size());
+    std::vector<timed_point> points;
+    points.reserve(list.size());
     for (std::size_t i = 0; i < list.size(); ++i)
-        recorded.add(read_point(list[i], i, intensity_max));
-    const trajectory motion = trajectory::timed(recorded.take());
-    return {stroke{.name = "points", .motion = motion, .warnings = recorded.warnings()}};
+        points.push_back(read_point(list[i], i, intensity_max));
+    return points;
 }
 
 // Reads the number of a stroke, or a list of them.
@@ -223,7 +221,7 @@ double find_excess_db(const planning& with, planned& p)
     const auto try_to_play = [&](double weaker_db) {
         render_options weaker = p.render;
         (weaker.sl_db ? *weaker.sl_db : weaker.level_dbfs) -= weaker_db;
-        p.weakened = score(with.tactors, p.plans, weaker).weakened();
+        p.weakened = session::make_score(p, with.tactors, weaker).weakened();
     };
     const auto can_play = [&](double weaker_db) {
         try {
@@ -331,9 +329,9 @@ void pack_points(json& params)
 
 std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::option_values& s)
 {
-    if (source == "points")
-        return read_points(v, s.intensity_max.value_or(1.0));
-    return session::read_strokes(source, text(v, source), source, s);
+    return session::read_strokes(source == "points" ? read_points(v, s.intensity_max.value_or(1.0))
+                                                    : session::make_source(source, text(v, source)),
+                                 source, s);
 }
 
 std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
@@ -342,8 +340,7 @@ std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, s
     if (strokes.size() > with.max_strokes)
         too_many_strokes(strokes.size(), with.max_strokes);
     s.fit = fit;
-    session::piece p{.strokes = std::move(strokes)};
-    session::place_strokes(p, faces, s);
+    session::piece p = session::read_piece(std::move(strokes), "stroke", faces, s);
     check_durations(with, p.strokes);
     return std::move(p.strokes);
 }
@@ -404,10 +401,7 @@ score planned::make_score(const array& a, std::size_t i) const
     render_options alone = render;
     alone.together = together_kind::sum;
     (alone.sl_db ? *alone.sl_db : alone.level_dbfs) += weakened.weakened_db;
-    score_builder made(a, alone);
-    for (std::uint64_t k = 0; k < rounds; ++k)
-        made.add(plans[i].plan, static_cast<double>(k) * round_s());
-    return made.take();
+    return session::make_score(plans[i].plan, a, alone, rounds, round_s());
 }
 
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::option_values& s,
@@ -433,7 +427,8 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
     if (picture)
         p.over_db = std::max(p.over_db, find_excess_db(with, p));
     else
-        p.weakened = score(with.tactors, p.plans, p.render).weakened(); // also checks levels and carriers
+        p.weakened =
+            session::make_score(p, with.tactors, p.render).weakened(); // also checks levels and carriers
 }
 
 void add_weakening(reply_json& to, const weakening& w)

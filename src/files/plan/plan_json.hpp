@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,7 @@ struct piece {
     std::optional<fitting> fit = {};     ///< fitting of all strokes together
     /// Results of compensation without their plans: empty, or one for each stroke.
     std::vector<compensated_plan> moved = {};
+    std::filesystem::path samples = {}; ///< WAV file with samples in place of strokes; empty: none
 
     /// Returns the start of each plan and the end of the last, s from the start of all.
     std::vector<double> starts_s() const { return start_times_s(plans); }

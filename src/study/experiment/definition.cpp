@@ -21,6 +21,7 @@
 #include "files/toml_reader.hpp"
 #include "options/option.hpp"
 #include "options/resolve.hpp"
+#include "session/piece.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/tasks/task.hpp"
@@ -77,9 +78,9 @@ constexpr std::array<std::string_view, 4> stroke_keys{"preset", "path", "file", 
 stroke along_path(const toml_table& t, std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
     return at_key(t, "path", [&] {
-        const path way = path::from_svg(*t.text("path"));
-        const double usual_s = way.length_mm() / speed_mm_s.value_or(default_speed_mm_s);
-        return stroke{"path", trajectory::along(way, duration_s.value_or(usual_s)), {}, {}, {}};
+        stroke s = session::path_stroke(*t.text("path"), duration_s, speed_mm_s.value_or(default_speed_mm_s));
+        s.speed_mm_s.reset(); // a variation of its length keeps its duration
+        return s;
     });
 }
 
