@@ -654,7 +654,7 @@ class Groups(ExperimentTest):
         means = [sum(int(r["rating"]) for r in self.rows(code, "howgood")) / 4 for code in ("05", "06")]
         self.assertEqual((few["n"], list(few["means"]), few["paired"]), (2, ["park"], None))
         self.assertAlmostEqual(few["means"]["park"]["motion"]["down"]["mean"], sum(means) / 2, 12)
-        self.assertIn("how good, group few: rate, 2 participants, 8 trials", self.ok("analyze", "study", "-o", "a.svg").stdout)
+        self.assertIn("how good, group few: rate, 2 participants, 8 trials", self.ok("analyze", "study", "--format", "tables", "-o", "a.svg").stdout)
         self.assertIn('data-title="how good, group few (n = 2)"', (self.dir / "a.svg").read_text())
         rows = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
         self.assertEqual([(r["participant_id"][4:], r["group"]) for r in rows], people)
