@@ -19,29 +19,40 @@ using ordered = nlohmann::ordered_json;
 
 const std::string file = "s.json";
 
-study_facts sessions_that_say(const std::vector<std::string>& devices)
+// Facts of sessions whose only one is a device.
+ordered sessions_that_say(const std::vector<std::string>& devices)
 {
-    study_facts f;
-    for (const std::string& d : devices) {
-        session_facts s;
-        s.code = std::to_string(f.sessions.size() + 1);
-        s.document = {{"device", d}};
-        f.sessions.push_back(std::move(s));
-    }
-    return f;
+    ordered sessions = ordered::array();
+    for (const std::string& d : devices)
+        sessions.push_back({{"code", std::to_string(sessions.size() + 1)}, {"device", d}});
+    return {{"sessions", sessions}, {"each", sessions}, {"alike", sessions}};
 }
 
-std::string device_text(const session_facts& s)
+std::string fill_in_devices(const std::vector<std::string>& devices)
 {
-    return s.facts()["device"].words();
+    return fill_in("[[#each]] [[device]], [[/each]]", sessions_that_say(devices));
 }
 
 TEST_CASE("values shared by all are printed once, others with their participants")
 {
-    CHECK(join_texts(sessions_that_say({"a", "a", "a"}), device_text) == "a");
-    CHECK(join_texts(sessions_that_say({"a", "b", "a"}), device_text) == "a (sub-1, sub-3); b (sub-2)");
-    CHECK(join_texts(sessions_that_say({"", "b"}), device_text) == "not recorded (sub-1); b (sub-2)");
-    CHECK(join_texts(sessions_that_say({""}), device_text) == "not recorded");
+    CHECK(fill_in_devices({"a", "a", "a"}) == "a");
+    CHECK(fill_in_devices({"a", "b", "a"}) == "a (sub-1, sub-3); b (sub-2)");
+    CHECK(fill_in_devices({"", "b"}) == "not recorded (sub-1); b (sub-2)");
+    CHECK(fill_in_devices({""}) == "not recorded");
+    CHECK(fill_in_devices({}) == "not recorded");
+    CHECK(fill_in_devices({"a_b"}) == "a\\_b");
+}
+
+TEST_CASE("sections that are alike come once, with their participants, and facts that are missing are named")
+{
+    ordered facts = sessions_that_say({"a", "b", "a"});
+    const char* const alike = "[[#alike]]\n[[who]]: [[device]]\n[[/alike]]";
+    CHECK(fill_in(alike, facts) == "sub-1, sub-3: a\nsub-2: b\n");
+    CHECK(fill_in(alike, sessions_that_say({"a", "a"})) == "all: a\n");
+    facts["sessions"][1]["code"] = "2_ses-1";
+    facts["each"][1] = ordered::object();
+    CHECK(fill_in("[[#each]]by [[device]][[/each]]", facts) ==
+          "by a (sub-1, sub-3); not recorded (sub-2\\_ses-1)");
 }
 
 TEST_CASE("texts from files are no Markdown, and do not control a terminal")
@@ -122,14 +133,15 @@ TEST_CASE("the name of a model of one's own takes no fact's place")
 {
     for (const char* name : {"title", "participants", "sessions", "level"}) {
         CAPTURE(name);
-        study_facts f = sessions_that_say({"a"});
+        study_facts f;
+        f.sessions.emplace_back().document = ordered::object();
         f.sessions[0].stimuli.push_back(
             {"east", "mine", "hash", file, {{"algorithm", name}, {"phantom", name}}});
         const ordered facts = collect_facts(f, {{"strokes"}}, {"strokes"});
-        CHECK(facts["title"] == "strokes");
+        CHECK(facts["sessions"][0]["title"] == "strokes");
         CHECK(facts["participants"].is_string());
         CHECK(facts["sessions"].size() == 1);
-        CHECK(facts["level"] == "not recorded");
+        CHECK_FALSE(facts.contains("level"));
         CHECK(facts["equations"][name] == true);
     }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -30,11 +31,6 @@ namespace tactor::study {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-std::string list_subjects(const std::vector<std::string>& codes)
-{
-    return "sub-" + join(codes, ", sub-");
-}
 
 std::string ages_text(const study_facts& f)
 {
@@ -75,47 +71,38 @@ std::string counts_text(const study_facts& f, std::optional<std::string> partici
     return counts.size() == 1 && counts.contains(not_recorded) ? not_recorded : join(parts);
 }
 
-std::string describe_array(const session_facts& s)
+// Returns a fact of a session in words: "none" where it is null.
+std::string fact_text(const session_facts& s, const std::string& key)
 {
-    const json_value a = s.facts()["array"];
-    return a.exists()
-               ? fmt::format("{}, {}", a["name"].words(), counted(a["tactors"].list().size(), "tactor"))
-               : "";
+    if (!s.document.contains(key))
+        return not_recorded;
+    const std::string words = s.facts()[key].words();
+    return words.empty() ? "none" : words;
 }
 
-// Facts in the order in which they came, each with the sessions that have it.
-template <class Fact>
-using shared_facts = std::vector<std::pair<Fact, std::vector<std::string>>>;
-
-template <class Fact>
-void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code)
+template <class Texts>
+std::string words_or_none(const Texts& texts)
 {
-    auto at = std::ranges::find(all, fact, &shared_facts<Fact>::value_type::first);
-    if (at == all.end())
-        at = all.emplace(at, fact, std::vector<std::string>());
-    if (at->second.empty() || at->second.back() != code) // two stimuli of a session may be the same
-        at->second.push_back(code);
+    return texts.empty() ? "none" : join(texts);
 }
 
-// Lists the tactors of each array, and who wore it.
-json list_arrays(const study_facts& f)
+json pause(double s)
 {
-    shared_facts<json> tables;
-    for (const session_facts& s : f.sessions) {
-        json tactors = json::array();
-        for (const json_value& t : s.facts()["array"]["tactors"].list()) {
-            json row{{"number", tactors.size()}};
-            for (const char* key : {"x_mm", "y_mm", "channel", "polarity", "gain_db", "max_dbfs", "actuator",
-                                    "displacement_um_at_0dbfs"})
-                row[key] = t[key].words();
-            tactors.push_back(row);
-        }
-        add_fact(tables, tactors, s.code);
-    }
-    json all = json::array();
-    for (const auto& [tactors, codes] : tables)
-        all.push_back({{"who", name_subjects(f, codes)}, {"tactors", tactors}});
-    return all;
+    return s > 0.0 ? json(s) : json(false);
+}
+
+bool is_simulated(const session_facts& s)
+{
+    return s.facts()["simulated"].truth().value_or(false);
+}
+
+// Returns what the openings of the device have under a key, each once.
+std::string stream_text(const session_facts& s, const std::string& key)
+{
+    std::set<std::string> seen;
+    for (const json_value& one : s.facts()["streams"].list())
+        seen.insert(one[key].exists() ? one[key].words() : "none");
+    return !seen.empty() ? join(seen, "; ") : is_simulated(s) ? "simulated" : not_recorded;
 }
 
 // Returns the acceleration that follows from the measured displacement at each carrier; empty if none was
@@ -133,52 +120,6 @@ std::string acceleration_text(const session_facts& s)
     for (const auto& [hz, m_s2] : by_carrier)
         parts.push_back(fmt::format("{} m/s2 at {} Hz", range_text(m_s2), plain_number(hz)));
     return join(parts);
-}
-
-// Describes where the codes of a session went.
-std::string codes_text(const session_facts& s)
-{
-    const json_value codes = s.facts()["codes"];
-    if (!codes.exists())
-        return "none";
-    std::vector<std::string> places;
-    if (codes["channel"].exists())
-        places.push_back(fmt::format("channel {} (bits of {} ms, exact to the sample)",
-                                     codes["channel"].words(), codes["bit_ms"].words()));
-    if (codes["lines"].exists())
-        places.push_back("GPIO lines " + codes["lines"].words());
-    if (codes["serial"].exists())
-        places.push_back(fmt::format("a serial port ({} baud)", codes["serial"]["baud"].words()));
-    if (codes["lsl"].exists())
-        places.emplace_back("markers of LSL");
-    return join(places);
-}
-
-// Describes the experiment's level, and then the levels of methods that have their own.
-std::string describe_level(const session_facts& s)
-{
-    const json_value level = s.facts()["level"];
-    std::string text;
-    if (const auto sl = level["sl_db"].number())
-        text = fmt::format("{0} dB above each tactor's detection threshold ({0} dB SL)", plain_number(*sl));
-    else if (const auto dbfs = level["dbfs"].number())
-        text = fmt::format("{} dBFS, the same for all tactors except for their gains", plain_number(*dbfs));
-    if (s.design)
-        for (const method_definition& m : s.design->methods)
-            if (const render_options& o = m.options.render; m.has_level() && !m.is_variant())
-                text += fmt::format("; by {} {} {}", m.name, plain_number(o.sl_db.value_or(o.level_dbfs)),
-                                    o.sl_db ? "dB SL" : "dBFS");
-    return text;
-}
-
-std::string assumed_text(const session_facts& s)
-{
-    const auto assumed = s.facts()["thresholds_assumed"].truth();
-    const bool used = s.design ? uses_thresholds(*s.design) : !s.facts()["level"]["dbfs"].exists();
-    return !assumed   ? ""
-           : !used    ? "not used: the level is in dBFS"
-           : *assumed ? "assumed, not measured, for tactors without one"
-                      : "from the array file, none assumed";
 }
 
 // Returns a threshold, or those at several frequencies.
@@ -226,22 +167,6 @@ json tabulate_thresholds(const study_facts& f)
     }
     rows.push_back({{"who", "mean (sd)"}, {"values", summary}});
     return columns.empty() ? json(false) : json{{"numbers", numbers}, {"rows", rows}};
-}
-
-json list_calibrations(const study_facts& f)
-{
-    json all = json::array();
-    for (const session_facts& s : f.sessions) {
-        const json_value c = s.facts()["calibration"];
-        if (!c.exists())
-            continue;
-        json row{{"code", s.code}};
-        for (const char* key : {"participant", "method", "rule", "carrier_hz", "interval_s", "feedback",
-                                "masker", "date", "simulated", "warnings"})
-            row[key] = c[key].words();
-        all.push_back(row);
-    }
-    return all;
 }
 
 // Cuts the intervals of means to the values that a mean may have: one from t knows no bounds.
@@ -333,49 +258,236 @@ json describe_results(const run_analysis& r)
     return run;
 }
 
+// Lists the days on which a session was held, UTC.
+std::string days_text(const session_facts& s)
+{
+    std::set<std::string> days;
+    const auto add = [&days](const std::string& time) { days.insert(time.substr(0, time.find('T'))); };
+    add(s.facts()["date"].words());
+    for (const json_value& one : s.facts()["streams"].list())
+        add(one["opened"].words());
+    days.erase("");
+    return days.empty() ? not_recorded : join(days);
+}
+
+// Returns what the template says of a session's definition; no members: the defaults of another program.
+json describe_design(const session_facts& s)
+{
+    if (!s.design)
+        return json::object();
+    const experiment_definition& d = *s.design;
+    json all{{"pairs", std::ranges::any_of(d.runs, &run_definition::pairs)},
+             {"gap_s", d.gap_s},
+             {"rest_s",
+              d.rest.is_random() ? json(range_text({d.rest.least_s, d.rest.most_s})) : pause(d.rest.least_s)},
+             {"drawn", d.rest.is_random()},
+             {"order", {{d.order, true}}},
+             {"laws", json::array()}};
+    std::set<std::pair<double, double>> laws;
+    for (const method_definition& m : d.methods)
+        laws.emplace(m.options.plan.profile.slope, m.options.plan.profile.intercept_s);
+    for (const auto& [slope, intercept_s] : laws)
+        all["laws"].push_back(
+            {{"and", !all["laws"].empty()}, {"slope", slope}, {"intercept_s", intercept_s}});
+    return all;
+}
+
+// Returns what the template says of a session: what its file has, and what was so.
+json describe_session(const session_facts& s)
+{
+    const json_value from = s.facts();
+    const std::vector<json_value> tactors = from["array"]["tactors"].list();
+    const bool in_dbfs = from["level"]["dbfs"].number().has_value();
+    const bool used = s.design ? uses_thresholds(*s.design) : !in_dbfs;
+    const bool assumed = from["thresholds_assumed"].truth().value_or(false);
+    std::set<std::string> walked;
+    for (const json_value& one : from["walk"].list())
+        walked.insert(one["tactor"].words());
+    std::vector<std::string> mirrored;
+    if (s.design && from["hand"].words() == "left")
+        for (const motion_definition& m : s.design->motions)
+            if (m.mirror)
+                mirrored.push_back(m.name);
+    json row{
+        {"code", s.code},
+        {"carrier", describe_carrier(s)},
+        {"acceleration", acceleration_text(s)},
+        {"definition", s.definition_hash},
+        {"days", days_text(s)},
+        {"mirrored", words_or_none(mirrored)},
+        {"walk", walked.empty() && is_simulated(s) ? "simulated" : fmt::format("{}", walked.size())},
+        {"consent", from["consent"].text().value_or(s.design && s.design->consent.empty() ? "not asked for"
+                                                    : is_simulated(s)                     ? "simulated"
+                                                                                          : not_recorded)},
+        {"counts", json::array()}};
+    const auto add = [&](const char* key, std::initializer_list<const char*> members) {
+        if (const json_value own = from[key]; own.exists())
+            for (const char* member : members)
+                row[key][member] = files::or_null(own[member].words());
+    };
+    add("array", {"name"});
+    add("level", {"sl_db", "dbfs"});
+    add("codes", {"channel", "bit_ms", "lines", "serial", "lsl"});
+    add("calibration", {"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker",
+                        "date", "simulated", "warnings"});
+    add("versions", {"tactor", "build"});
+    if (row.contains("codes"))
+        row["codes"]["baud"] = from["codes"]["serial"]["baud"].words();
+    if (const json_value place = from["order_row"]; place.exists())
+        row["order_row"] = place.words();
+    for (const json_value& t : tactors) {
+        json one{{"number", row["array"]["tactors"].size()}};
+        for (const char* key : {"x_mm", "y_mm", "channel", "polarity", "gain_db", "max_dbfs", "actuator",
+                                "displacement_um_at_0dbfs"})
+            one[key] = t[key].words();
+        row["array"]["tactors"].push_back(std::move(one));
+    }
+    if (row.contains("array"))
+        row["array"]["size"] = counted(tactors.size(), "tactor");
+    if (from["thresholds_assumed"].exists())
+        row["thresholds"] = {{"unused", !used}, {"assumed", used && assumed}, {"measured", used && !assumed}};
+    for (const char* key :
+         {"rate", "channels", "device", "sound_server", "simulation", "group", "order", "seed", "hand"})
+        row[key] = fact_text(s, key);
+    for (const char* key : {"display", "masking", "masker"})
+        row[key] = stream_text(s, key);
+    if (s.design)
+        for (const method_definition& m : s.design->methods)
+            if (const render_options& o = m.options.render; m.has_level() && !m.is_variant())
+                row["own_levels"].push_back({{"name", m.name},
+                                             {"value", o.sl_db.value_or(o.level_dbfs)},
+                                             {"unit", o.sl_db ? "dB SL" : "dBFS"}});
+    for (const trial_counts& c : s.counts)
+        row["counts"].push_back({{"valid", c.valid}, {"voids", c.voids}, {"xruns", files::or_null(c.xruns)}});
+    return row;
+}
+
+// Returns what the template says of a run in a session. `sections`: gets what its procedure needs.
+json describe_run(const session_facts& s, std::size_t run, std::set<std::string_view>& sections)
+{
+    if (!s.design)
+        return json::object();
+    const run_definition& r = s.design->runs.at(run);
+    std::string_view section;
+    const std::string procedure = task_in(r.outline).describe_procedure(r, section);
+    sections.insert(section);
+    return {{"attribute", r.attribute},
+            {"question", r.outline.question},
+            {"animation", r.animation ? stream_text(s, "display") : "no"},
+            {"practice", r.practice},
+            {"labels", words_or_none(r.outline.labels)},
+            {"choices", words_or_none(r.choices)},
+            {"procedure", procedure},
+            {"catch_percent", 100.0 * r.catch_share},
+            {"blocks", files::or_null(r.blocks)},
+            {"in_a_row", r.motions.size() > 1 ? fmt::format("{}", r.max_in_a_row) : "no limit"},
+            {"break_s", pause(r.break_s)},
+            {"min_response_s", r.min_response_s}};
+}
+
+// Tests whether any row has a value under a key that is not empty.
+bool any_has(const json& rows, const char* key)
+{
+    return std::ranges::any_of(rows, [key](const json& row) { return row.value(key, json("")) != ""; });
+}
+
+// Returns what the template says of a run. `each`: what it says of the run in each session.
+json describe_outline(const run_outline& o, json each)
+{
+    const std::vector<std::string_view> sections = task_in(o).list_sections(o);
+    const auto has = [&](std::string_view section) { return std::ranges::count(sections, section) != 0; };
+    return {{"name", o.name},
+            {"task", task_in(o).name()},
+            {"asked", task_in(o).describe(o)},
+            {"motions", join(o.motions)},
+            {"attributed", has("has_cells") || any_has(each, "attribute")},
+            {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
+            {"adapts", any_has(each, "procedure")},
+            {"vary", o.vary},
+            {"standard", files::or_null(o.standard)},
+            {"catches", has("catches")},
+            {"each", std::move(each)}};
+}
+
+// Lists the questionnaires of all definitions: when each is asked, its items, and how often it was answered.
+json list_questionnaires(const study_facts& f)
+{
+    std::vector<std::string> names;
+    for (const session_facts& s : f.sessions)
+        if (s.design)
+            for (const questionnaire& q : s.design->outline.questionnaires)
+                if (std::ranges::count(names, q.name) == 0)
+                    names.push_back(q.name);
+    json all = json::array();
+    for (const std::string& name : names) {
+        std::set<std::string> people;
+        std::size_t answers = 0;
+        json each = json::array();
+        for (const session_facts& s : f.sessions) {
+            json& own = each.emplace_back(json::object());
+            if (!s.design)
+                continue;
+            const std::vector<questionnaire>& asked = s.design->outline.questionnaires;
+            const auto q = std::ranges::find(asked, name, &questionnaire::name);
+            own["asked"] = q != asked.end();
+            if (q == asked.end())
+                continue;
+            const std::size_t lines = s.answered[static_cast<std::size_t>(q - asked.begin())];
+            if (lines > 0)
+                people.insert(s.participant);
+            answers += lines;
+            own.update({{"title", files::or_null(q->title)},
+                        {"when", describe_time(q->when)},
+                        {"items", counted(q->items.size(), "item")}});
+        }
+        all.push_back({{"name", name},
+                       {"each", std::move(each)},
+                       {"people", people.size()},
+                       {"of", counted(f.people.size(), "participant")},
+                       {"times", counted(answers, "time")}});
+    }
+    return all;
+}
+
 } // namespace
 
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const analysis& a)
 {
-    std::set<std::string_view> sections;
+    std::set<std::string_view> sections; // of the template
     for (const run_outline& r : d.experiment.runs)
         for (const std::string_view section : task_in(r).list_sections(r))
             sections.insert(section);
-    const auto definition = [&f](const std::function<std::string(const experiment_definition&)>& text) {
-        return join_texts(f,
-                          [&](const session_facts& s) { return s.design ? text(*s.design) : std::string(); });
+    const auto for_each_session = [&f](const auto& describe) {
+        json all = json::array();
+        for (const session_facts& s : f.sessions)
+            all.push_back(describe(s));
+        return all;
     };
-    const auto fact = [&f](const char* key) {
-        return join_texts(f, [key](const session_facts& s) { return fact_text(s, key); });
-    };
+    const json sessions = for_each_session([&d](const session_facts& s) {
+        json row = describe_session(s);
+        row["title"] = s.design ? s.design->title : d.experiment.name;
+        return row;
+    });
+    const json design = for_each_session(describe_design);
     std::vector<std::string> codes;
     for (const participant& p : f.people)
         codes.push_back(p.code);
-    json all{{"version", std::string(version())}, {"experiment", d.experiment.name}};
-    all["title"] =
-        join_texts(f, [&](const session_facts& s) { return s.design ? s.design->title : d.experiment.name; });
-    all["simulation"] = d.simulated ? json{{"how", fact("simulation")}} : json(false);
+    json all{{"version", std::string(version())},
+             {"experiment", d.experiment.name},
+             {"sessions", sessions},
+             {"each", sessions},
+             {"alike", sessions},
+             {"design", {{"each", design}}},
+             {"simulation", d.simulated}};
     all["participants"] = fmt::format("{}: {}", counted(codes.size(), "participant"), list_subjects(codes));
     all["age"] = ages_text(f);
     all["sex"] = counts_text(f, &participant::sex);
     all["handedness"] = counts_text(f, &participant::handedness);
-    all["array"] = join_texts(f, describe_array);
-    for (const char* key : {"rate", "channels", "device", "sound_server"})
-        all[key] = fact(key);
-    all["arrays"] = list_arrays(f);
-    const bool coded =
-        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.facts()["codes"].exists(); });
-    all["codes"] = coded ? json(join_texts(f, codes_text)) : json(false);
-    const std::string acceleration = join_texts(f, acceleration_text);
-    all["acceleration"] = acceleration == not_recorded ? json(false) : json(acceleration);
-    all["level"] = join_texts(f, describe_level);
-    all["assumed"] = join_texts(f, assumed_text);
+    all["coded"] = any_has(sessions, "codes");
+    all["accelerated"] = any_has(sessions, "acceleration");
     all["thresholds"] = tabulate_thresholds(f);
-    all["calibrations"] = list_calibrations(f);
-    all["calibrated"] = !all["calibrations"].empty();
-    all["carrier"] = join_texts(f, describe_carrier);
+    all["calibrated"] = any_has(sessions, "calibration");
     all["bursts"] = std::ranges::any_of(f.sessions, has_bursts);
-    all["law"] = join_texts(f, law_text);
     all["methods"] = list_methods(f);
     json& equations = all["equations"] = json::object(); // by names from files
     for (const session_facts& s : f.sessions)
@@ -384,27 +496,9 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                 equations[p.facts()[key].need_text()] = true;
     all["stimuli"] = list_stimuli(f);
     all["recorded"] = !all["stimuli"].empty();
-    all["valued"] = std::ranges::any_of(all["stimuli"], [](const json& s) { return s.at("value") != ""; });
+    all["valued"] = any_has(all["stimuli"], "value");
     all["notes"] = list_notes(f);
-    all["gap"] =
-        std::ranges::any_of(f.sessions,
-                            [](const session_facts& s) {
-                                return s.design &&
-                                       std::ranges::any_of(s.design->runs, &run_definition::pairs);
-                            })
-            ? json(definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; }))
-            : json(false);
-    all["rest"] = definition([](const experiment_definition& e) {
-        return e.rest.is_random() ? fmt::format("{} to {} s, drawn for each trial",
-                                                plain_number(e.rest.least_s), plain_number(e.rest.most_s))
-                                  : describe_pause(e.rest.least_s);
-    });
-    all["order"] = definition([](const experiment_definition& e) {
-        if (e.order == "random")
-            return std::string("random, drawn for each participant");
-        return fmt::format("a row of a {}, chosen by the participant's code or by the experimenter",
-                           e.order == "latin" ? "cyclic Latin square" : "Williams square (Williams 1949)");
-    });
+    all["gap"] = std::ranges::any_of(design, [](const json& one) { return one.value("pairs", false); });
     all["several"] = d.experiment.sessions > 1
                          ? json{{"number", d.experiment.sessions}, {"between", between_text(f)}}
                          : json(false);
@@ -414,30 +508,15 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["grouped"] = !d.experiment.groups.empty();
     all["runs"] = json::array();
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
-        all["runs"].push_back(describe_run(f, d.experiment.runs[i], i));
+        all["runs"].push_back(describe_outline(
+            d.experiment.runs[i],
+            for_each_session([&](const session_facts& s) { return describe_run(s, i, sections); })));
     all["questionnaires"] = list_questionnaires(f);
-    const bool own =
-        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
-    for (const session_facts& s : f.sessions)
-        if (s.design)
-            for (const run_definition& r : s.design->runs) {
-                std::string_view section;
-                task_in(r.outline).describe_procedure(r, section);
-                sections.insert(section);
-            }
     for (const std::string_view section : sections)
         all[std::string(section)] = true;
-    all["ordered"] = own;
-    all["sessions"] = json::array();
-    for (const session_facts& s : f.sessions)
-        all["sessions"].push_back(describe_session(s));
+    all["ordered"] =
+        std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["held"] = !f.sessions.empty();
-    all["versions"] = join_texts(f, [](const session_facts& s) {
-        const json_value v = s.facts()["versions"];
-        return v["build"].exists() ? fmt::format("{} ({})", v["tactor"].words(), v["build"].words())
-                                   : v["tactor"].words();
-    });
-    all["definitions"] = join_texts(f, [](const session_facts& s) { return s.definition_hash; });
     all["excluded"] = left_out_json(d.excluded);
     all["results"] = json::array();
     for (const run_analysis& r : a.runs)
@@ -446,32 +525,6 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     for (const std::string& w : a.no_figures)
         all["warnings"].push_back(w);
     return all;
-}
-
-std::string name_subjects(const study_facts& f, const std::vector<std::string>& codes)
-{
-    return codes.size() == f.sessions.size() ? "all" : list_subjects(codes);
-}
-
-std::string fact_text(const session_facts& s, const std::string& key)
-{
-    if (!s.document.contains(key))
-        return not_recorded;
-    const std::string words = s.facts()[key].words();
-    return words.empty() ? "none" : words;
-}
-
-std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text)
-{
-    shared_facts<std::string> texts;
-    for (const session_facts& s : f.sessions) {
-        const std::string own = text(s);
-        add_fact(texts, own.empty() ? not_recorded : own, s.code);
-    }
-    std::vector<std::string> parts;
-    for (const auto& [own, codes] : texts)
-        parts.push_back(texts.size() == 1 ? own : fmt::format("{} ({})", own, list_subjects(codes)));
-    return parts.empty() ? not_recorded : join(parts, "; ");
 }
 
 std::string range_text(const std::vector<double>& values)

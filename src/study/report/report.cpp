@@ -15,6 +15,7 @@
 #include "files/output_file.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/data/text_table.hpp"
+#include "study/report/facts.hpp"
 
 namespace tactor::study {
 namespace {
@@ -148,40 +149,128 @@ std::vector<participant> read_people(const fs::path& folder, const std::vector<s
 
 namespace mustache = kainjow::mustache;
 
-// Returns a value for the template. An object also has a `list` of its members: each has its name, and its
-// value if the value is plain. Two numbers are an interval. Null is false: no section, and no text.
-mustache::data make_data(const nlohmann::ordered_json& v)
+std::string render_text(const std::string& text, const mustache::data& facts)
 {
-    if (v.is_null())
-        return mustache::data(false);
-    if (v.is_boolean())
-        return mustache::data(v.get<bool>());
-    if (v.is_number_float())
-        return mustache::data(plain_number(v.get<double>(), 4));
-    if (v.is_number())
-        return mustache::data(v.dump());
-    if (v.is_string())
-        return mustache::data(v.get<std::string>());
-    mustache::data all(mustache::data::type::list);
-    if (v.is_array() && v.size() == 2 && v[0].is_number() && v[1].is_number())
-        return mustache::data(fmt::format("{} to {}", plain_number(v[0], 4), plain_number(v[1], 4)));
-    if (v.is_array()) {
+    mustache::mustache section("{{=[[ ]]=}}" + text);
+    section.set_custom_escape(escape_markdown);
+    return section.render(facts);
+}
+
+// Facts of a study as data for the template. Its sections belong to it.
+class template_data {
+public:
+    explicit template_data(const nlohmann::ordered_json& facts)
+    {
+        for (const nlohmann::ordered_json& s : facts.at("sessions"))
+            codes_.push_back(s.at("code"));
+        for (const auto& [name, value] : facts.items())
+            all_.set(name, make_member(name, value, name == "results" ? 4 : 6));
+    }
+    template_data(const template_data&) = delete;
+    template_data& operator=(const template_data&) = delete;
+
+    std::string fill_in(const std::string& text) const { return render_text(text, all_); }
+
+private:
+    // Returns a value. An object also has a `list` of its members: each has its name, and its value if the
+    // value is plain. Two numbers with fractions are an interval. Null is false: no section, and no text.
+    mustache::data make(const nlohmann::ordered_json& v, int digits) const
+    {
+        if (v.is_null())
+            return mustache::data(false);
+        if (v.is_boolean())
+            return mustache::data(v.get<bool>());
+        if (v.is_number_float())
+            return mustache::data(plain_number(v.get<double>(), digits));
+        if (v.is_number())
+            return mustache::data(v.dump());
+        if (v.is_string())
+            return mustache::data(v.get<std::string>());
+        mustache::data all(mustache::data::type::list);
+        if (v.is_array() && v.size() == 2 && v[0].is_number_float() && v[1].is_number_float())
+            return mustache::data(
+                fmt::format("{} to {}", plain_number(v[0], digits), plain_number(v[1], digits)));
+        if (v.is_array()) {
+            for (const nlohmann::ordered_json& one : v)
+                all.push_back(make(one, digits));
+            return all;
+        }
+        mustache::data members(mustache::data::type::object);
+        for (const auto& [name, value] : v.items()) {
+            const mustache::data one = make_member(name, value, digits);
+            members.set(name, one);
+            mustache::data item = value.is_object() ? one : mustache::data("value", one);
+            item.set("name", name);
+            if (!value.is_null())
+                all.push_back(item);
+        }
+        members.set("list", all);
+        return members;
+    }
+
+    mustache::data make_member(const std::string& name, const nlohmann::ordered_json& v, int digits) const
+    {
+        if (name != "each" && name != "alike")
+            return make(v, digits);
+        std::vector<mustache::data> facts;
         for (const nlohmann::ordered_json& one : v)
-            all.push_back(make_data(one));
+            facts.push_back(one.empty() ? mustache::data(false) : make(one, digits));
+        return mustache::data(
+            mustache::lambda2([this, facts, below = name == "alike"](const std::string& text, const auto&) {
+                return below ? list_alike(text, facts) : join_each(text, facts);
+            }));
+    }
+
+    // Returns a section's text for each session, and the sessions that share it, in the order in which they
+    // come.
+    static std::vector<std::pair<std::string, std::vector<std::size_t>>>
+    group(const std::string& text, const std::vector<mustache::data>& facts)
+    {
+        std::vector<std::pair<std::string, std::vector<std::size_t>>> texts;
+        for (std::size_t i = 0; i < facts.size(); ++i) {
+            std::string own = facts[i].is_false() ? "" : render_text(text, facts[i]);
+            const auto at = std::ranges::find(texts, own, [](const auto& t) { return t.first; });
+            (at == texts.end() ? texts.emplace_back(std::move(own), std::vector<std::size_t>()) : *at)
+                .second.push_back(i);
+        }
+        return texts;
+    }
+
+    std::string name_sessions(const std::vector<std::size_t>& which) const
+    {
+        std::vector<std::string> own;
+        for (const std::size_t i : which)
+            own.push_back(codes_[i]);
+        return which.size() == codes_.size() ? "all" : list_subjects(own);
+    }
+
+    std::string join_each(const std::string& text, const std::vector<mustache::data>& facts) const
+    {
+        std::vector<std::string> parts;
+        for (const auto& [rendered, which] : group(text, facts)) {
+            std::string own = rendered.substr(0, rendered.find_last_not_of(" ,;") + 1);
+            own.erase(0, own.find_first_not_of(" ,;"));
+            parts.push_back(own.empty() ? not_recorded : own);
+            if (which.size() < facts.size())
+                parts.back() += fmt::format(" ({})", escape_markdown(name_sessions(which)));
+        }
+        return parts.empty() ? not_recorded : join(parts, "; ");
+    }
+
+    std::string list_alike(const std::string& text, const std::vector<mustache::data>& facts) const
+    {
+        std::string all;
+        for (const auto& [rendered, which] : group(text, facts)) {
+            mustache::data one = facts[which.front()];
+            one.set("who", name_sessions(which));
+            all += render_text(text.substr(text.starts_with('\n') ? 1 : 0), one);
+        }
         return all;
     }
-    mustache::data members(mustache::data::type::object);
-    for (const auto& [name, value] : v.items()) {
-        const mustache::data one = make_data(value);
-        members.set(name, one);
-        mustache::data item = value.is_object() ? one : mustache::data("value", one);
-        item.set("name", name);
-        if (!value.is_null())
-            all.push_back(item);
-    }
-    members.set("list", all);
-    return members;
-}
+
+    std::vector<std::string> codes_;
+    mustache::data all_{mustache::data::type::object};
+};
 
 // Keeps one of several empty lines in a row, which sections without a fact leave.
 std::string without_gaps(const std::string& text)
@@ -207,9 +296,12 @@ study_facts read_facts(const fs::path& folder, const dataset& d)
 
 std::string methods_text(const study_facts& f, const dataset& d, const analysis& a)
 {
-    mustache::mustache text{std::string(methods_template())};
-    text.set_custom_escape([](const std::string& t) { return escape_markdown(t); });
-    return without_gaps(text.render(make_data(collect_facts(f, d, a))));
+    return without_gaps(fill_in(std::string(methods_template()), collect_facts(f, d, a)));
+}
+
+std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts)
+{
+    return template_data(facts).fill_in(text);
 }
 
 std::string between_text(const study_facts& f)
@@ -222,7 +314,7 @@ std::string between_text(const study_facts& f)
         if (before && after && f.sessions[i].participant == f.sessions[i - 1].participant)
             days.push_back(std::round(10.0 * static_cast<double>(*after - *before) / day_ns) / 10.0);
     }
-    return days.empty() ? "not recorded" : range_text(days) + " days";
+    return days.empty() ? not_recorded : range_text(days) + " days";
 }
 
 void write_report(const fs::path& file, const std::string& text, bool force)

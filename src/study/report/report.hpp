@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -97,9 +96,11 @@ std::string_view methods_template() noexcept;
 /// Returns a name or text from a file on one line, with Markdown's own characters escaped.
 std::string escape_markdown(std::string_view text);
 
-/// Returns the text of all sessions, or each text with the sessions that have it if they differ. An empty
-/// text reads "not recorded".
-std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text);
+/// Returns a template of Mustache with [[ and ]], filled in with facts. Its sections `each` are filled in for
+/// each of the sessions with the session's own facts: what all have once, others with their sessions, and
+/// "not recorded" for what is empty or only blanks and punctuation. So are sections `alike`, but one below
+/// the other, each with its sessions as `who`.
+std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts);
 
 /// Returns the days from the start of each session to the start of the participant's next session.
 std::string between_text(const study_facts& f);

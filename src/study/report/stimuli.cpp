@@ -149,17 +149,6 @@ bool has_bursts(const session_facts& s)
     });
 }
 
-std::string law_text(const session_facts& s)
-{
-    std::set<std::string> laws;
-    if (s.design)
-        for (const method_definition& m : s.design->methods)
-            laws.insert(fmt::format("$\\mathrm{{SOA}} = {}\\,d + {}\\,\\mathrm{{s}}$ with burst duration $d$",
-                                    plain_number(m.options.plan.profile.slope),
-                                    plain_number(m.options.plan.profile.intercept_s)));
-    return join(laws, " and ");
-}
-
 nlohmann::ordered_json list_methods(const study_facts& f)
 {
     std::vector<std::string> names;
@@ -169,23 +158,19 @@ nlohmann::ordered_json list_methods(const study_facts& f)
                 names.push_back(p.method);
     json all = json::array();
     for (const std::string& name : names) {
-        const auto kinds = [&](const char* key) {
-            return join_texts(f, [&](const session_facts& s) {
-                return join_plans(s, [&](const planned_stimulus& p) {
+        all.push_back({{"name", name}, {"each", json::array()}});
+        for (const session_facts& s : f.sessions) {
+            json own = json::object();
+            for (const char* key : {"algorithm", "phantom"})
+                own[key] = join_plans(s, [&](const planned_stimulus& p) {
                     return p.method == name ? p.facts()[key].words() : "";
                 });
-            });
-        };
-        const std::string options = join_texts(f, [&](const session_facts& s) -> std::string {
-            if (!s.design)
-                return "";
-            const auto own = std::ranges::find(s.design->methods, name, &method_definition::name);
-            return own != s.design->methods.end() ? method_options(own->options) : "";
-        });
-        all.push_back({{"name", name},
-                       {"algorithm", kinds("algorithm")},
-                       {"phantom", kinds("phantom")},
-                       {"options", options}});
+            if (s.design)
+                if (const auto m = std::ranges::find(s.design->methods, name, &method_definition::name);
+                    m != s.design->methods.end())
+                    own["options"] = method_options(m->options);
+            all.back()["each"].push_back(std::move(own));
+        }
     }
     return all;
 }
@@ -220,7 +205,7 @@ nlohmann::ordered_json list_stimuli(const study_facts& f)
     json all = json::array();
     for (const auto& [key, row] : rows) {
         all.push_back(describe_stimuli(row));
-        all.back()["who"] = name_subjects(f, row.codes);
+        all.back()["who"] = row.codes.size() == f.sessions.size() ? "all" : list_subjects(row.codes);
     }
     return all;
 }
