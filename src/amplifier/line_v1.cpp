@@ -121,7 +121,7 @@ int event_type(edge_kind e) noexcept
     return GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES;
 }
 
-/// Requests an output and finds its descriptor, which the library hides: the new one.
+/// Requests an output. Finds its descriptor, which the library hides: it is the only new one.
 int request_and_find(gpiod_line* l, int flags, int& fd)
 {
     static std::mutex one_at_a_time;

@@ -73,7 +73,7 @@ public:
 
     /// Adds what is felt at i ms. Times must ascend, here and below.
     void add(std::size_t i, point felt) { add(i, targets_.window(i), felt); }
-    /// Adds what is felt at a time of which `window` has the places. The direction is that at i ms.
+    /// Adds what is felt at a time with the places `window`. The direction is that at i ms.
     void add(std::size_t i, target_window window, point felt);
 
     /// Sets the errors of a summary; none if nothing is felt.

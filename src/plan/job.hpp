@@ -43,8 +43,8 @@ struct burst_count {
     missed_places missed = {};
 };
 
-/// Receiver of the next bursts of a plan; no burst sounds on beyond them. `so_far` has the other members of
-/// the plan, such as carrier and phantom.
+/// Receiver of the next bursts of a plan; all of them end before any later burst. `so_far` has the other
+/// members of the plan, such as carrier and phantom.
 using burst_taker = std::function<void(const plan& so_far, std::span<const burst> next)>;
 
 /// Input of the algorithms; lives as long as make_plan().

@@ -48,7 +48,7 @@ options::option_values resolve_options(options::option_values owner, const net::
 struct start_time {
     bool armed = false;
     std::optional<std::int64_t> at_ns = {}; ///< CLOCK_MONOTONIC
-    std::vector<std::uint32_t> after = {};  ///< strokes whose round must end before
+    std::vector<std::uint32_t> after = {};  ///< strokes whose round must end first
 };
 
 /// Reads a start; null: now. \throws fault_error naming it.

@@ -189,7 +189,7 @@ void stream_policy::set(stream_state s, std::string reason)
 
 void add_stats(player_stats& sum, const player_stats& more)
 {
-    constexpr std::ptrdiff_t most_xrun_lengths = 64; // the same as player_stats::xrun_s has for one stream
+    constexpr std::ptrdiff_t most_xrun_lengths = 64; // counts as player_stats::xrun_s does for one stream
     const bool first = sum.periods == 0;
     sum.ring_low_water = first ? more.ring_low_water : std::min(sum.ring_low_water, more.ring_low_water);
     sum.realtime = more.realtime && (first || sum.realtime);

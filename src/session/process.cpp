@@ -86,7 +86,8 @@ std::string lock_own_memory()
             return fmt::format("{} MiB are needed, including a reserve of {}, but {} MiB are allowed",
                                (wanted + (1U << 20) - 1) >> 20, reserve_bytes >> 20, *most >> 20);
     }
-    // Keeps one heap that never shrinks: locked memory stays, and no arena of 64 MiB counts.
+    // Keeps one heap that never shrinks: locked memory stays, and no arena of 64 MiB counts for
+    // RLIMIT_MEMLOCK.
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_ARENA_MAX, 1);

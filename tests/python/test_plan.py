@@ -85,6 +85,7 @@ def test_options_have_the_names_of_the_tools(tool):
                 "shape", "title", "force", "version", "intensity_max"}  # objects and arguments of this package
     own = {"channels", "marker_channel", "marker_s", "power_dbfs", "max_drive_s", "drive_window_s",  # a score's, from files and `play`
            "usual_speed",  # from [defaults] speed
+           "slope", "intercept", "min_duration", "sigma_v_mm_s", "stevens_exponent", "spread_seed",  # the tool's from files
            "tukey_part"}  # the tool's --envelope tukey:PART
     ours = {row["name"] for row in _tactor.option_rows() if {"plan", "score", "compare"} & set(row["places"])}
     assert said - not_ours == ours - own

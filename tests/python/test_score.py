@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 import tactor
-from conftest import refused
+from conftest import in_file, refused
 
 
 def samples(file, dtype):
-    """Returns the bytes of a WAV file after its header."""
+    """Returns the samples of a WAV file, behind which the tool's mark stands."""
     data = file.read_bytes()
     at = data.index(b"data") + 8
-    return np.frombuffer(data[at:], dtype=dtype)
+    return np.frombuffer(data[at:at + int.from_bytes(data[at - 4:at], "little")], dtype=dtype)
 
 
 @pytest.mark.parametrize("dtype,name", [("float32", "float"), ("int16", "s16"), ("int32", "s32")])
@@ -227,8 +227,9 @@ def test_rendering_releases_the_interpreter(palm, stroke):
                                    {"waveform": "triangle", "envelope": "linear", "attack": 0.01, "release": 0.02},
                                    {"intensity_scale": "stevens", "stevens_exponent": 0.9}])
 def test_waves_and_envelopes_are_those_of_the_tool(tool, tmp_path, palm, sound):
-    options = [o for name, value in sound.items() for o in (f"--{name.replace('_', '-')}", str(value))]
-    tool("render", "park2016-3", *options, "-o", "tool.wav")
+    options = [o for name, value in sound.items()
+               for o in ([f"stevens-exponent = {value}"] if name == "stevens_exponent" else [f"--{name.replace('_', '-')}", str(value)])]
+    tool("render", "park2016-3", *in_file(tmp_path, options), "-o", "tool.wav")
     x = tactor.Score(palm, tactor.plan(palm, tactor.Stroke.preset("park2016-3"), **sound)).render("float32")
     assert x.tobytes() == samples(tmp_path / "tool.wav", "float32").tobytes()
 

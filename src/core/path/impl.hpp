@@ -118,8 +118,8 @@ std::optional<double> absurd_coordinate(const outline& o);
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
 path make_path(outline o, std::string_view what);
 
-/// Returns the path with curve_places for each curve that a target with steps of about `step_mm` takes long
-/// to cross. Its places differ from those of `p` by less than 1e-9 mm.
+/// Returns the path with a table of places (curve_places) for each curve that a target crosses in many steps
+/// of about `step_mm`. Its places differ from those of `p` by less than 1e-9 mm.
 path with_places(const path& p, double step_mm);
 
 /// Allowed subpaths of SVG path data (https://www.w3.org/TR/SVG2/paths.html): with `one`, a second is a

@@ -46,7 +46,8 @@ struct smooth_progress {
     std::function<double(std::size_t point, double u)> part;
 };
 
-/// Returns the covered part with a point where the target reaches each of `at`: parts of the path, ascending.
+/// Returns the covered part of the path over time, with a point at each time when the target reaches one of
+/// `at`, which ascend.
 smooth_progress find_smooth_progress(const trajectory& t, std::span<const double> at);
 
 /// Returns points between which the target moves linearly: its own, if it has timed points; else so many that

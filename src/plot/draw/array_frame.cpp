@@ -29,7 +29,7 @@ struct direction {
 constexpr std::array<direction, 8> directions{
     {{0, 1}, {1, 0}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
 constexpr double farther = 1.5;  // distance of two rings of places, pt
-constexpr double clearly = 1.25; // factor by which a label's own site must be nearer than any other
+constexpr double clearly = 1.25; // a label must be nearer to its own site than to any other by this factor
 
 double overlap_area(box a, box b) noexcept
 {

@@ -303,7 +303,7 @@ private:
     std::array<entry, 2> entries_; ///< by wave
 };
 
-/// Computes sum[j] += amplitude * s[j] for those of n frames from frame `at` of the stream on that are in the
+/// Adds amplitude * s[j] to sum[j] for each of n frames, from frame `at` of the stream on, that lies in the
 /// stretch.
 void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 

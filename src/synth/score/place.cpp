@@ -99,8 +99,8 @@ private:
     double end_s_ = 0.0;
 };
 
-/// Placer of the bursts of one plan. A bit for each drive is set if it overlaps with another one on its
-/// tactor and is joined with it.
+/// Placer of the bursts of one plan. Sets a bit for each drive that overlaps and is joined with another drive
+/// of its tactor.
 class placer {
 public:
     placer(std::span<const burst> bursts, const plan& p, std::uint32_t number, std::uint64_t start,

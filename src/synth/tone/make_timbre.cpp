@@ -393,7 +393,7 @@ std::vector<course_part> make_course(const std::vector<carrier_point>& points, u
     return parts;
 }
 
-/// Returns the lowest and the highest frequency of the carrier at the points of its course.
+/// Returns the lowest and the highest frequency of the carrier at the points of its profile.
 std::pair<double, double> carrier_range(const plan& p)
 {
     if (p.course.empty())
