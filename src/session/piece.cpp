@@ -21,6 +21,8 @@ template <class... F>
 struct overloaded : F... {
     using F::operator()...;
 };
+template <class... F>
+overloaded(F...) -> overloaded<F...>; // clang 14 needs it
 
 stroke named_stroke(const std::string& name)
 {

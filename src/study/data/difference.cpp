@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "study/data/dataset.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/json/json_value.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
