@@ -67,6 +67,12 @@ void add_within_intervals(std::vector<cell_means>& rows, const std::vector<cell_
     }
 }
 
+// Returns an effect; nothing for a factor with one level.
+std::optional<effect> effect_if(bool varies, const effect& e)
+{
+    return varies ? std::optional(e) : std::nullopt;
+}
+
 // Compares the groups of participants by all their cells.
 mixed_anova compare_groups(const std::vector<cell_values>& all, const std::vector<std::string>& groups)
 {
@@ -139,13 +145,12 @@ effect_list list_effects(const run_outline& run, const std::vector<cell_values>&
     const std::size_t motions = run.motions.size();
     const std::size_t rows = methods ? run.methods.size() : 1;
     const anova a = repeated_measures(lay_out_cells(all, 0, rows, motions));
-    const auto there = [](bool varies, const effect& e) { return varies ? std::optional(e) : std::nullopt; };
     effect_list list;
     if (methods)
-        list.effects.emplace_back("method", there(rows > 1, a.first));
-    list.effects.emplace_back("motion", there(motions > 1, a.second));
+        list.effects.emplace_back("method", effect_if(rows > 1, a.first));
+    list.effects.emplace_back("motion", effect_if(motions > 1, a.second));
     if (methods)
-        list.effects.emplace_back("method:motion", there(rows > 1 && motions > 1, a.interaction));
+        list.effects.emplace_back("method:motion", effect_if(rows > 1 && motions > 1, a.interaction));
     return list;
 }
 
@@ -187,18 +192,17 @@ void add_groups(std::vector<result>& results, const run_outline& run, const run_
     for (const person_trials& p : people.all)
         groups.push_back(p.group);
     const mixed_anova m = compare_groups(all, groups);
-    const auto there = [](bool varies, const effect& e) { return varies ? std::optional(e) : std::nullopt; };
     effect_list list{{{"group", m.group},
-                      {"motion", there(motions > 1, m.within.second)},
-                      {"group:motion", there(motions > 1, m.by_group.second)}},
+                      {"motion", effect_if(motions > 1, m.within.second)},
+                      {"group:motion", effect_if(motions > 1, m.by_group.second)}},
                      true};
     if (methods)
         list.effects.insert(
             list.effects.end(),
-            {{"method", there(rows > 1, m.within.first)},
-             {"group:method", there(rows > 1, m.by_group.first)},
-             {"method:motion", there(rows > 1 && motions > 1, m.within.interaction)},
-             {"group:method:motion", there(rows > 1 && motions > 1, m.by_group.interaction)}});
+            {{"method", effect_if(rows > 1, m.within.first)},
+             {"group:method", effect_if(rows > 1, m.by_group.first)},
+             {"method:motion", effect_if(rows > 1 && motions > 1, m.within.interaction)},
+             {"group:method:motion", effect_if(rows > 1 && motions > 1, m.by_group.interaction)}});
     results.push_back({{"group_anova"}, group_heading, std::move(list)});
 }
 

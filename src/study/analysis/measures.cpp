@@ -188,20 +188,14 @@ std::vector<result> analyse_comparisons(const run_outline& run, const run_people
         run.on_db_axis,
         run.standard ? "comparison chosen (%)"
                      : fmt::format("answered \"{}\" (%)", run.choices.size() == 2 ? run.choices[1] : "")};
-    std::vector<result> rows = begin_measured(run, run.standard);
-    std::vector<std::optional<double>> main;
-    for (const condition_trials& c : split_conditions(run, people, run.methods)) {
+    const auto measure = [&](const condition_trials& c) {
         const auto fit = [&](const std::vector<trial>& trials, const std::string& code) {
             return fit_comparisons(trials, kind, make_seed(run, c, code));
         };
-        psychometric_functions f = measure_people(begun, c, people, run.standard, fit, list_pse);
-        if (c.name.empty())
-            main = list_main(f);
-        rows.push_back(make_row(c, "psychometric", "Psychometric functions over " + run.vary, std::move(f)));
-        rows.back().is_main = c.name.empty();
-    }
-    add_groups(rows, people, main);
-    return rows;
+        return measure_people(begun, c, people, run.standard, fit, list_pse);
+    };
+    return analyse_conditions(run, people, run.methods, run.standard, "psychometric",
+                              "Psychometric functions over " + run.vary, measure);
 }
 
 } // namespace tactor::study

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "study/analysis/cells.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {
@@ -94,6 +95,26 @@ std::vector<std::optional<double>> list_main(const measured<Person>& v)
     for (const auto& own : v.values)
         all.push_back(own.front());
     return all;
+}
+
+/// Analyses all trials of a run and then each condition: a row with what `make(condition)` measures, and the
+/// groups compared by the main figure of all trials. `methods`: as split_conditions() takes them.
+template <class Make>
+std::vector<result> analyse_conditions(const run_outline& run, const run_people& people,
+                                       const std::vector<std::string>& methods, std::optional<double> against,
+                                       std::string_view name, std::string_view heading, const Make& make)
+{
+    std::vector<result> rows = begin_measured(run, against);
+    std::vector<std::optional<double>> main;
+    for (const condition_trials& c : split_conditions(run, people, methods)) {
+        auto v = make(c);
+        if (c.name.empty())
+            main = list_main(v);
+        rows.push_back(make_row(c, name, heading, std::move(v)));
+        rows.back().is_main = c.name.empty();
+    }
+    add_groups(rows, people, main);
+    return rows;
 }
 
 /// Analyses a run whose answers compare two stimuli, or judge one by two words.

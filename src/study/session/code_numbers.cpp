@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -52,10 +53,10 @@ const std::array<event_row, code_events>& list_events()
     return rows;
 }
 
-// Returns the intervals in which an event may come.
-std::vector<unsigned> list_intervals(const experiment_definition& d, const run_definition& r, code_event e)
+// Returns the intervals in which an event comes in the cells of a run.
+std::vector<unsigned> list_intervals(const experiment_definition& d, const std::vector<planned_trial>& cells,
+                                     code_event e)
 {
-    const auto cells = task_in(r.outline).list_cells(r);
     std::vector<unsigned> all;
     for (const unsigned interval : {1U, 2U})
         if (std::ranges::any_of(cells, [&](const planned_trial& t) {
@@ -69,10 +70,10 @@ std::vector<unsigned> list_intervals(const experiment_definition& d, const run_d
 // Lists the events of a run, in order.
 std::vector<coded_event> list_events_in(const experiment_definition& d, const run_definition& r)
 {
-    const std::map<code_event, std::vector<unsigned>> intervals{
-        {code_event::stimulus, list_intervals(d, r, code_event::stimulus)},
-        {code_event::standard, list_intervals(d, r, code_event::standard)},
-        {code_event::silent, list_intervals(d, r, code_event::silent)}};
+    const std::vector<planned_trial> cells = task_in(r.outline).list_cells(r);
+    std::map<code_event, std::vector<unsigned>> intervals;
+    for (const code_event e : {code_event::stimulus, code_event::standard, code_event::silent})
+        intervals[e] = list_intervals(d, cells, e);
     std::vector<coded_event> all;
     for (const std::size_t motion : r.motions)
         for (const std::size_t method : r.methods) {
@@ -111,7 +112,6 @@ code_event find_event(const method_definition& m) noexcept
 std::string code_numbers::describe(const experiment_definition& d, const coded_event& e) const
 {
     const run_outline& r = e.run->outline;
-    const task& own = task_in(r);
     const method_definition& m = d.methods[e.method];
     const bool is_stimulus = e.event != code_event::answer && e.event != code_event::made_void;
     std::vector<std::string> parts{std::string(to_string(e.event))};
@@ -126,8 +126,9 @@ std::string code_numbers::describe(const experiment_definition& d, const coded_e
             parts.push_back(fmt::format("{} {}", r.vary, plain_number(*m.value)));
         else if (part == "interval" && is_stimulus && e.run->pairs)
             parts.push_back(fmt::format("interval {}", e.interval));
-        else if (part == "answer" && e.event == code_event::answer && !own.list_responses(r).empty())
-            parts.push_back(own.name_response(e.response));
+        else if (part == "answer" && e.event == code_event::answer)
+            if (std::string answer = task_in(r).name_response(r, e.response); !answer.empty())
+                parts.push_back(std::move(answer));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -12,13 +12,10 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "study/analysis/measures.hpp"
-#include "study/analysis/model.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/comparison.hpp"
-#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -27,12 +24,6 @@ using detail::toml_table;
 
 constexpr unsigned most_tracks = 8;
 constexpr double range_steps = 40.0; ///< in its range
-
-std::vector<double> read_numbers(const toml_table& t, std::string_view key, const detail::bounds& b)
-{
-    static_cast<void>(t.list(key, "numbers"));
-    return read_one_or_more(t, key, b);
-}
 
 // Reads two ends, between which `count` numbers come, or a list of other length.
 std::vector<double> read_prior(const toml_table& t, std::string_view key, const detail::bounds& b,
@@ -173,7 +164,6 @@ public:
         read_procedure(t, r, read_vary(t, r.outline));
         read_trials(t, r.outline);
     }
-    void read(const toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
 
     std::vector<planned_trial> list_cells(const run_definition& r) const override
     {

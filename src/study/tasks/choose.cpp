@@ -9,8 +9,7 @@
 #include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/statistics/bradley_terry.hpp"
-#include "study/tasks/draw.hpp"
-#include "study/tasks/task.hpp"
+#include "study/tasks/balanced.hpp"
 #include "study/tasks/values.hpp"
 
 namespace tactor::study {
@@ -76,15 +75,16 @@ worth_list estimate_worths(const run_outline& o, const run_people& people)
     return {o.methods, bradley_terry(wins)};
 }
 
-class choose final : public task {
+class choose final : public balanced_task {
 public:
     choose()
-        : task({.name = "choose",
-                .trial = "Two stimuli, one after the other; the participant chooses one",
-                .response = "Which of the two stimuli was chosen, 1 or 2",
-                .questions = {"Which of the two was more like the target?", "Which of the two was more even?",
-                              ""},
-                .keys = {"choices"}})
+        : balanced_task({.name = "choose",
+                         .trial = "Two stimuli, one after the other; the participant chooses one",
+                         .response = "Which of the two stimuli was chosen, 1 or 2",
+                         .questions = {"Which of the two was more like the target?",
+                                       "Which of the two was more even?", ""},
+                         .keys = {"choices"}},
+                        list_pairs)
     {
     }
 
@@ -95,18 +95,8 @@ public:
     }
     void read(const detail::toml_table& t, run_definition& r) const override
     {
-        r.attribute = t.need(t.text("attribute"), "attribute");
+        t.need(t.text("attribute"), "attribute");
         refuse_method_blocks(t, r.outline);
-    }
-
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
-    {
-        return cross_motions(r, list_pairs);
-    }
-    std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
-                                    random_numbers& numbers) const override
-    {
-        return draw_balanced(r, list_pairs, n, numbers);
     }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override

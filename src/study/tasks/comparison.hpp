@@ -21,6 +21,8 @@ class comparison_task : public task {
 public:
     using task::task;
 
+    void read(const detail::toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
+
     trial_answers ask(const run_definition& r, const page_words& w) const override
     {
         trial_answers a = task::ask(r, w);

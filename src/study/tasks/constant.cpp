@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
-#include "study/analysis/measures.hpp"
-#include "study/analysis/model.hpp"
 #include "study/tasks/comparison.hpp"
-#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 namespace {
@@ -25,7 +20,6 @@ public:
         read_values(t, r.outline, read_vary(t, r.outline));
         read_trials(t, r.outline);
     }
-    void read(const detail::toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
 
     std::vector<planned_trial> list_cells(const run_definition& r) const override
     {

@@ -66,8 +66,8 @@ public:
 
     double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        if (double key = 0.0; lapses(who, r, key))
-            return key;
+        if (const auto key = lapse(who, r))
+            return *key;
         const bool is_silent = who.definition.methods[t.method_1].silent;
         if (is_silent && !who.run.outline.vary.empty())
             return 2;

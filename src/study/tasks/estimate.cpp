@@ -53,6 +53,7 @@ public:
         row.intensity_estimate = answer;
     }
     std::vector<std::string> list_responses(const run_outline&) const override { return {}; }
+    std::string name_response(const run_outline&, std::string_view) const override { return {}; }
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
@@ -92,21 +93,14 @@ public:
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
-        std::vector<result> rows = begin_measured(o, 1.0);
-        std::vector<std::optional<double>> main;
-        for (const condition_trials& c : split_conditions(o, people, o.methods)) {
-            const auto fit = [&](const std::vector<trial>& trials, const std::string&) {
-                return fit_exponent(o, trials);
-            };
-            auto e = measure_people(exponents{}, c, people, 1.0, fit, list_exponent);
-            if (c.name.empty())
-                main = list_main(e);
-            rows.push_back(
-                make_row(c, "exponent", "Exponents of the estimates over " + o.vary, std::move(e)));
-            rows.back().is_main = c.name.empty();
-        }
-        add_groups(rows, people, main);
-        return rows;
+        const auto fit = [&](const std::vector<trial>& trials, const std::string&) {
+            return fit_exponent(o, trials);
+        };
+        return analyse_conditions(o, people, o.methods, 1.0, "exponent",
+                                  "Exponents of the estimates over " + o.vary,
+                                  [&](const condition_trials& c) {
+                                      return measure_people(exponents{}, c, people, 1.0, fit, list_exponent);
+                                  });
     }
 
     main_comparison name_comparison(const run_outline&) const override

@@ -11,8 +11,7 @@
 #include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/simulated.hpp"
-#include "study/tasks/draw.hpp"
-#include "study/tasks/task.hpp"
+#include "study/tasks/balanced.hpp"
 #include "study/tasks/values.hpp"
 
 namespace tactor::study {
@@ -64,13 +63,15 @@ std::vector<answer_counts> count_answers(const run_outline& o, const run_people&
     return all;
 }
 
-class identify final : public task {
+class identify final : public balanced_task {
 public:
     identify()
-        : task({.name = "identify",
-                .trial = "One stimulus; the participant names its motion",
-                .response = "The motion that the participant named",
-                .questions = {"Which movement was it?", "Which movement was it?", "Which movement was it?"}})
+        : balanced_task(
+              {.name = "identify",
+               .trial = "One stimulus; the participant names its motion",
+               .response = "The motion that the participant named",
+               .questions = {"Which movement was it?", "Which movement was it?", "Which movement was it?"}},
+              list_methods)
     {
     }
 
@@ -78,16 +79,6 @@ public:
     {
         if (o.motions.size() < 2)
             t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
-    }
-
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
-    {
-        return cross_motions(r, list_methods);
-    }
-    std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
-                                    random_numbers& numbers) const override
-    {
-        return draw_balanced(r, list_methods, n, numbers);
     }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override
@@ -101,7 +92,7 @@ public:
         row.response = r.outline.motions.at(static_cast<std::size_t>(answer) - 1);
     }
     std::vector<std::string> list_responses(const run_outline& o) const override { return o.motions; }
-    std::string name_response(std::string_view response) const override
+    std::string name_response(const run_outline&, std::string_view response) const override
     {
         return fmt::format("answer \"{}\"", response);
     }
@@ -133,6 +124,7 @@ public:
             distances.push_back(mean_distance(target, felt));
         return static_cast<double>(std::ranges::min_element(distances) - distances.begin() + 1);
     }
+
     // Results.
 
     std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_names(o); }

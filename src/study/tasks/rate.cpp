@@ -12,8 +12,7 @@
 #include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/questionnaire.hpp"
-#include "study/tasks/draw.hpp"
-#include "study/tasks/task.hpp"
+#include "study/tasks/balanced.hpp"
 #include "study/tasks/values.hpp"
 
 namespace tactor::study {
@@ -38,14 +37,15 @@ double subtract_methods(const cell_values& cells, const cell_plan& plan)
     return std::abs(difference) > plan.rounding() ? difference : 0.0;
 }
 
-class rate final : public task {
+class rate final : public balanced_task {
 public:
     rate()
-        : task({.name = "rate",
-                .trial = "One stimulus, which the participant rates",
-                .response = "The rating, {}",
-                .questions = {"How much was it like the target?", "How even was it?", ""},
-                .keys = {"scale", "labels"}})
+        : balanced_task({.name = "rate",
+                         .trial = "One stimulus, which the participant rates",
+                         .response = "The rating, {}",
+                         .questions = {"How much was it like the target?", "How even was it?", ""},
+                         .keys = {"scale", "labels"}},
+                        list_methods)
     {
     }
 
@@ -56,7 +56,7 @@ public:
     }
     void read(const detail::toml_table& t, run_definition& r) const override
     {
-        r.attribute = t.need(t.text("attribute"), "attribute");
+        t.need(t.text("attribute"), "attribute");
         const run_outline& o = r.outline;
         const std::size_t labels = o.labels.size();
         if (o.visual && labels != 2)
@@ -70,16 +70,6 @@ public:
     nlohmann::ordered_json scale(const run_outline& o) const override
     {
         return o.visual ? nlohmann::ordered_json("vas") : nlohmann::ordered_json(o.scale);
-    }
-
-    std::vector<planned_trial> list_cells(const run_definition& r) const override
-    {
-        return cross_motions(r, list_methods);
-    }
-    std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
-                                    random_numbers& numbers) const override
-    {
-        return draw_balanced(r, list_methods, n, numbers);
     }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override
@@ -102,6 +92,10 @@ public:
             all.push_back(fmt::format("{}", i));
         return all;
     }
+    std::string name_response(const run_outline& o, std::string_view response) const override
+    {
+        return o.visual ? "" : task::name_response(o, response);
+    }
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
@@ -119,6 +113,7 @@ public:
         const double felt = judge(who, t.motion, t.method_1, r) - who.mean_utility;
         return std::clamp(std::round((highest + lowest) / 2.0 + felt), lowest, highest);
     }
+
     // Results.
 
     std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_ratings(o); }

@@ -67,8 +67,8 @@ public:
 
     double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        if (double key = 0.0; lapses(who, r, key))
-            return key;
+        if (const auto key = lapse(who, r))
+            return *key;
         // Differs if what is felt is further apart than this, in units of d'.
         constexpr double criterion = std::numbers::sqrt2;
         const double apart = t.method_1 != *t.method_2 ? who.truth.dprime : 0.0;
@@ -85,9 +85,7 @@ public:
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
-        std::vector<result> rows = begin_measured(o, 0.0);
-        std::vector<std::optional<double>> main;
-        for (const condition_trials& c : split_conditions(o, people, {})) {
+        const auto measure = [&](const condition_trials& c) {
             const auto fit = [](const std::vector<trial>& trials, const std::string&) {
                 return measure_detection(trials, same_different);
             };
@@ -99,13 +97,9 @@ public:
             d.ratio = test_difference(answers, fmt::format("{}/{}", o.name, c.name));
             t_test& t = d.figures.front().test;
             t = {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
-            if (c.name.empty())
-                main = list_main(d);
-            rows.push_back(make_row(c, "dprime", "Sensitivity", std::move(d)));
-            rows.back().is_main = c.name.empty();
-        }
-        add_groups(rows, people, main);
-        return rows;
+            return d;
+        };
+        return analyse_conditions(o, people, {}, 0.0, "dprime", "Sensitivity", measure);
     }
 
     main_comparison name_comparison(const run_outline&) const override

@@ -49,12 +49,7 @@ public:
     /// Gives a trial its value.
     virtual void choose(planned_trial&) {}
     /// Takes the answer to a trial of a track. `method_1`: name of the first stimulus' method.
-    virtual void take(unsigned track, std::string_view method_1, unsigned response)
-    {
-        static_cast<void>(track);
-        static_cast<void>(method_1);
-        static_cast<void>(response);
-    }
+    virtual void take(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
 };
 
 /// A run as a simulated observer knows it.
@@ -135,8 +130,8 @@ public:
     virtual void take(trial_row& row, const run_definition& r, double answer) const;
     /// Lists the responses of its tables that get a number each in [sync.codes]; empty: all have one number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
-    /// Names a response in the meaning of a code.
-    virtual std::string name_response(std::string_view response) const;
+    /// Names a response in the meaning of a code; empty: all responses have one number.
+    virtual std::string name_response(const run_outline& o, std::string_view response) const;
 
     /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.
     virtual void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const = 0;
@@ -148,6 +143,7 @@ public:
     /// Answers a trial as a person would: 1 or 2, the rating, the place of a motion in the run from 1, an
     /// estimate.
     virtual double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const = 0;
+
     // Results.
 
     /// Returns the cells of a run in which each trial is a value; usually nothing: the run measures figures.
@@ -213,6 +209,7 @@ inline const task& task_in(const run_outline& o) noexcept
 
 /// Returns the comparison of a figure with a value, if there is one.
 main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against);
+
 /// Reads `task` of a [[run]]. \throws error (bad_input) with line and column.
 const task& read_task(const detail::toml_table& t);
 

@@ -93,7 +93,7 @@ std::vector<std::string> task::list_responses(const run_outline&) const
     return {"1", "2"};
 }
 
-std::string task::name_response(std::string_view response) const
+std::string task::name_response(const run_outline&, std::string_view response) const
 {
     return fmt::format("answer {}", response);
 }

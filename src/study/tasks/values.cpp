@@ -54,21 +54,24 @@ detail::bounds read_vary(const toml_table& t, run_outline& o)
     return v->allowed;
 }
 
-std::vector<double> read_one_or_more(const toml_table& t, std::string_view key, const detail::bounds& b)
+std::vector<double> read_numbers(const toml_table& t, std::string_view key, const detail::bounds& b)
 {
     std::vector<double> all;
-    if (const toml::node* n = t.node(key); n != nullptr && !n->is_array())
-        all.push_back(*t.number(key, b));
-    else if (const toml::array* list = t.list(key, "numbers"))
+    if (const toml::array* list = t.list(key, "numbers"))
         for (const toml::node& one : *list)
             all.push_back(t.to_number(one, key, b));
     return all;
 }
 
+std::vector<double> read_one_or_more(const toml_table& t, std::string_view key, const detail::bounds& b)
+{
+    const toml::node* n = t.node(key);
+    return n != nullptr && !n->is_array() ? std::vector{*t.number(key, b)} : read_numbers(t, key, b);
+}
+
 void read_values(const toml_table& t, run_outline& o, const detail::bounds& b)
 {
-    static_cast<void>(t.list("values", "numbers"));
-    o.values = read_one_or_more(t, "values", b);
+    o.values = read_numbers(t, "values", b);
     if (o.values.size() < 2 || o.values.size() > most_values)
         t.fail(t.has("values") ? "values" : "vary", fmt::format("there are {} values", o.values.size()),
                fmt::format("give 2 to {}: values = [..]", most_values));
@@ -187,18 +190,17 @@ bool feels_more(const simulated_run& who, double value, random_numbers& r)
     return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
 }
 
-bool lapses(const simulated_run& who, random_numbers& r, double& answer)
+std::optional<double> lapse(const simulated_run& who, random_numbers& r)
 {
     if (!(who.truth.lapse > 0.0) || r.unit() >= who.truth.lapse)
-        return false;
-    answer = 1 + r.below(2);
-    return true;
+        return {};
+    return 1 + r.below(2);
 }
 
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r)
 {
-    if (double key = 0.0; lapses(who, r, key))
-        return key;
+    if (const auto key = lapse(who, r))
+        return *key;
     const bool more = feels_more(who, find_value(who.definition, t).value(), r);
     const bool standard_first = who.definition.methods[t.method_1].name == standard_name;
     return more == (!t.method_2 || standard_first) ? 2 : 1;

@@ -24,6 +24,8 @@ void read_trials(const detail::toml_table& t, run_outline& o);
 detail::bounds read_vary(const detail::toml_table& t, run_outline& o);
 /// Reads `values`.
 void read_values(const detail::toml_table& t, run_outline& o, const detail::bounds& b);
+/// Reads a list of numbers.
+std::vector<double> read_numbers(const detail::toml_table& t, std::string_view key, const detail::bounds& b);
 /// Reads numbers, or one of them.
 std::vector<double> read_one_or_more(const detail::toml_table& t, std::string_view key,
                                      const detail::bounds& b);
@@ -70,8 +72,8 @@ bool is_more(const run_outline& o, std::string_view method_1, unsigned response)
 
 /// Returns true with the chance of the true psychometric function at a value.
 bool feels_more(const simulated_run& who, double value, random_numbers& r);
-/// Returns true in the share of trials in which an observer presses either key; `answer` is the key then.
-bool lapses(const simulated_run& who, random_numbers& r, double& answer);
+/// Returns either key, in the share of trials in which an observer presses one without attention.
+std::optional<double> lapse(const simulated_run& who, random_numbers& r);
 /// Answers a trial with a comparison by is_more().
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
 /// Refuses a run whose attribute an observer cannot judge; else finds the mean of its judgements.
