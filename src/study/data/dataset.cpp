@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view prefix = "sub-";
 
-// Returns the code of "sub-CODE", which becomes a part of paths; empty if it is none.
+// Returns the code in "sub-CODE"; empty for other texts. Allows only letters and digits, because the code
+// becomes part of paths.
 std::string_view read_code(std::string_view id)
 {
     if (!id.starts_with(prefix))
@@ -39,7 +40,7 @@ std::string_view read_code(std::string_view id)
     return make_file_name(id) == id ? id : std::string_view{};
 }
 
-// Lists a folder, in no order. Throws error (bad_input) if it cannot be read.
+// Lists a folder in no particular order. Throws error (bad_input) if it cannot be read.
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder)
 {
     std::vector<std::filesystem::path> all;
@@ -53,7 +54,8 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
     return all;
 }
 
-// Refuses data of somebody who is not in the list: the analysis would pass over them in silence.
+// Throws error (bad_input) if a folder belongs to a participant who is not in the list: the analysis would
+// silently skip it.
 void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
 {
     for (const fs::path& path : list_folder(folder)) {
@@ -66,7 +68,7 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
     }
 }
 
-// Reads the codes in a folder.
+// Reads the participants' codes in a study's folder.
 std::vector<std::string> read_codes(const fs::path& folder)
 {
     std::error_code failed;
@@ -82,7 +84,8 @@ std::vector<std::string> read_codes(const fs::path& folder)
     return known;
 }
 
-// Returns an error about an option that selects participants, which each front end spells.
+// Returns an error about an option that selects participants. Each front end spells the option in its own
+// way.
 error selection_error(std::string_view option, std::string_view why, std::string_view hint)
 {
     return error(error_kind::bad_input, option, why, hint).with_field(option);
@@ -134,7 +137,8 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     return r;
 }
 
-// A session that lacks trials can go on; one that has them all never needs to go on.
+// Reads a run's table. If its last line is cut off, the hint depends on the run: only a session that lacks
+// trials can resume.
 run_data read_whole_run(const fs::path& file, const run_outline& run)
 {
     const text_table t(file, last_line::may_be_cut);
@@ -148,14 +152,14 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
 
 class reader {
 public:
-    // Adds a participant, whose files are in a folder.
+    // Adds a participant with files in `folder`.
     void add(const std::string& code, const fs::path& folder)
     {
         folder_ = folder;
         set_.participants.push_back(code);
         set_.data.emplace_back();
         set_.groups.emplace_back();
-        const std::vector<session_number> sessions = list_sessions(folder_, code); // none: not here yet
+        const std::vector<session_number> sessions = list_sessions(folder_, code); // may be empty
         for (const session_number session : sessions)
             add_session(code, session);
         for (run_data& run : set_.data.back())
@@ -214,7 +218,8 @@ private:
             refuse_unknown_tables(folder_ / beh, code, session);
     }
 
-    // Takes a session, whose name is for messages.
+    // Keeps the first session's experiment, and checks that each later session has the same. `name` is for
+    // messages.
     void take_session(const std::string& name, const session_data& s)
     {
         if (first_.empty()) {
@@ -237,7 +242,7 @@ private:
                 first_, name));
     }
 
-    // Refuses a table of no run: the analysis would pass over it in silence.
+    // Throws error (bad_input) for a table that belongs to no run: the analysis would silently skip it.
     void refuse_unknown_tables(const fs::path& beh, const std::string& code, session_number session) const
     {
         for (const fs::path& path : list_folder(beh)) {
@@ -345,7 +350,7 @@ std::vector<session_number> list_sessions(const fs::path& folder, std::string_vi
 
 bool are_alike(std::string_view a, std::string_view b)
 {
-    // Takes the number at the end off, and returns it without leading zeros.
+    // Removes the number at the end of a code, and returns it without leading zeros.
     const auto take_number = [](std::string_view& code) {
         const std::size_t at = code.find_last_not_of("0123456789") + 1; // npos + 1 is 0
         std::string_view number = code.substr(at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Comparison of two definitions: the trials, and the words that give an answer its meaning.
+// Compares two definitions in their trials and in the words that give an answer its meaning.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -37,7 +37,7 @@ std::vector<std::string> list_names(const std::vector<T>& all)
     return names;
 }
 
-// Keeps the first difference that it finds.
+// Search that keeps the first difference it finds.
 class difference_search {
 public:
     template <class T>

@@ -19,7 +19,7 @@ constexpr std::string_view utf8_hint = "save it as UTF-8, or convert it: iconv -
 
 constexpr std::string_view ends = "\t\r\n";
 
-// Returns the cell that begins with a quote at `at`; nothing where no quote ends it.
+// Returns the cell whose opening quote is at `at`; nothing if no closing quote ends it.
 std::optional<table_cell> quoted_cell(std::string_view text, std::size_t at)
 {
     table_cell c{.quoted = true, .begin = at};
@@ -53,7 +53,7 @@ std::size_t line_end_length(std::string_view text, std::size_t at)
     return text.substr(at, 2) == "\r\n" ? 2 : 1;
 }
 
-// Splits a text, from a byte on.
+// Splits a text into lines and cells, from the byte `from` on.
 std::vector<table_line> split_table(std::string_view text, std::size_t from)
 {
     std::vector<table_line> lines;
@@ -74,7 +74,8 @@ std::vector<table_line> split_table(std::string_view text, std::size_t from)
     return lines;
 }
 
-// Writes a cell in quotes if it would be read as another: R takes any quotation mark for the begin of a text.
+// Returns a cell's text for a file. Adds quotes if a reader would misread it: R takes any quotation mark for
+// the start of a text.
 std::string written_cell(std::string_view text)
 {
     if (text != "NA" && text.find_first_of("\t\r\n\"'") == text.npos)
@@ -85,10 +86,10 @@ std::string written_cell(std::string_view text)
     return q + '"';
 }
 
-// Tests for UTF-8 without bytes of 0.
+// Returns true for UTF-8 without zero bytes.
 bool is_plain_text(std::string_view text) noexcept
 {
-    int more = 0; // bytes that the character still has
+    int more = 0; // bytes still missing from the character
     for (const char c : text) {
         const auto byte = static_cast<unsigned char>(c);
         if (byte == 0 || (more > 0) != ((byte & 0xC0U) == 0x80U))
@@ -107,7 +108,7 @@ bool is_plain_text(std::string_view text) noexcept
 
 std::string read_file(const std::filesystem::path& file)
 {
-    constexpr std::size_t most_bytes = std::size_t{64} << 20; // one trial takes about 200
+    constexpr std::size_t most_bytes = std::size_t{64} << 20; // a trial takes about 200 bytes
     std::error_code failed;
     const std::filesystem::file_status s = std::filesystem::status(file, failed);
     if (!std::filesystem::exists(s))
@@ -173,7 +174,7 @@ text_table::text_table(const std::filesystem::path& file, std::string text, last
 
 void text_table::take_header(table_line line)
 {
-    // Other programs put these between the cells by default.
+    // Separators that other programs use by default.
     constexpr std::pair<char, std::string_view> others[] = {
         {',', "commas"}, {';', "semicolons"}, {' ', "spaces"}};
     for (const auto& [sign, name] : others)
@@ -253,7 +254,7 @@ std::optional<unsigned> text_table::whole(std::size_t row, std::string_view colu
     const auto text = cell(row, column);
     if (!text)
         return {};
-    const auto v = detail::number_in<double>(*text); // pandas makes 3.0 of a 3 where another row has none
+    const auto v = detail::number_in<double>(*text); // pandas writes 3 as 3.0 if another row has no value
     if (!v || *v != std::floor(*v) || *v < least || *v > most)
         refuse(row, fmt::format("{} is \"{}\"", column, *text),
                fmt::format("give a whole number from {} to {}", least, most));
@@ -285,7 +286,7 @@ void text_table::refuse(std::size_t row, std::string_view why, std::string_view 
     refuse_at(rows_[row].begin(), why, hint);
 }
 
-// Counts the lines as an editor does: also those in quotes.
+// Counts lines as an editor does, including line ends in quotes.
 void text_table::refuse_at(std::size_t byte, std::string_view why, std::string_view hint) const
 {
     unsigned line = 1;
@@ -319,7 +320,7 @@ std::string text_table::missing_end() const
 {
     if (text_.ends_with('\n') || text_.ends_with('\r'))
         return {};
-    const auto has_no_byte = [](const table_cell& c) { return c.begin == c.end; }; // unlike ""
+    const auto has_no_byte = [](const table_cell& c) { return c.begin == c.end; }; // false for ""
     const bool empty =
         is_open() && rows_.back().end() == text_.size() && has_no_byte(rows_.back().cells.back());
     return (empty ? "n/a" : "") + line_end_;
@@ -329,7 +330,7 @@ std::string text_table::with_cells(std::size_t row, const named_cells& cells) co
 {
     std::string text = text_;
     const std::vector<table_cell>& old = rows_[row].cells;
-    for (std::size_t i = old.size(); i-- > 0;) // from the end, so that places before it stay
+    for (std::size_t i = old.size(); i-- > 0;) // backwards, so that earlier positions stay valid
         for (const auto& [column, value] : cells)
             if (columns_[i] == column)
                 text.replace(old[i].begin, old[i].end - old[i].begin, written_cell(value));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Reading what lies in a study's folder: whole files, and tables with tabs between, as tactor, spreadsheets,
-/// R and pandas write them.
+/// Reads the files in a study's folder: whole files, and tables with tabs between the cells, as tactor,
+/// spreadsheets, R and pandas write them.
 #pragma once
 
 #include <cstddef>
@@ -19,28 +19,28 @@ namespace tactor::study {
 struct table_cell {
     std::string text = {}; ///< without quotes
     bool quoted = false;
-    std::size_t begin = 0; ///< in the file's text, with quotes
+    std::size_t begin = 0; ///< first byte in the file's text; a quote belongs to the cell
     std::size_t end = 0;
 
-    /// True for n/a, for an empty cell and for R's NA.
+    /// Returns true for n/a, for an empty cell and for R's NA.
     bool missing() const noexcept { return text.empty() || text == "n/a" || (text == "NA" && !quoted); }
 };
 
 struct table_line {
     std::vector<table_cell> cells = {};
-    bool ended = false; ///< by a line end
+    bool ended = false; ///< true if a line end follows
 
     std::size_t begin() const noexcept { return cells.front().begin; }
     std::size_t end() const noexcept { return cells.back().end; }
 };
 
-/// Returns the bytes of a regular file; refuses a pipe or a device in a study's folder without waiting for
-/// it. \throws error (bad_input) naming it.
+/// Returns the bytes of a regular file. \throws error (bad_input) with the file's name if it cannot be read.
+/// Throws at once for a pipe or a device, which could block.
 std::string read_file(const std::filesystem::path& file);
 
-/// Returns true if something of a study is there. \throws error (bad_input) for what is there and cannot be
-/// reached, because it would count as data that never were: a link to nothing, a folder that may not be
-/// searched, a part of the path that is no folder.
+/// Returns true if the path `below` exists in the folder `study`. \throws error (bad_input) if it exists but
+/// cannot be reached, because the analysis would treat it as never recorded: a link to nothing, a folder
+/// without permission, or a file in place of a folder.
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
 
 /// Cells by the names of their columns.
@@ -49,59 +49,61 @@ using named_cells = std::vector<std::pair<std::string_view, std::string>>;
 /// Returns the first line of a new table with these columns.
 std::string header_line(const named_cells& cells);
 
-/// Says whether a table's last line may be one that a crash cut off.
+/// State of a table's last line: whole, or perhaps cut off by a crash.
 enum class last_line { whole, may_be_cut };
 
-/// A table with a header line, as tactor writes it and other programs save it. Lines end in LF, CR LF or CR;
-/// blank ones, tabs alone too, are left out, as are a byte order mark and empty cells after a line's last. A
-/// cell in quotes may have tabs and line ends, and two quotes for one.
+/// A table with a header line, as tactor writes it and other programs save it. Lines end in LF, CR LF or CR.
+/// The reader skips a byte order mark, lines that are blank or have only tabs, and empty cells beyond the
+/// last column. A cell in quotes may contain tabs and line ends; two quotes in it stand for one.
 class text_table {
 public:
-    /// \throws error (bad_input) with file and line: UTF-16 or another kind of file, commas or other
-    /// separators in place of tabs, no header, a column without a name or there twice, a line with too many
-    /// or too few cells.
+    /// Reads a file. \throws error (bad_input) with file and line for UTF-16 or a file that is not text,
+    /// separators other than tabs, a missing header, a column without a name, two columns with one name, or a
+    /// line with too many or too few cells.
     explicit text_table(const std::filesystem::path& file, last_line end = last_line::whole);
-    /// The same of a text; `file` names it in messages.
+    /// Reads a text in the same way. `file` names it in messages.
     text_table(const std::filesystem::path& file, std::string text, last_line end = last_line::whole);
 
     std::size_t rows() const noexcept { return rows_.size() - (cut_ ? 1 : 0); }
     const std::vector<std::string>& columns() const noexcept { return columns_; }
     bool has(std::string_view column) const { return find(column).has_value(); }
-    /// \throws error (bad_input) where there is no such column, with rows or without.
+    /// Throws error (bad_input) if the column is missing, even from a table without rows.
     void need_column(std::string_view column) const;
-    /// A cell, or nothing for n/a. \throws error (bad_input) where there is no such column.
+    /// Returns a cell's text; nothing for n/a. \throws error (bad_input) if the column is missing.
     std::optional<std::string_view> cell(std::size_t row, std::string_view column) const;
-    /// The same of what must be there.
+    /// Returns a cell's text. \throws error (bad_input) if the column is missing or the cell is n/a.
     std::string_view need(std::size_t row, std::string_view column) const;
-    /// A whole number, also as 3.0. \throws error (bad_input) for what is none, or below `least` or above
-    /// `most`.
+    /// Returns a whole number, which may be written as 3.0; nothing for n/a. \throws error (bad_input) for
+    /// other texts, and for a number below `least` or above `most`.
     std::optional<unsigned> whole(std::size_t row, std::string_view column, unsigned least,
                                   unsigned most) const;
-    /// A finite number.
+    /// Returns a finite number; nothing for n/a. \throws error (bad_input) for other texts.
     std::optional<double> number(std::size_t row, std::string_view column) const;
-    /// True or false, in capitals or not; it must be there.
+    /// Reads true or false in small or capital letters. \throws error (bad_input) for other texts and n/a.
     bool truth(std::size_t row, std::string_view column) const;
-    /// Refuses a row, naming its line.
+    /// Throws error (bad_input) with the line of a row.
     [[noreturn]] void refuse(std::size_t row, std::string_view why, std::string_view hint = {}) const;
 
     const std::string& file() const noexcept { return file_; }
 
-    /// True where no line end follows the last row.
+    /// Returns true if no line end follows the last row.
     bool is_open() const noexcept { return !rows_.empty() && !cut_ && !rows_.back().ended; }
-    /// Takes the last row for one that is cut off.
+    /// Marks the last row as cut off, so that rows() no longer counts it.
     void leave_out_last() noexcept { cut_ = true; }
-    /// The byte at which a line begins that is cut off; it is none of the rows.
+    /// Returns the first byte of the line that is cut off, which rows() does not count; nothing if there is
+    /// none.
     std::optional<std::size_t> cut_at() const noexcept;
-    /// Refuses the line that is cut off. There is one.
+    /// Throws error (bad_input) with the line that is cut off. \pre cut_at() has a value.
     [[noreturn]] void refuse_cut(std::string_view hint) const;
 
-    /// Returns a line with its end: n/a where nothing is named, and no column that is not there.
+    /// Returns a new line with its line end. Columns without a cell in `cells` are n/a; cells for columns
+    /// that the table lacks are left out.
     std::string line(const named_cells& cells) const;
-    /// Returns what the file's last line lacks before another one can follow: mostly nothing.
+    /// Returns the text that completes the file's last line, so that another line can follow; usually empty.
     std::string missing_end() const;
-    /// Returns the file's text with a line at its end.
+    /// Returns the file's text with a new line added.
     std::string with_line(const named_cells& cells) const { return text_ + missing_end() + line(cells); }
-    /// Returns the file's text with these cells of a row changed, the others as they are.
+    /// Returns the file's text with these cells of one row changed.
     std::string with_cells(std::size_t row, const named_cells& cells) const;
 
 private:
@@ -112,10 +114,10 @@ private:
 
     std::string file_;
     std::string text_;
-    std::string line_end_ = "\n"; ///< as the header has it
+    std::string line_end_ = "\n"; ///< line end of the header
     std::vector<std::string> columns_;
     std::vector<table_line> rows_;
-    bool cut_ = false; ///< the last of them is cut off
+    bool cut_ = false; ///< true if the last row is cut off
 };
 
 } // namespace tactor::study

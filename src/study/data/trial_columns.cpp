@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The columns of a run's tables, and their cells as values.
+// Columns of a run's tables, and conversion of their cells to values.
 #include "study/data/dataset.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string written(const std::string& text)
     return text.empty() ? "n/a" : text;
 }
 
-// Microseconds: a twentieth of a frame at 48 kHz.
+// Writes microseconds: one is a twentieth of a frame at 48 kHz.
 std::string written(double seconds)
 {
     return fmt::format("{:.6f}", seconds);
@@ -39,7 +39,7 @@ std::string written(const std::optional<T>& v)
     return v ? written(*v) : "n/a";
 }
 
-// Reads a cell as the type of the member that it goes to; a missing one leaves it as it is.
+// Reader of one cell into a member, in the member's type. A missing cell leaves the default.
 struct cell_reader {
     const text_table& table;
     std::size_t row;
@@ -89,7 +89,7 @@ cell_value read_value(const text_table& t, std::size_t row, const trial_column& 
         c.member);
 }
 
-// Adds all cells of a line; of columns that are not in trial_columns, the texts.
+// Adds all cells of a line. Columns that are not in trial_columns are added as texts.
 void add_cells(trial_cells& into, const text_table& t, std::size_t row)
 {
     for (const trial_column& c : trial_columns)
@@ -153,7 +153,7 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
     for (const trial_column& c : trial_columns) {
         std::string text = std::visit([&](auto member) { return written(r.*member); }, c.member);
         if (c.name == "intensity_estimate" && r.intensity_estimate)
-            text = r.response; // the same number, whose digits are no microseconds
+            text = r.response; // the number with all its digits: written() would round it
         if (c.use == column_use::some ? text != "n/a" : std::ranges::any_of(runs, [&](auto* run) {
                 return has_column(*run, c);
             }))
