@@ -31,7 +31,8 @@ namespace {
 
 using detail::toml_table;
 
-// A key may have its unit behind it, as in stroke files, or not, as options do.
+// Returns the form of a key that the table uses: with its unit, as in stroke files, or without, as options
+// do.
 std::string_view spelled(const toml_table& t, std::string_view plain, std::string_view with_unit)
 {
     if (t.has(plain) && t.has(with_unit))
@@ -47,7 +48,7 @@ std::string write_key(const options::option& o, std::string_view value)
     return value.empty() ? std::string(o.name) : fmt::format("{} = {}{}{}", o.name, quote, value, quote);
 }
 
-// Adds the place in the definition to what the library refuses.
+// Calls `make` and adds the place in the definition to its errors.
 template <class F>
 auto at_key(const toml_table& t, std::string_view key, F make)
 {
@@ -55,7 +56,7 @@ auto at_key(const toml_table& t, std::string_view key, F make)
         return make();
     } catch (const error& e) {
         const error worded = options::spell(e, {write_key});
-        const bool is_key = e.subject() == e.field(); // then as it stands there, with its unit or without
+        const bool is_key = e.subject() == e.field(); // then as the definition spells it
         throw error(e.kind(), t.where(key),
                     fmt::format("{}: {}", is_key ? key : worded.subject(), worded.why()), worded.hint());
     }
@@ -65,26 +66,26 @@ stroke read_file_stroke(const toml_table& t, const std::filesystem::path& folder
 {
     const double intensity_max = t.number("intensity_max", detail::bounds_of::intensity_max).value_or(1.0);
     std::vector<stroke> all = at_key(
-        t, "file", [&] { return load_strokes(folder / *t.text("file"), intensity_max); }); // relative, or not
+        t, "file", [&] { return load_strokes(folder / *t.text("file"), intensity_max); }); // may be relative
     if (all.size() != 1)
         t.fail("file", fmt::format("there are {} strokes in it", all.size()),
                "a motion needs exactly one stroke");
     return std::move(all.front());
 }
 
-// Keys of a stroke: one of them, and the scale of a recording's intensities.
+// Keys of a stroke: its three sources, and the scale of a recording's intensities.
 constexpr std::array<std::string_view, 4> stroke_keys{"preset", "path", "file", "intensity_max"};
 
 stroke along_path(const toml_table& t, std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
     return at_key(t, "path", [&] {
         stroke s = session::path_stroke(*t.text("path"), duration_s, speed_mm_s.value_or(default_speed_mm_s));
-        s.speed_mm_s.reset(); // a variation of its length keeps its duration
+        s.speed_mm_s.reset(); // so that changing the length keeps the duration
         return s;
     });
 }
 
-// Reads the stroke of a motion or of a method, which has at most one of the keys.
+// Reads the stroke of a motion or a method; nothing if the table has none of the sources.
 std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::path& folder,
                                   std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
@@ -98,12 +99,12 @@ std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::pa
     stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
                    : kind == "path" ? along_path(t, duration_s, speed_mm_s)
                                     : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
-    drawn.start_s.reset();                                // it is played alone
+    drawn.start_s.reset();                                // each stimulus plays alone
     drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
     return drawn;
 }
 
-// Finds the option of a method that a key stands for, with its unit or without.
+// Finds the option of a method for a key with or without its unit. Throws error (bad_input) for other keys.
 const options::option& find_method_option(const toml_table::key_value& k)
 {
     const options::option* o = options::find(k.key);
@@ -116,8 +117,8 @@ const options::option& find_method_option(const toml_table::key_value& k)
     throw detail::unknown_key(k.key_at, k.key, "[[method]]", known);
 }
 
-// Sets an option of a method. Names of files are relative to the folder; without one a file may be gone, and
-// its name is enough.
+// Sets an option of a method. File names are relative to the folder. Without a folder the file may be gone,
+// so that only its name is kept.
 void give_option(options::option_values& w, const options::option& o, options::value v,
                  const std::filesystem::path* folder)
 {
@@ -146,7 +147,8 @@ std::string write_choice(const options::option& o, std::string_view value)
     return fmt::format("the method's {}, {}{}{},", options::dashed(o), quote, value, quote);
 }
 
-// Returns the places in `all` that a table names, in the order of `all`; every place if it names none.
+// Returns the indices of the items of `all` that a table names, in the order of `all`. Returns all indices if
+// the key is missing.
 template <class T>
 std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, const std::vector<T>& all)
 {
@@ -183,11 +185,11 @@ std::vector<std::string> names_at(const std::vector<std::size_t>& places, const 
 namespace fs = std::filesystem;
 
 struct extent {
-    const fs::path* folder = nullptr; ///< of files that the array and the motions name; null: leave them out
-    bool outline_only = false;        ///< pass over all else, as other programs may write it
+    const fs::path* folder = nullptr; ///< for file names; null leaves array and strokes out
+    bool outline_only = false;        ///< ignore the rest, which other programs may write differently
 };
 
-// Returns a preset's name, or the file beside the definition.
+// Returns the name of a preset, or the path of a file in the definition's folder.
 std::string array_in(const toml_table& t, const fs::path& folder)
 {
     std::string text = *t.text("array");
@@ -214,7 +216,7 @@ void read_level(const toml_table& t, experiment_definition& d)
         d.sl_db = *level->number(kind, {-60.0, 100.0});
 }
 
-// Reads one time, or the least and the greatest of a pause that is drawn.
+// Reads one time, or the bounds of a random pause.
 rest_range read_rest(const toml_table& t)
 {
     constexpr detail::bounds possible{0.0, 60.0};
@@ -234,7 +236,7 @@ rest_range read_rest(const toml_table& t)
 
 std::optional<std::uint64_t> read_seed(const toml_table& t)
 {
-    constexpr std::int64_t most = (std::int64_t{1} << 53) - 1; // JSON's numbers go so far
+    constexpr std::int64_t most = (std::int64_t{1} << 53) - 1; // greatest integer that JSON keeps exactly
     const toml::node* n = t.node("seed");
     if (n == nullptr)
         return {};
@@ -245,7 +247,7 @@ std::optional<std::uint64_t> read_seed(const toml_table& t)
     return static_cast<std::uint64_t>(*v);
 }
 
-// Reads a text of one line that can stand in a table.
+// Reads a text of one line that fits into a cell of a table.
 std::string name_in(const toml_table& t, std::string_view key)
 {
     std::string text = t.need(t.text(key), key);
@@ -303,7 +305,7 @@ masking_definition read_masking(const toml_table& root)
     return m;
 }
 
-// Returns true if left hands get the motion mirrored.
+// Returns true if the motion is mirrored for left hands.
 bool is_mirrored(const toml_table& motion)
 {
     return motion.boolean("mirror").value_or(false);
@@ -313,7 +315,7 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
 {
     t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
             "intensity_max", "mirror"});
-    static_cast<void>(t.one_of({"preset", "path", "file"})); // there is a stroke
+    static_cast<void>(t.one_of({"preset", "path", "file"})); // throws without a stroke
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
     const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
@@ -329,13 +331,14 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
     return {name_in(t, "name"), std::move(drawn), is_mirrored(t), t.where()};
 }
 
-// Reads a method of an experiment whose level is known. `folder`: of its files; null: leaves them out.
+// Reads a method. `d` must already have the level. `folder`: folder of the method's files; null leaves them
+// out.
 method_definition read_method(const toml_table& t, const experiment_definition& d, const fs::path* folder)
 {
     options::option_values w;
     w.place = options::in_method;
     if (!d.level_dbfs)
-        w.render.sl_db = d.sl_db; // until the method gives its own
+        w.render.sl_db = d.sl_db; // unless the method gives a level
     std::map<std::size_t, written_key> keys;
     for (const toml_table::key_value& k : t.entries()) {
         if (k.key == "name" || std::find(stroke_keys.begin(), stroke_keys.end(), k.key) != stroke_keys.end())
@@ -357,7 +360,7 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     return {name_in(t, "name"), std::move(w), std::move(drawn), t.where(), std::move(keys)};
 }
 
-// Refuses a run, or a group's part of it, without motions or methods, or with too few for its task.
+// Throws error (bad_input) if a run, or a group's part of it, has too few motions or methods for its task.
 void check_cells(const toml_table& t, const run_outline& o)
 {
     if (o.motions.empty() || o.methods.empty())
@@ -365,9 +368,10 @@ void check_cells(const toml_table& t, const run_outline& o)
     task_in(o).check(t, o);
 }
 
-constexpr std::size_t most_texts = 1000; // a definition that is held has stricter bounds
+constexpr std::size_t most_texts = 1000; // the definition of a session has stricter bounds
 
-// Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
+// Reads the parts of a [[run]] that the analysis needs. `d` must already have the motions, methods and
+// earlier runs.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
 {
     run_definition r;
@@ -398,7 +402,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     return r;
 }
 
-// Refuses keys that no task has, and those of other tasks.
+// Throws error (bad_input) for unknown keys and for keys of other tasks.
 void check_keys(const toml_table& t, const task& own)
 {
     std::vector<std::string_view> known{"name",   "task",         "attribute",   "question",      "animation",
@@ -444,7 +448,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
         t.need(std::optional<unsigned>{}, "trials");
     r.practice = t.whole("practice", 0, 10000).value_or(0);
     r.max_in_a_row =
-        t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // 1: catch trials have no order
+        t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // not 1: catch trials could not be ordered
     if (t.has("choices") && r.outline.choices.size() != 2)
         t.fail("choices", fmt::format("choices has {}", counted(r.outline.choices.size(), "text")),
                "give one for each of the two answers");
@@ -455,7 +459,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     return r;
 }
 
-// Reads [[group]], after the runs.
+// Reads a [[group]]. `d` must already have the runs.
 group_outline read_group(const toml_table& t, const experiment_definition& d)
 {
     group_outline g{name_in(t, "name"), d.outline.runs};

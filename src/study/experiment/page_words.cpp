@@ -39,7 +39,7 @@ constexpr std::array english{
     page_word{"confirm", "Confirm"},
     page_word{"any_number", "a number above 0, with a point: 0.5, 12, 1500"},
     page_word{"full_screen", "Full screen"},
-    // On a terminal only.
+    // Texts that only the terminal shows.
     page_word{"or", "or"},
     page_word{"to", "to"},
     page_word{"any_key_begins", "Any key begins."},
@@ -48,7 +48,7 @@ constexpr std::array english{
     page_word{"repeated", "again"},
     page_word{"later", "Once more, later."},
     page_word{"no_answer", "That is not an answer"},
-    // On the page of calibrate only.
+    // Texts that only the page of calibrate shows.
     page_word{"calibrate_choose",
               "There are two intervals, one of which vibrates. Which one? Guess if you do not know."},
     page_word{"calibrate_interval", "Interval"},

@@ -16,36 +16,36 @@ class toml_table;
 
 namespace tactor::study {
 
-/// Length of a definition, at most.
+/// Greatest length of a definition.
 inline constexpr std::size_t most_definition_bytes = std::size_t{1} << 20;
 
-/// A text of the participant's page or terminal besides the definition's questions.
+/// A text of the participant's page or terminal, other than the questions of the definition.
 struct page_word {
     std::string_view key;
     std::string_view english;
 };
 
-/// Returns all of them in English, for a definition that does not give them.
+/// Lists all these texts in English. A definition may replace them.
 std::span<const page_word> page_words_in_english();
 
 /// [page] of a definition: the words in the participant's language.
 class page_words {
 public:
-    /// \pre `key` is one of page_words_in_english().
+    /// Returns the text of a key. \pre `key` is in page_words_in_english().
     std::string operator[](std::string_view key) const;
     void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
-    /// Returns a warning for texts that stay English although others were set; empty if there are none.
+    /// Returns a warning about texts that stay English although others were set; empty if there are none.
     std::string warning() const;
 
 private:
     std::map<std::string, std::string, std::less<>> own_;
 };
 
-/// Reads [page] of a document. \throws error (bad_input) with line and column.
+/// Reads [page] from a definition. \throws error (bad_input) with line and column.
 page_words read_page(const detail::toml_table& root);
 
-/// Reads [page] of a definition; passes over all else in it. \throws error (bad_input) with line and column,
-/// also if there is no [page].
+/// Reads [page] from the file of a definition and ignores the rest. \throws error (bad_input) with line and
+/// column, also if [page] is missing.
 page_words load_page_words(const std::string& file);
 
 } // namespace tactor::study

@@ -18,29 +18,29 @@ namespace tactor::study {
 
 /// Place of a questionnaire in a session.
 enum class questionnaire_time {
-    before,  ///< the first run
-    between, ///< after each run but the last
-    after,   ///< the last run
+    before,  ///< before the first run
+    between, ///< after each run except the last
+    after,   ///< after the last run
 };
 
 /// Kind of answer.
 enum class item_kind { choice, number, text, scale };
 
-/// [[run.item]]: a question, and the answers that it may have.
+/// [[run.item]]: a question and its possible answers.
 struct questionnaire_item {
     std::string name; ///< column of the table: letters, digits and _
     std::string question;
     item_kind kind = item_kind::text;
-    std::vector<std::string> labels = {}; ///< choice: of each; scale: of each step, of both ends, or none
-    unsigned lowest = 1;                  ///< not of a text
+    std::vector<std::string> labels = {}; ///< labels of all choices or steps, of both ends, or none
+    unsigned lowest = 1;                  ///< smallest answer; unused for a text
     unsigned greatest = 1;
-    bool is_line = false; ///< scale: places on a line, without numbers
+    bool is_line = false; ///< scale: a line without numbers
 
     friend bool operator==(const questionnaire_item&, const questionnaire_item&) = default;
 };
 
 struct questionnaire {
-    std::string name; ///< phenotype/NAME.tsv: letters, digits and _
+    std::string name; ///< NAME of phenotype/NAME.tsv: letters, digits and _
     questionnaire_time when = questionnaire_time::before;
     std::string title = {};
     std::string text = {};
@@ -49,25 +49,28 @@ struct questionnaire {
     friend bool operator==(const questionnaire&, const questionnaire&) = default;
 };
 
-/// Returns the greatest answer of `scale`, a number of steps or "vas", and sets `visual` for that; nothing
-/// without the key. \throws error (bad_input) with line and column.
+/// Reads the key `scale`, a number of steps or "vas". Returns the greatest answer, or nothing without the
+/// key. Sets `visual` to true for "vas" and to false for a number. \throws error (bad_input) with line and
+/// column.
 std::optional<unsigned> read_scale(const detail::toml_table& t, bool& visual);
 
-/// Reads a [[run]] with task = "questionnaire", after the `others`. \throws error (bad_input) with line and
-/// column.
+/// Reads a [[run]] with task = "questionnaire". `others`: the questionnaires before it. \throws error
+/// (bad_input) with line and column.
 questionnaire read_questionnaire(const detail::toml_table& run, const std::vector<questionnaire>& others);
 
-/// Returns the path of its answers in a study's folder, phenotype/NAME.tsv, or that of their description.
+/// Returns the path of a questionnaire's answers in a study's folder, phenotype/NAME.tsv. With `extension`
+/// ".json" it is the path of their description.
 std::filesystem::path answers_path(const questionnaire& q, const char* extension = ".tsv");
 
 /// Returns "before the first run", "after each run but the last" or "after the last run".
 std::string_view describe_time(questionnaire_time t) noexcept;
 
-/// Lists a label for each of two or more answers: those that are given, or both ends' and empty ones between.
+/// Lists one label for each of two or more answers. If there are only two labels, they are for the ends, and
+/// the others are empty. Without labels all are empty.
 std::vector<std::string> spread_labels(const std::vector<std::string>& labels, std::size_t answers);
 
-/// Lists the labels of the answers from `lowest` on, empty where the number is enough; none for number and
-/// text.
+/// Lists one label for each answer from `lowest` on; it is empty if the number is enough. The list is empty
+/// for number and text.
 std::vector<std::string> label_answers(const questionnaire_item& item);
 
 } // namespace tactor::study

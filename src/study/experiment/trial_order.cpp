@@ -8,12 +8,12 @@
 namespace tactor::study {
 namespace {
 
-/// Trials that are to come, behind a row of one motion.
+/// Trials still to be placed, after a row of trials of one motion.
 struct rest_of_order {
-    std::vector<std::size_t> left = {}; ///< number of trials by motion
+    std::vector<std::size_t> left = {}; ///< number of these trials by motion
     std::size_t all = 0;                ///< sum of `left`
     std::size_t last = 0;               ///< motion of the row
-    std::size_t row = 0;                ///< its length
+    std::size_t row = 0;                ///< length of the row
 
     explicit rest_of_order(std::span<const planned_trial> trials) : all(trials.size())
     {
@@ -31,8 +31,8 @@ struct rest_of_order {
         --all;
     }
 
-    // Returns true if the trials have an order. Each trial of another motion parts two rows, so that a motion
-    // has room for one row more than there are such trials.
+    // Returns true if the remaining trials can be ordered: n trials of other motions leave room for n + 1
+    // rows of a motion, each with at most `most` trials.
     bool has_order(std::size_t most) const
     {
         bool has = row <= most;
@@ -53,7 +53,8 @@ bool has_longer_row(std::span<const planned_trial> trials, std::size_t most)
     return false;
 }
 
-// Returns the share of random orders without a longer row, for motions that are equally likely at each place.
+// Returns the share of random orders in which no row is longer than `most`, if all motions are equally likely
+// at each place.
 double share_without_rows(std::size_t trials, std::size_t motions, std::size_t most)
 {
     const double again = 1.0 / static_cast<double>(motions);
@@ -70,8 +71,8 @@ double share_without_rows(std::size_t trials, std::size_t motions, std::size_t m
     return sum();
 }
 
-// Builds an order from its beginning. At each place comes the first of the shuffled trials with which those
-// that are left still have an order.
+// Builds an order from its start. Takes for each place the first of the shuffled trials after which the
+// remaining trials can still be ordered.
 void build_order(std::span<planned_trial> trials, std::size_t most)
 {
     rest_of_order rest(trials);
@@ -95,7 +96,8 @@ bool has_order(std::span<const planned_trial> trials, std::size_t most)
 
 void order_trials(std::span<planned_trial> trials, std::size_t most, random_numbers& numbers)
 {
-    // Draws whole orders where one of so many fits: all that fit are then equally likely.
+    // Draws whole orders if at least one of `draws` is expected to fit: all orders that fit are then equally
+    // likely.
     const std::size_t draws =
         std::min(std::size_t{1000000}, std::size_t{200000000} / std::max(trials.size(), std::size_t{1}));
     const auto motions = static_cast<std::size_t>(

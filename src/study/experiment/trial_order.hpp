@@ -11,10 +11,10 @@
 
 namespace tactor::study {
 
-/// Returns true if trials have an order in which no motion comes more often in a row than `most`.
+/// Returns true if the trials can be ordered so that no motion comes more than `most` times in a row.
 bool has_order(std::span<const planned_trial> trials, std::size_t most);
 
-/// Puts trials into a random order in which no motion comes more often in a row than `most`.
+/// Puts trials into a random order in which no motion comes more than `most` times in a row.
 /// \pre has_order(trials, most)
 void order_trials(std::span<planned_trial> trials, std::size_t most, random_numbers& numbers);
 

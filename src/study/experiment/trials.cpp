@@ -29,7 +29,7 @@
 namespace tactor::study {
 namespace {
 
-// Draws the pause before each trial, in whole milliseconds; draws nothing if it is always the same.
+// Sets the pause before each trial, in whole milliseconds. Uses random numbers only if the pause varies.
 void draw_rests(std::vector<planned_trial>& trials, const rest_range& range, random_numbers& r)
 {
     constexpr double steps_per_s = 1000.0;
@@ -40,7 +40,7 @@ void draw_rests(std::vector<planned_trial>& trials, const rest_range& range, ran
     }
 }
 
-// Returns the order of n runs or blocks; `row` is from 0. Draws nothing unless it is random.
+// Returns the order of n runs or blocks. `row` counts from 0. Uses random numbers only for a random order.
 std::vector<std::size_t> make_order(std::string_view order, std::size_t n, std::size_t row, random_numbers& r)
 {
     if (order != "random")
@@ -51,7 +51,7 @@ std::vector<std::size_t> make_order(std::string_view order, std::size_t n, std::
     return all;
 }
 
-// Returns the number of blocks of a run; without blocks all trials are one.
+// Returns the number of blocks of a run; 1 if all its trials are mixed.
 std::size_t count_blocks(const run_definition& r)
 {
     return r.blocks == "methods" ? r.methods.size() : r.blocks == "motions" ? r.motions.size() : 1;
@@ -65,7 +65,7 @@ bool is_in_block(const experiment_definition& d, const planned_trial& t, const r
     return r.blocks.empty() || t.motion == r.motions[i];
 }
 
-// Parts the trials of a run by block.
+// Splits the trials of a run into its blocks.
 std::vector<std::vector<planned_trial>> part_blocks(const experiment_definition& d, const run_definition& r,
                                                     const std::vector<planned_trial>& trials)
 {
@@ -78,8 +78,8 @@ std::vector<std::vector<planned_trial>> part_blocks(const experiment_definition&
 
 constexpr double longest_stimulus_s = 600.0;
 
-// Returns the felt places at equal parts of the target's time. While nothing is felt, the last place counts,
-// and before the first one that.
+// Returns the felt positions at equal parts of the target's time. While nothing is felt, repeats the last
+// felt position; before the first, uses the first.
 std::vector<point> sample_path(const std::vector<percept_sample>& samples)
 {
     std::vector<point> felt;
@@ -97,8 +97,8 @@ std::vector<point> sample_path(const std::vector<percept_sample>& samples)
     return parts;
 }
 
-// Returns the stroke that a method plays for a motion: its own, or the motion's. A sound that the method
-// gives replaces that of the stroke's file.
+// Returns the stroke that a method plays for a motion: the method's stroke, or the motion's. The method's
+// carrier, waveform and modulation replace those in the stroke's file.
 stroke choose_stroke(const motion_definition& motion, const method_definition& method)
 {
     stroke s = vary_stroke(method.drawn.value_or(motion.drawn), method);
@@ -115,7 +115,7 @@ stroke choose_stroke(const motion_definition& motion, const method_definition& m
     return s;
 }
 
-// Returns the options of a session's scores, replaced by those that a method gives.
+// Returns the session's render options, replaced by those that a method gives.
 render_options choose_render(const render_options& common, const options::option_values& method)
 {
     options::option_values all;
@@ -126,7 +126,7 @@ render_options choose_render(const render_options& common, const options::option
     return all.render;
 }
 
-// Lists the methods of a run as they are played.
+// Lists the methods that a run plays: its own, or their variants.
 std::vector<std::size_t> list_played(const run_definition& r)
 {
     std::vector<std::size_t> all;
@@ -142,7 +142,7 @@ std::vector<std::size_t> list_played(const run_definition& r)
     return all;
 }
 
-// Returns the target of a stimulus: its motion, in the time that the stroke takes which is played.
+// Returns the target of a stimulus: the motion, with the duration of the stroke that is played.
 stroke find_target(const motion_definition& motion, const method_definition& method, const stroke& played)
 {
     if (!method.drawn)
@@ -169,8 +169,8 @@ std::size_t square_rows(std::string_view order, std::size_t n) noexcept
 
 std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row)
 {
-    // Williams: 0, 1, n - 1, 2, n - 2, ...: each difference once. The other rows are this one with 1, 2, ...
-    // added.
+    // The first Williams row is 0, 1, n - 1, 2, n - 2, ..., in which each difference occurs once. The other
+    // rows add 1, 2, ... to it, modulo n.
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t williams = i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : n - i / 2;
@@ -200,7 +200,7 @@ std::size_t default_row(const experiment_definition& d, std::string_view code)
     const std::size_t rows = count_rows(d);
     std::size_t row = default_seed(code) % rows;
     if (const std::size_t digits = code.find_last_not_of("0123456789") + 1; digits < code.size()) {
-        std::size_t number = 0; // modulo rows: it may have any number of digits
+        std::size_t number = 0; // modulo rows, because it may have any number of digits
         for (const char c : code.substr(digits))
             number = (number * 10 + static_cast<std::size_t>(c - '0')) % rows;
         row = (number + rows - 1) % rows;
@@ -219,7 +219,8 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     if (mixes_motions &&
         !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
         blocks = part_blocks(d, r, draw_by_turns(d, r, task_in(r.outline).list_cells(r), numbers));
-    // The blocks move on after all rows of the runs' square: each order of the runs meets each of the blocks.
+    // Takes the next order of blocks after all rows of the runs' square, so that each order of runs meets
+    // each order of blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
     const std::size_t runs = square_rows(d.order, d.runs.size());
     for (const std::size_t i :
@@ -437,7 +438,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         const std::string hint = spell_for_definition(e.hint(), method.has_level());
         if (method.value) {
             if (option == nullptr || option != options::find(vary))
-                make(d, motion_at, *method.made_of, {}, faces); // throws what no value of the run mends
+                make(d, motion_at, *method.made_of, {}, faces); // throws if the method fails with every value
             throw error(e.kind(), method.where,
                         fmt::format("{} = {} of motion \"{}\" with method \"{}\": {}: {}", vary,
                                     *method.value, motion.name, d.methods[*method.made_of].name,

@@ -24,7 +24,7 @@ namespace {
 
 using detail::toml_table;
 
-/// Parameters of a stroke that a run may vary; others are options.
+/// Parameters of a stroke that a run may vary. Other names are options.
 constexpr std::array<std::pair<std::string_view, detail::bounds>, 4> stroke_parameters{{
     {"x_mm", {-detail::max_mm, detail::max_mm}},
     {"y_mm", {-detail::max_mm, detail::max_mm}},
@@ -39,7 +39,7 @@ const detail::bounds* find_parameter(std::string_view name)
     return at == stroke_parameters.end() ? nullptr : &at->second;
 }
 
-// Returns an option with a number that a method may have; null for none.
+// Finds a numeric option of a method; null for other names.
 const options::option* find_number(std::string_view name)
 {
     const options::option* o = options::find(name);
