@@ -53,7 +53,7 @@ const std::array<event_row, code_events>& list_events()
     return rows;
 }
 
-// Returns the intervals in which an event comes in the cells of a run.
+// Returns the intervals (1, 2) of an event in the cells of a run; 1 if the event does not occur.
 std::vector<unsigned> list_intervals(const experiment_definition& d, const std::vector<planned_trial>& cells,
                                      code_event e)
 {
@@ -67,7 +67,7 @@ std::vector<unsigned> list_intervals(const experiment_definition& d, const std::
     return all.empty() ? std::vector{1U} : all;
 }
 
-// Lists the events of a run, in order.
+// Lists the events of a run except answers, in the order of their numbers.
 std::vector<coded_event> list_events_in(const experiment_definition& d, const run_definition& r)
 {
     const std::vector<planned_trial> cells = task_in(r.outline).list_cells(r);
@@ -151,7 +151,7 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
         for (const run_definition& r : whole.runs) {
             std::vector<std::string> answers = task_in(r.outline).list_responses(r.outline);
             if (answers.empty())
-                answers.emplace_back(); // one number for all
+                answers.emplace_back(); // all answers share a number
             for (const coded_event& e : list_events_in(whole, r)) {
                 add(e);
                 for (const std::string& answer : answers)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Numbers of the events of a study: [sync.codes] of tactor.toml(5).
+/// Numbers that mark the events of a study, see [sync.codes] in tactor.toml(5).
 #pragma once
 
 #include <cstddef>
@@ -26,36 +26,36 @@ inline constexpr std::size_t code_events = 5;
 /// Returns the event's name, as in [sync.codes].
 std::string_view to_string(code_event e) noexcept;
 
-/// Returns the event that a stimulus by a method is.
+/// Returns the event that a stimulus of this method marks.
 code_event find_event(const method_definition& m) noexcept;
 
-/// An event, as far as numbers tell it from others.
+/// An event, with the parts that may determine its number.
 struct coded_event {
     code_event event = code_event::stimulus;
     const run_definition* run = nullptr;
-    std::size_t motion = 0;         ///< place in the definition
-    std::size_t method = 0;         ///< the same, of the stimulus; of an answer or void trial the first one
-    unsigned interval = 1;          ///< of a stimulus
-    std::string_view response = {}; ///< of an answer, as in the table
+    std::size_t motion = 0;         ///< index in the definition
+    std::size_t method = 0;         ///< index of the stimulus' method; else of the trial's first method
+    unsigned interval = 1;          ///< place of the stimulus in its trial
+    std::string_view response = {}; ///< response of an answer, as in the table
 };
 
-/// The numbers of all events of a definition. Events that no part of `by` tells apart have one number.
+/// The numbers of all events of a definition. Events that differ in no part listed in `by` share a number.
 class code_numbers {
 public:
     code_numbers() = default;
-    /// Gives numbers to the events of all groups, in the order of the definition.
-    /// \throws error (bad_input) at the place of [sync] code for more than 255, or than the lines can show.
+    /// Numbers the events of all groups, in the order of the definition. \throws error (bad_input) at the
+    /// place of [sync] code if a number exceeds 255 or the greatest number that the lines can show.
     code_numbers(const code_settings& c, const experiment_definition& whole);
 
-    /// Returns the number of an event. `d` may be that of a group.
+    /// Returns the number of an event. `d` may be the definition reduced to a group.
     unsigned number(const experiment_definition& d, const coded_event& e) const;
-    /// Lists the meanings of each number, with its event first.
+    /// Lists the meanings of each number. Each meaning begins with the event's name.
     const std::map<unsigned, std::vector<std::string>>& meanings() const noexcept { return meanings_; }
 
 private:
     std::string describe(const experiment_definition& d, const coded_event& e) const;
 
-    std::vector<std::vector<std::string>> by_ = {}; ///< by event
+    std::vector<std::vector<std::string>> by_ = {}; ///< parts that tell numbers apart, by event
     std::map<std::string, unsigned> numbers_ = {};  ///< by description
     std::map<unsigned, std::vector<std::string>> meanings_ = {};
 };

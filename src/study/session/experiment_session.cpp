@@ -38,11 +38,11 @@ namespace {
 
 using files::or_null;
 
-// Threshold of an unmeasured tactor in a session that nobody feels.
+// Threshold assumed for an unmeasured tactor in a session that nobody feels.
 constexpr double assumed_threshold_dbfs = -40.0;
 
-// Sets thresholds that nobody measured at any frequency, in a session that nobody feels. Returns true if it
-// set any. A real session needs measured ones.
+// Sets the threshold of each tactor without any, if `nobody_feels` the session. Returns true if it set one.
+// Throws error (bad_input) for a session with a person, which needs measured thresholds.
 bool assume_thresholds(array& a, bool nobody_feels)
 {
     bool assumed = false;
@@ -60,8 +60,9 @@ bool assume_thresholds(array& a, bool nobody_feels)
     return assumed;
 }
 
-// Mirrors the motions that say so for a left hand: exchanges left and right about the middle of the array. A
-// session with a person needs the hand if a motion depends on it.
+// For a left hand, exchanges left and right about the middle of the array in motions with `mirror` and in the
+// strokes of methods. Throws error (bad_input) if a motion has `mirror` and a session with a person lacks the
+// hand.
 void mirror_for_hand(experiment_definition& d, const array& a, const session_request& r)
 {
     const auto mirrored = std::ranges::find(d.motions, true, &motion_definition::mirror);
@@ -90,7 +91,7 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
             exchange(*m.drawn, "method", m.name);
 }
 
-// Leaves the runs of a group, with its motions and methods.
+// Keeps only the runs, motions and methods of a group.
 void keep_group(experiment_definition& d, const std::string& name)
 {
     const std::vector<group_outline>& groups = d.outline.groups;
@@ -121,7 +122,8 @@ void keep_group(experiment_definition& d, const std::string& name)
     std::erase_if(d.runs, [](const run_definition& r) { return r.motions.empty(); });
 }
 
-// Takes the number of the session; a definition with several needs it.
+// Sets the number of the session. Throws error (bad_input) if the definition lacks this session, or has
+// several and none is given.
 void take_session(experiment_definition& d, session_number session)
 {
     const unsigned all = d.outline.sessions;
@@ -134,7 +136,8 @@ void take_session(experiment_definition& d, session_number session)
     d.session = session;
 }
 
-// Checks that no limit changes a trial on an array that has rested: it would always be void.
+// Throws error (bad_input) if a limit changes a trial even on an array that has rested: the trial would
+// always be void.
 void check_limits(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
                   const drive_limits& l, unsigned rate)
 {
@@ -155,7 +158,7 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
                          : "use a lower level, or other limits if the actuators bear them");
 }
 
-// Checks the trials of all runs, practice too.
+// Checks the trials of all runs, including practice.
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
                   const stimulus_set& stimuli, const drive_limits& l, unsigned rate)
 {
@@ -171,7 +174,7 @@ void check_limits(const experiment_definition& d, const std::vector<run_sequence
                 }
 }
 
-// Lists doubts about the calibration of a session whose level is above the thresholds.
+// Lists doubts about the calibration in a session whose level is relative to thresholds.
 std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
                                             const stimulus_set& stimuli)
 {
@@ -193,7 +196,7 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     return doubts;
 }
 
-// Takes the answer of a line.
+// Passes the answer in a line to the adaptive procedure.
 void take_line(value_chooser& values, const trial_row& row)
 {
     if (!row.is_void && row.track)
@@ -214,7 +217,7 @@ json array_facts(const array& a)
                            {"max_dbfs", t.max_dbfs},
                            {"threshold_dbfs", files::make_document(files::find_thresholds(t))},
                            {"actuator", std::string(to_string(t.actuator))}});
-        if (t.displacement_um_at_0dbfs) // else absent: sessions of older versions go on
+        if (t.displacement_um_at_0dbfs) // else absent, so that sessions of older versions can resume
             tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
     }
     return {{"name", a.name}, {"tactors", tactors}};
@@ -257,7 +260,7 @@ json rest_facts(const prepared_experiment& p)
 prepared_experiment prepare(const session_request& r, session::settings& s)
 {
     experiment_definition d = load_definition(r.definition);
-    const experiment_definition whole = d; // its groups share the numbers of [sync] code
+    const experiment_definition whole = d; // all groups share the numbers of [sync] code
     keep_group(d, r.group);
     if (!r.all_sessions)
         take_session(d, r.session);
@@ -272,7 +275,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         render.level_dbfs = *d.level_dbfs;
     else
         render.sl_db = d.sl_db;
-    // --dry-run needs no participant.
+    // A dry run may lack the participant.
     const std::string code = r.participant.empty() ? "01" : r.participant;
     const std::uint64_t seed = r.seed.value_or(d.seed.value_or(default_seed(code)));
     const std::size_t row = r.row.value_or(default_row(d, code));
@@ -413,7 +416,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["simulated"] = simulate.has_value();
     j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
     j["seed"] = p.seed;
-    // These are absent where they say nothing: sessions of older versions go on.
+    // These keys are absent if they are not needed, so that sessions of older versions can resume.
     if (!d.group.empty())
         j["group"] = d.group;
     if (d.session)

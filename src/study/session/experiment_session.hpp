@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// An experiment on an array, for a participant: all that can be settled and checked before the session; the
-/// lines of its trials, and the place of a session that goes on; and a session with a simulated observer.
+/// A session of an experiment for one participant: its preparation and checks, the lines of its trials, the
+/// state from which it resumes, and sessions with a simulated observer.
 #pragma once
 
 #include <cstddef>
@@ -37,103 +37,105 @@ enum class hand_kind { left, right };
 
 /// Request for a session.
 struct session_request {
-    std::string definition = {};            ///< a name that is built in, or a file
-    std::string participant = {};           ///< empty only of a dry run
-    std::optional<std::uint64_t> seed = {}; ///< else that of the definition, else one of the participant's
+    std::string definition = {};            ///< name of the built-in definition, or a file
+    std::string participant = {};           ///< code; empty only for a dry run
+    std::optional<std::uint64_t> seed = {}; ///< if missing: the definition's, else default_seed()
     audience who = audience::person;
-    std::optional<hand_kind> hand = {};  ///< none: not said
-    std::string group = {};              ///< of the definition's groups; empty: none is named
-    std::optional<std::size_t> row = {}; ///< of the orders, from 1; none: default_row()
-    session_number session = {};         ///< of the definition's sessions; none: none is named
-    bool all_sessions = false;           ///< needs no number
+    std::optional<hand_kind> hand = {};  ///< missing if not given
+    std::string group = {};              ///< name of a group; empty if not given
+    std::optional<std::size_t> row = {}; ///< row of the orders, from 1; if missing, default_row()
+    session_number session = {};         ///< number of the session; missing if not given
+    bool all_sessions = false;           ///< true if no session number is needed
 };
 
 struct prepared_experiment {
     experiment_definition definition;
     std::string participant;
     std::uint64_t seed = 0;
-    session::environment where; ///< its array has thresholds where the level is a sensation level
-    std::string pcm;            ///< "null" where nothing names one
+    session::environment where; ///< its array has thresholds if a level needs them
+    std::string pcm;            ///< PCM; "null" for a session without a person
     render_options render;
-    bool assumed = false; ///< thresholds that nobody measured
+    bool assumed = false; ///< true if a threshold is assumed, not measured
     std::vector<run_sequence> runs;
     stimulus_set stimuli;
     std::vector<std::string> warnings;
-    std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
-    std::optional<hand_kind> hand = {};          ///< motions that say so are mirrored for a left one
-    std::size_t row = 1;                         ///< of the orders, from 1
+    std::vector<std::string> calibration_doubts; ///< warnings about the origin of the thresholds
+    std::optional<hand_kind> hand = {};          ///< motions with `mirror` are mirrored for a left hand
+    std::size_t row = 1;                         ///< row of the orders, from 1
     code_numbers codes = {};                     ///< empty without [sync] code
 
     /// Returns the run at a place in the session's order.
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }
 };
 
-/// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, the group,
-/// session or row is not the definition's, a stimulus cannot be planned or played, or a session with a person
-/// has no thresholds.
+/// Prepares and checks a session. \throws error (bad_input) if the definition, array or configuration is
+/// wrong, the definition lacks the group, session or row, a stimulus cannot be planned or played, or a
+/// session with a person lacks thresholds.
 prepared_experiment prepare(const session_request& r, session::settings& s);
 
-/// Makes the score of one tactor at the carrier of the definition's first method. \throws error (bad_input)
-/// if its level is too high, in the definition's words.
+/// Makes the score that drives one tactor in the walk, at the carrier of the definition's first method.
+/// \throws error (bad_input) if its level is too high. The hint names keys of the definition.
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
 
-/// Time from the screen before to the first frame of a stimulus, so that it surprises nobody, s.
+/// Time from the change of the screen to the first frame of a stimulus, s. It lets the participant get ready.
 inline constexpr double stimulus_lead_s = 0.5;
 
-/// Returns the time from the end of the rest before a trial to its first frame: the target, if the run shows
-/// it, and the time after it.
+/// Returns the time from the end of the rest before a trial to its first frame: the duration of the target,
+/// if the run shows it, plus stimulus_lead_s.
 double find_lead_s(const prepared_experiment& p, const run_definition& r, const planned_trial& t);
 
 struct run_time {
-    double total_s = 0.0;  ///< practice included, the break after the run not
-    double waits_s = 0.0;  ///< part of total_s: waits for the limits of drive time
-    std::size_t waits = 0; ///< trials that wait
+    double total_s = 0.0;  ///< duration with practice, without the break after the run
+    double waits_s = 0.0;  ///< part of total_s spent waiting for the limits of drive time
+    std::size_t waits = 0; ///< number of trials that wait
 };
 
-/// Returns the time of each run in the session's order. Answers take no time, the device adds no latency, and
-/// the array has rested before.
+/// Estimates the time of each run, in the session's order. Assumes that answers take no time, the device adds
+/// no latency, and the array has rested before.
 std::vector<run_time> session_times(const prepared_experiment& p);
 
-/// Returns the facts that session.json has before a session begins.
+/// Returns the content of session.json before a session begins.
 nlohmann::ordered_json describe_session(const prepared_experiment& p,
                                         const std::optional<simulation>& simulate, const std::string& masker);
 
-/// Return parts of these facts: a level; the definition's noise, null for none; each stimulus with its hash,
-/// and its level if that is its method's.
+/// Return parts of this content: a level; the definition's noise, or null; each stimulus with its hash, and
+/// with its level if its method gives one.
 nlohmann::ordered_json level_facts(const render_options& o);
 nlohmann::ordered_json masking_facts(const masking_definition& m);
 nlohmann::ordered_json stimulus_facts(const prepared_experiment& p);
 
-/// Returns a trial's line, as far as the plan of the session determines it.
+/// Returns a trial's line with the cells that are known before the trial.
 trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which);
 
-/// Writes an answer, and the time until it came, into the columns of the response.
+/// Sets the response of a line, its time, and whether it came early.
 void set_response(trial_row& row, const run_definition& r, double response, double time_s);
 
-/// Returns the rest of a run after the lines that are there. \throws error (bad_input) for lines that are not
-/// of this session.
+/// Returns the trials of a run that remain after the lines in its table. \throws error (bad_input) if a line
+/// does not belong to this session.
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows);
 
-/// Returns true if all trials of all runs are there, and the answers to all questionnaires. Throws as above.
+/// Returns true if the tables have all trials of all runs and all answers to questionnaires. Throws as
+/// replay() does.
 bool finished(const prepared_experiment& p, const session_store& store);
 
-/// Makes the flow at the place where the session is. Only one with a person has consent and walk.
+/// Makes the flow of a session from its present state on. Consent and walk are only for a person.
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person);
 
 /// Returns the name of the run before a questionnaire that is asked between runs; empty for others.
 std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run);
 
-/// Lines of one run, or of its practice, with times that count from its first sample at the DAC.
+/// The table of one run or of its practice. Times count from the run's first sample at the DAC.
 class run_table {
 public:
-    /// Goes on after the lines that are there.
+    /// Continues after the lines that the store already has.
     run_table(session_store& store, const run_definition& r, bool practice);
 
-    /// Sets the onset and writes the line; it is on the disk when this returns. `started_ns` is
-    /// CLOCK_REALTIME at the trial's first frame, or at its planned begin. \throws error (runtime).
+    /// Sets the onset and writes the line, which is on the disk when this returns. `started_ns` is
+    /// CLOCK_REALTIME at the trial's first frame; without a first frame it is the present time. \throws error
+    /// (runtime).
     void add(trial_row row, std::int64_t started_ns, unsigned rate);
-    /// Returns the time of a frame since the run's first sample: exact within a stream; over the gap between
-    /// two streams by `at_ns`, its CLOCK_REALTIME. Call it after add().
+    /// Returns the time of a frame since the run's first sample, s. The time is exact within a stream; in a
+    /// later stream it comes from `at_ns`, the frame's CLOCK_REALTIME. Call it after add().
     double onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_ns, unsigned rate) const;
 
 private:
@@ -142,19 +144,19 @@ private:
     bool practice_;
     bool empty_ = true;
     unsigned first_stream_ = 0;
-    std::optional<std::uint64_t> first_frame_ = {}; ///< of that stream
+    std::optional<std::uint64_t> first_frame_ = {}; ///< first frame in that stream
     std::optional<std::int64_t> began_ns_ = {};     ///< CLOCK_REALTIME
 };
 
-/// A run while it is held: its tables, and the values that its answers so far choose.
+/// A run in progress: its tables, and the values that an adaptive procedure chooses from the answers.
 class held_run {
 public:
-    /// Goes on after the lines that are there.
+    /// Continues after the lines that the store already has.
     held_run(const prepared_experiment& p, std::size_t place, session_store& store);
 
     /// Returns the trial of a step, with its value.
     planned_trial find_trial(const session_step& s) const;
-    /// Writes the line of a trial, and lets its answer choose values: run_table::add().
+    /// Writes the line of a trial as run_table::add() does, and passes its answer to the adaptive procedure.
     void add(const session_step& s, const trial_row& row, std::int64_t started_ns);
     const run_table& table(const session_step& s) const { return s.practice ? practice_ : trials_; }
 
@@ -166,8 +168,8 @@ private:
     std::unique_ptr<value_chooser> values_;
 };
 
-/// Holds the rest of a session without a device: a model answers, and no time passes. Returns the signal that
-/// ended it, or 0. \throws error.
+/// Runs the rest of a session with a simulated observer, without a device and without waiting. Returns the
+/// signal that ended the session, or 0. \throws error.
 int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store);
 
 } // namespace tactor::study

@@ -29,7 +29,8 @@
 namespace tactor::study {
 namespace {
 
-// Puts all descriptors into one, so that a caller can wait for it. A file is always ready and stays out.
+// Returns an epoll of all descriptors, so that a caller can wait for one. If standard input is a file, epoll
+// refuses it; a file is always ready.
 detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
 {
     detail::owned_fd any(::epoll_create1(EPOLL_CLOEXEC));
@@ -59,7 +60,8 @@ constexpr key other_keys[] = {
     {KEY_LEFT, '<'},    {KEY_A, 'a'},     {KEY_ENTER, 'a'}, {KEY_KPENTER, 'a'},   {KEY_N, 'n'},
     {KEY_0, 'n'},       {KEY_KP0, 'n'},   {KEY_B, 'b'},     {KEY_BACKSPACE, 'b'}, {KEY_KPDOT, '.'}};
 
-// A key that answered a question and comes again sooner, or is still held, begins no number and no text.
+// Time within which the key that answered a question cannot begin a number or text, ns. The key may be held,
+// or pressed twice.
 constexpr std::int64_t first_key_ns = 1'000'000'000;
 
 constexpr bool is_backspace(std::string_view key) noexcept
@@ -81,13 +83,13 @@ session_key make_key(std::string text, bool is_key)
     return k;
 }
 
-// Shows what a key has changed in a text that somebody types.
+// Shows the change that a key made in a typed text.
 void echo(const std::string& typed, std::size_t bytes_before)
 {
     if (typed.size() > bytes_before)
         session::show(typed.substr(bytes_before));
     if (typed.size() < bytes_before) {
-        std::fputs("\b \b", stdout); // show() would escape it
+        std::fputs("\b \b", stdout); // show() would escape these characters
         session::flush_output();
     }
 }
@@ -107,7 +109,7 @@ std::optional<char> find_answer(std::uint16_t code) noexcept
 std::optional<std::string> typed_number::take(char key)
 {
     constexpr std::string_view takes = "0123456789.,+-eE";
-    constexpr std::size_t most = 16; // more than an answer has: the rest does not matter
+    constexpr std::size_t most = 16; // longer than any answer
     constexpr char backspace = '\x7f';
     if (takes.find(key) != takes.npos && text_.size() < most)
         text_ += key;
@@ -122,9 +124,9 @@ bool typed_text::take(char byte)
 {
     using utf8 = boost::locale::utf::utf_traits<char>;
     if (escape_ == '\x1b' && byte != '[' && byte != 'O')
-        escape_ = '\0'; // Esc alone
+        escape_ = '\0'; // the Esc key itself
     if (byte == '\x1b' || escape_ != '\0') {
-        // Such as ESC [ A, ESC O P and ESC [ 3 ~.
+        // Skips sequences such as ESC [ A, ESC O P and ESC [ 3 ~.
         const bool goes_on =
             byte == '\x1b' || escape_ == '\x1b' ||
             (escape_ != 'O' && std::string_view(";0123456789").find(byte) != std::string_view::npos);
@@ -183,7 +185,7 @@ std::optional<char> keypad::next()
         if (n != static_cast<ssize_t>(sizeof e))
             throw error(error_kind::runtime, device_, n < 0 ? std::strerror(errno) : "it was unplugged",
                         resume_hint);
-        // 1: pressed; 0 and 2: let go, and repeated.
+        // Value 1 is a press, 0 a release, 2 a repetition.
         if (e.type == EV_KEY && e.value == 1)
             if (const auto answer = find_answer(e.code))
                 return answer;
@@ -225,7 +227,7 @@ void session_keys::fill()
         if (n < 0)
             session::refuse_standard_input(errno);
         ended_ = n == 0;
-        if (ended_ && any_) // an ended input would be ready for ever
+        if (ended_ && any_) // input at its end would be ready forever
             static_cast<void>(::epoll_ctl(any_.get(), EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
         read_ns_ = rt::monotonic_ns();
         text_.append(bytes, static_cast<std::size_t>(n));
@@ -242,7 +244,7 @@ std::optional<char> session_keys::pressed()
     return {};
 }
 
-// Returns the next key or line of standard input.
+// Returns the next key or line of standard input, if any.
 std::optional<std::string> session_keys::typed()
 {
     if (text_.find('\n') == text_.npos && (text_.empty() || !terminal_))
@@ -261,7 +263,7 @@ void session_keys::drop_pressed()
         ;
 }
 
-// Reads the keys of a terminal, so that repeat_guard knows a key that is still held down.
+// Reads the terminal's keys, too, so that repeat_guard knows a key that is still held.
 void session_keys::drop_keys()
 {
     drop_pressed();
@@ -334,14 +336,14 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
     for (;;) {
         session_key k = wait("the session", true);
         const bool is_point = k.is_dot && estimate;
-        const bool erases = k.from_keypad && k.command && !is_point && !shown.empty(); // its one command is b
+        const bool erases = k.from_keypad && k.command && !is_point && !shown.empty(); // command b
         if (!k.is_key || (k.command && !erases && !is_point))
             return k;
         if (shown.empty() && k.since_ns < first_key_ns)
             continue;
         const std::size_t before = shown.size();
         const char key = k.text.front();
-        // A keypad's Enter is a, and its 0 is n, as in an adjustment.
+        // find_answer() converts a keypad's Enter to a and its 0 to n, for adjustments.
         auto typed = number.take(!k.from_keypad ? key
                                  : key == 'a'   ? '\n'
                                  : key == 'n'   ? '0'

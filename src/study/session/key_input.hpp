@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Keys of a session: the participant's answers and the experimenter's commands, from standard input (keys of
-/// a terminal, or lines), keypads and the participant's page.
+/// Keys of a session: the participant's answers and the experimenter's commands, from standard input (a
+/// terminal's keys, or lines), keypads and the participant's page.
 #pragma once
 
 #include <cstdint>
@@ -20,20 +20,19 @@
 
 namespace tactor::study {
 
-/// Returns the answer of an input device's key (a code of linux/input-event-codes.h) as a terminal's key: 1
-/// to 9 for digits; + - > < or the arrows; a or Enter, n or 0, b or Backspace, a keypad's dot. Returns
-/// nothing for other keys.
+/// Returns the character for a key of an input device (a code of linux/input-event-codes.h): 1 to 9 for
+/// digits; + for plus and up, - for minus and down; > for right, < for left; a for A and Enter; n for N and
+/// 0; b for B and Backspace; a point for a keypad's dot. Returns nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
-/// Greatest number of answers that have a key each.
+/// Greatest number of answers with a key for each.
 inline constexpr unsigned most_keys = 9;
 
-/// A number that somebody types. A value without a terminal.
+/// A number that somebody is typing. It does not access the terminal.
 class typed_number {
 public:
-    /// Takes a key: a digit, a sign, a point, a comma or an e, so that 1.5 and 1e5 do not become 15;
-    /// backspace or Enter; ignores others. Returns what was typed, if anything, at Enter, and then begins
-    /// anew.
+    /// Takes a digit, sign, point, comma or e (so that 1.5 and 1e5 do not become 15), Backspace or Enter, and
+    /// ignores other keys. At Enter returns the typed text, if any, and starts again.
     std::optional<std::string> take(char key);
     const std::string& text() const noexcept { return text_; }
 
@@ -41,34 +40,34 @@ private:
     std::string text_ = {};
 };
 
-/// A line that somebody types at a terminal, in UTF-8.
+/// A line that somebody is typing at a terminal, in UTF-8.
 class typed_text {
 public:
-    /// Takes a byte from the terminal: one of a character, backspace or Enter; ignores arrows and the like,
+    /// Takes a byte from the terminal: part of a character, Backspace or Enter. Ignores keys such as arrows,
     /// and characters beyond most_text_characters. Returns true at Enter.
     bool take(char byte);
-    /// Returns the characters that are complete.
+    /// Returns the complete characters.
     const std::string& text() const noexcept { return text_; }
-    /// Returns true if not even a part of a character is there.
+    /// Returns true if nothing is typed, not even part of a character.
     bool is_empty() const noexcept { return text_.empty() && begun_.empty() && escape_ == '\0'; }
 
 private:
     std::string text_ = {};
-    std::string begun_ = {}; ///< bytes of a character that is not complete
-    char escape_ = '\0';     ///< last byte of the sequence of an arrow or the like; 0: not in one
+    std::string begun_ = {}; ///< bytes of an incomplete character
+    char escape_ = '\0';     ///< last byte of an unfinished escape sequence, as of an arrow; 0 if none
 };
 
-/// Tells keys that a terminal repeats, because they are held down, from keys that are pressed. A value
-/// without a clock.
+/// Detector of keys that a terminal repeats because they are held down. It does not read a clock.
 class repeat_guard {
 public:
-    /// Returns the time since the same key was last taken; the greatest if another one was.
+    /// Returns the time since the same key was last taken, ns; the greatest value if the last key was
+    /// different.
     std::int64_t since_ns(char key, std::int64_t at_ns) const noexcept
     {
         return key == last_ ? at_ns - last_ns_ : std::numeric_limits<std::int64_t>::max();
     }
-    /// Takes a key that was read at a time; `again`: the same key was read with it, right behind it. Returns
-    /// true if it is repeated: a terminal repeats a held key 10 to 60 times a second.
+    /// Takes a key that was read at `at_ns`. `again`: the same key follows in the same read. Returns true if
+    /// the terminal repeats the key, which happens 10 to 60 times a second while it is held.
     bool is_repeated(char key, std::int64_t at_ns, bool again) noexcept
     {
         const bool repeated = again || since_ns(key, at_ns) < quiet_ns;
@@ -87,19 +86,19 @@ private:
 /// Hint of an error that ends a session with a person.
 inline constexpr const char* resume_hint = "the answers are kept; --resume continues";
 
-/// A keypad, whose keys no other program gets while this lives. One thread.
+/// A keypad. While this object lives, no other program gets its keys. For use by one thread.
 class keypad {
 public:
     /// Opens a device such as /dev/input/by-id/...-event-kbd. \throws error: not_available if it is missing,
-    /// may not be read or belongs to another program; bad_input if it is no input device or has no key that
-    /// answers.
+    /// may not be read or belongs to another program; bad_input if it is not an input device or no key of it
+    /// is an answer.
     explicit keypad(std::string device);
     keypad(const keypad&) = delete;
     keypad& operator=(const keypad&) = delete;
 
-    /// Readable when next() may have a key.
+    /// Returns a descriptor that is readable when next() may have a key.
     int descriptor() const noexcept { return descriptor_.get(); }
-    /// Returns the next pressed key that answers something. Does not wait. \throws error (runtime) if the
+    /// Returns the next pressed key that is an answer, if any. Does not block. \throws error (runtime) if the
     /// device is gone.
     std::optional<char> next();
 
@@ -114,68 +113,69 @@ enum class operator_key {
     void_last, ///< v: makes the previous trial void
     pause,     ///< p: pauses before the next trial
     go_on,     ///< g: ends a pause or a break
-    quit,      ///< q: as Ctrl-C
-    back,      ///< b: asks the item before again; the participant's key, too
+    quit,      ///< q: ends the session, as Ctrl-C does
+    back,      ///< b: asks the previous item again; works for the participant, too
 };
 
-/// A key, or a line of standard input that is no terminal.
+/// A key, or a line if standard input is not a terminal.
 struct session_key {
-    /// Without blanks; a number that was typed, a text from the page; empty for a command from a terminal
-    /// beside a page.
+    /// Key, or line without blanks; typed number; text from the page. Empty for a command from the terminal
+    /// in a session with a page.
     std::string text = {};
     std::optional<operator_key> command = {};
-    std::optional<unsigned> answer = {};     ///< the number that this is, or that of the page's answer
-    std::optional<std::string> entered = {}; ///< a line with its blanks; a text from the page
-    bool is_key = false;                     ///< of a terminal or a keypad: a number may have more digits
-    bool is_held = false;                    ///< a terminal repeats it
-    std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< see repeat_guard
+    std::optional<unsigned> answer = {};     ///< number in `text`, or of the page's answer
+    std::optional<std::string> entered = {}; ///< line with its blanks, or text from the page
+    bool is_key = false;                     ///< true for a key, after which more digits may come
+    bool is_held = false;                    ///< true if a terminal repeats the key
+    std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< repeat_guard::since_ns()
     bool from_keypad = false;
-    bool is_dot = false;    ///< the dot of a keypad, which is b unless an estimate is typed
+    bool is_dot = false;    ///< true for a keypad's dot, which means b except in an estimate
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };
 
 /// The participant's ways to answer besides the terminal.
 struct answering {
     participant_page* page = nullptr;
-    std::vector<std::string> keypads = {}; ///< devices
+    std::vector<std::string> keypads = {}; ///< paths of the devices
 };
 
-/// Keys of terminal, keypads and page. With a page (none: null) the participant's keys are the page's, and
-/// standard input has only the experimenter's. While this lives a terminal gives each key at once and shows
-/// none; keys of signals stay as they are.
+/// Keys of terminal, keypads and page. With a page, the participant answers only on the page and keypads, and
+/// standard input takes only the experimenter's commands. While this object lives, a terminal delivers each
+/// key at once and does not show it; keys that send signals still work.
 class session_keys {
 public:
-    /// Opens the keypads. \throws error as keypad.
+    /// Opens the keypads. \throws error as keypad does.
     session_keys(stage& s, const answering& with);
     ~session_keys();
     session_keys(const session_keys&) = delete;
     session_keys& operator=(const session_keys&) = delete;
 
     bool is_terminal() const noexcept { return terminal_; }
-    /// Returns true if keys count before a question: lines without a page do not.
+    /// Returns true if keys can come before their question. Lines cannot: each line waits for its question.
     bool come_early() const noexcept { return terminal_ || page_ != nullptr; }
     /// Returns true if the participant has keys, not only lines.
     bool has_keys() const noexcept { return come_early() || !keypads_.empty(); }
-    /// Returns the next key or line, if any, also an unknown one. Unless `repeated` leaves out keys that a
-    /// terminal repeats, and says so the first time. \throws error (runtime) if a source cannot be read.
+    /// Returns the next key or line, if any, even an unknown one. Does not block. Unless `repeated` is true,
+    /// skips answers that a terminal repeats, with a message the first time. \throws error (runtime) if a
+    /// source cannot be read.
     std::optional<session_key> poll(bool repeated = false);
-    /// Waits for the next key. \throws stage::interruption; error (runtime) as poll(), and if nothing more
-    /// can come; `subject` names what then has no answer.
+    /// Blocks until the next key or line. \throws stage::interruption; error (runtime) as poll() does, and
+    /// with `subject` if no more keys can come.
     session_key wait(const std::string& subject = "the session", bool repeated = false);
-    /// Waits for a number, or for a command. Shows the digits as keys type them; lines and the page give the
-    /// whole number. The key that was pressed for the question before types no first digit. `estimate`: the
-    /// number may have a point. Throws as wait().
+    /// Blocks until a number or a command. Shows digits as keys type them; a line or the page gives the whole
+    /// number. Ignores the key that answered the previous question until a first digit is typed. `estimate`:
+    /// the number may have a point. Throws as wait().
     session_key wait_for_number(typed_number& number, bool estimate);
-    /// Waits for `entered`, a tidy text; if the key has none, the participant's text was refused. Waits for
-    /// the experimenter's commands, too, if there is a page: else what somebody types is text, and Backspace
-    /// before it is the command `back`. Shows the text as keys type it. The key that was pressed for the
-    /// question before is not its first. Throws as wait().
+    /// Blocks until a text, which `entered` has after tidy_text(); if `entered` is missing, the text was
+    /// refused. With a page it also returns the experimenter's commands. Without a page all keys are text,
+    /// except Backspace before the text, which is the command `back`. Shows the text as keys type it. Ignores
+    /// the key that answered the previous question as first key. Throws as wait().
     session_key wait_for_text(typed_text& text);
-    /// Returns true if nothing more can come.
+    /// Returns true if no more keys or lines can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
-    /// Drops keys that were pressed on a keypad up to now.
+    /// Drops all keys pressed so far on keypads.
     void drop_pressed();
-    /// Drops the keys that were pressed up to now; lines stay, and the experimenter's keys beside a page.
+    /// Drops all keys pressed so far. Keeps lines, and the experimenter's keys in a session with a page.
     void drop_keys();
 
 private:
@@ -187,14 +187,14 @@ private:
     stage& stage_;
     participant_page* page_;
     std::list<keypad> keypads_;
-    detail::owned_fd any_; ///< an epoll of all, if standard input is not alone
-    termios before_{};     // before terminal_, whose initializer fills it
+    detail::owned_fd any_; ///< epoll of all inputs, if there are others than standard input
+    termios before_{};     // declared before terminal_, whose initializer fills it
     bool terminal_;
     std::string text_ = {};
-    std::int64_t read_ns_ = 0; ///< CLOCK_MONOTONIC at which text_ was read
+    std::int64_t read_ns_ = 0; ///< CLOCK_MONOTONIC of the last read into text_
     repeat_guard guard_ = {};
-    bool warned_ = false; ///< of a key that is held down
-    bool ended_ = false;  ///< standard input
+    bool warned_ = false; ///< true after the message about a held key
+    bool ended_ = false;  ///< true after the end of standard input
 };
 
 } // namespace tactor::study

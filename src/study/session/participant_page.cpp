@@ -14,7 +14,7 @@ namespace {
 
 using ordered = nlohmann::ordered_json;
 
-// Returns a member that is a whole number.
+// Returns a member's value if it is a whole number.
 std::optional<std::uint64_t> whole_number(const ordered& j, const char* key)
 {
     const auto found = j.find(key);
@@ -35,7 +35,8 @@ constexpr net::page_document document =
 #include "study/participant_page.inc"
     ;
 
-// Returns what a page needs to draw and to speak, without title and methods, which would give them away.
+// Returns the words and the places of tactors for a page. Leaves out title and methods, which could influence
+// the participant.
 nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
 {
     nlohmann::ordered_json words;
@@ -160,7 +161,7 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
     if (!is_text && !number && !is_back)
         return {.understood = false};
     if (theirs_ != from)
-        return h; // the page knows that another one took its place
+        return h; // another page replaced this one, which was told so
     if (open_ && whole_number(received, "ask") == asked_) {
         if (is_back && screen_.back)
             return go_back();
@@ -210,7 +211,7 @@ participant_page::participant_page(const page_words& words, const array& a, net:
 {
 }
 
-// Sends under the lock, so that every page receives messages in order.
+// Sends messages. Callers hold the lock, so that every page receives messages in order.
 void participant_page::send(const std::vector<page_dialogue::message>& all)
 {
     for (const page_dialogue::message& m : all) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The participant's page: its screens, the messages to it and the answers that count, as a value without a
-/// socket, a clock or a thread; and the server of the page.
+/// The participant's page. page_dialogue has its screens, messages and answers, and uses no socket, clock or
+/// thread. participant_page is the server.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@
 
 namespace tactor::study {
 
-/// Kind of answer that a participant enters in place of a choice.
+/// Kind of answer that a participant types instead of choosing.
 enum class entry_kind {
     none,
     number,   ///< a whole number
@@ -32,11 +32,11 @@ enum class entry_kind {
     text,     ///< one or several lines
 };
 
-/// Length of a text that a participant enters, in characters, at most.
+/// Greatest length of a text that a participant enters, in characters.
 inline constexpr std::size_t most_text_characters = 2000;
 
-/// Returns a text with line ends as \n, blanks for tabs, and without other control characters. Returns
-/// nothing for a text that is too long or no UTF-8.
+/// Returns a text with \n as line end, a blank for each tab, and no other control characters. Returns nothing
+/// if the text is too long or not UTF-8.
 std::optional<std::string> tidy_text(std::string_view entered);
 
 /// Place in the session.
@@ -44,30 +44,30 @@ struct page_progress {
     std::size_t run = 0; ///< from 1
     std::size_t runs = 0;
     bool practice = false;
-    unsigned trial = 0; ///< from 1; 0: before the first
+    unsigned trial = 0; ///< number of the trial, from 1; 0 before the first
     std::size_t trials = 0;
 };
 
-/// Content of the participant's screen. Nothing in it says by which method a motion is rendered.
+/// Content of the participant's screen. It does not reveal the method that renders a motion.
 struct page_screen {
     /// Kind of screen: consent, walk, introduce, target, stimulus, question, questionnaire, right, wrong,
     /// rest, pause, wait, over.
     std::string name = "wait";
     std::string text = {};
     std::string question = {};
-    std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
-    std::string keys = {};                 ///< a key for each choice, or none
-    bool is_line = false;                ///< the choices are places on a line, from 0 on, and have no numbers
-    entry_kind entry = entry_kind::none; ///< in place of choices
-    unsigned lowest = 1;                 ///< of a number that is entered
+    std::vector<std::string> choices = {}; ///< possible answers; the page shows an empty one as its number
+    std::string keys = {};                 ///< a key for each choice; may be empty
+    bool is_line = false; ///< true if the choices are places on a line, from 0 on, without numbers
+    entry_kind entry = entry_kind::none; ///< replaces the choices
+    unsigned lowest = 1;                 ///< smallest number that may be entered
     unsigned greatest = 1;
-    bool back = false;                             ///< the participant may go to the question before: key b
-    std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
-    unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
-    unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
-    std::vector<std::string> names = {};           ///< of the stimuli; may be empty
-    std::vector<point> path = {};                  ///< the target, at equal parts of its time
-    double lasts_s = 0.0;                          ///< of target and rest
+    bool back = false;                             ///< true if key b goes to the previous question
+    std::vector<std::vector<point>> pictures = {}; ///< path of a motion for each choice; may be empty
+    unsigned stimuli = 0;                          ///< number of stimuli to show; 0 if not shown one by one
+    unsigned playing = 0;                          ///< stimulus that plays now, from 1; 0 if none
+    std::vector<std::string> names = {};           ///< names of the stimuli; may be empty
+    std::vector<point> path = {};                  ///< path of the target at equal parts of its time
+    double lasts_s = 0.0;                          ///< duration of the target or the break
     std::optional<page_progress> where = {};
 };
 
@@ -78,28 +78,28 @@ public:
     struct message {
         visitor to = 0;
         std::string text = {};
-        bool last = false; ///< the connection ends behind it
+        bool last = false; ///< true if the connection ends after it
     };
 
-    /// `facts` are sent to each page once, when it comes.
+    /// Keeps `facts`, which each page gets once, when it says hello.
     explicit page_dialogue(nlohmann::ordered_json facts) : facts_(std::move(facts)) {}
 
-    /// Shows a new screen and drops the open question; `now_ns` is from the same clock as in hear().
+    /// Shows a new screen and drops the open question. Returns the messages to send. `now_ns` is from the
+    /// same clock as in hear().
     std::vector<message> show(page_screen s, std::int64_t now_ns);
 
     struct heard {
-        bool understood = true; ///< else the visitor is to be sent away
+        bool understood = true; ///< false if the visitor must be disconnected
         std::vector<message> replies = {};
-        std::optional<char> answer = {}; ///< its key, or 0; each question has one at most
-        unsigned number =
-            0; ///< of the answer: its place from 1, or from 0 if they are on a line; or the one entered
-        std::optional<std::string> text = {}; ///< that was entered, tidy; an estimate
+        std::optional<char> answer = {}; ///< key of the answer, or 0; each question has at most one
+        unsigned number = 0;             ///< number entered, or place of the choice from 1 (on a line from 0)
+        std::optional<std::string> text = {}; ///< text that was entered, after tidy_text(); an estimate
     };
-    /// Takes a message. A page that says {"hello":true} is the participant's from then on;
-    /// {"ask":N,"answer":CHOICE or number} and {"ask":N,"text":TEXT} answer, {"ask":N,"back":true} goes back.
+    /// Takes a message. {"hello":true} makes its sender the participant's page. {"ask":N,"answer":CHOICE or
+    /// number} and {"ask":N,"text":TEXT} answer question N, {"ask":N,"back":true} goes back from it.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
 
-    /// Takes a key of a keypad for the page: that of a choice, or its number.
+    /// Takes a keypad's key in place of an answer from the page: the key of a choice, or its number.
     heard press(char key, std::int64_t now_ns);
 
     void leave(visitor v);
@@ -108,7 +108,7 @@ public:
 
 private:
     std::string state(std::int64_t now_ns) const;
-    /// Closes the question with a choice, from 0.
+    /// Closes the question with a choice, which counts from 0.
     heard take(std::size_t choice);
     /// Closes the question with the key b.
     heard go_back();
@@ -116,15 +116,15 @@ private:
     nlohmann::ordered_json facts_;
     page_screen screen_ = {};
     std::int64_t since_ns_ = 0;
-    unsigned asked_ = 0;                 ///< the number of the question that was asked last
-    bool open_ = false;                  ///< and it has no answer yet
-    std::optional<visitor> theirs_ = {}; ///< the page that came last
+    unsigned asked_ = 0;                 ///< number of the last question
+    bool open_ = false;                  ///< true if the last question has no answer yet
+    std::optional<visitor> theirs_ = {}; ///< page that said hello last
 };
 
 struct page_answer {
-    char key = 0; ///< of the choice; 0: it has none
+    char key = 0; ///< key of the choice; 0 if it has none
     unsigned number = 0;
-    std::optional<std::string> text = {}; ///< that was entered
+    std::optional<std::string> text = {}; ///< text that was entered
     std::int64_t at_ns = 0;               ///< CLOCK_MONOTONIC at its arrival
 };
 
@@ -134,16 +134,16 @@ public:
     /// Serves pages on `listening`, a TCP socket. Signals must be blocked already.
     participant_page(const page_words& words, const array& a, net::owned_fd listening);
 
-    /// Shows a screen; drops the open question, and an answer that nobody took.
+    /// Shows a screen. Drops the open question, and an answer that poll() has not yet returned.
     void show(page_screen s);
-    /// Takes a keypad's key as an answer from the page: the key of a choice, or its number. Ignores others,
-    /// and all keys while nobody sees the page.
+    /// Takes a keypad's key as an answer from the page: the key of a choice, or its number. Ignores other
+    /// keys, and all keys while no page is open.
     void press(char key);
     /// Returns true if somebody has the page open.
     bool is_watched();
     /// Returns the answer to the open question, if any.
     std::optional<page_answer> poll();
-    /// Readable while there is an answer.
+    /// Returns a descriptor that is readable while poll() has an answer.
     int descriptor() const noexcept { return answered_.fd(); }
 
 private:
@@ -156,7 +156,7 @@ private:
     page_dialogue dialogue_;
     std::optional<page_answer> answer_ = {};
     rt::event_fd answered_;
-    net::page_server server_; // last: its thread uses what is above
+    net::page_server server_; // last, because its thread uses the members above
 };
 
 } // namespace tactor::study

@@ -22,14 +22,14 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Points of a path on the page: nobody sees the straight lines between them.
+// Number of points of a path on the page, enough to look smooth.
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
 
-// A second press of the key that answered the question before, if it comes sooner, answers nothing.
+// Time within which a second press of the key that answered the previous question is ignored, ns.
 constexpr std::int64_t second_press_ns = 300'000'000;
 
-// Name, in messages, of the person who ends a session with q.
+// Name in messages of the person who ends a session with q.
 constexpr std::string_view experimenter = "the experimenter (q)";
 
 bool names_stimuli(const experiment_definition& d, const run_definition& r)
@@ -111,7 +111,7 @@ void person_session::hold()
             stage_.fade_out();
         } while (!end());
     } catch (...) {
-        on_page(idle_screen(p_, "over")); // however it ends, for the participant it is over
+        on_page(idle_screen(p_, "over")); // for the participant the session is over, however it ends
         throw;
     }
 }
@@ -125,8 +125,8 @@ void person_session::on_page(page_screen s)
 void person_session::step(const session_step& s)
 {
     if (s.what != step_kind::trial)
-        stage_.fade_out();                           // noise through the run ends with it
-    if (const auto v = std::exchange(voided_, {})) { // not before, because something may have played
+        stage_.fade_out();                           // noise that lasts through a run ends here
+    if (const auto v = std::exchange(voided_, {})) { // not earlier, because a stimulus may have been playing
         codes_.send(code_event::made_void, *v, held_->find_trial(*v));
         const trial_row row{.trial = v->which.trial, .attempt = v->which.attempt, .stream = stream_};
         codes_.write(p_.run_at(v->run), row, held_->table(*v));
@@ -151,7 +151,7 @@ void person_session::step(const session_step& s)
     }
 }
 
-// Counts an opening of the device and writes it down.
+// Counts an opening of the device, and records it in session.json.
 void person_session::note_stream()
 {
     if (!begun_)
@@ -205,12 +205,12 @@ void person_session::introduce(const session_step& s)
                                        : w["any_key_begins"] + "\n");
         wait_for_any_key();
     }
-    // The experimenter may have made the last trial of the run before void meanwhile.
+    // Meanwhile the experimenter may have made the last trial of the previous run void.
     if (flow_.next() == s)
         flow_.go_on();
 }
 
-// Waits for a key, or until the experimenter has changed the next step.
+// Blocks until a key, or until the experimenter changes the next step.
 void person_session::wait_for_any_key()
 {
     const session_step now = flow_.next();
@@ -236,7 +236,7 @@ char person_session::wait_for_one_of(std::string_view keys)
     }
 }
 
-// Leaves lines alone: they answer the next question. Only keys come early.
+// Does not read lines: they answer the next question.
 bool person_session::heed()
 {
     keys_.drop_pressed();
@@ -292,7 +292,7 @@ void person_session::rest(const session_step& s)
         flow_.go_on();
 }
 
-// Shows title and text of a questionnaire, and lets the participant begin it at the page.
+// Shows the title and text of a questionnaire. On the page, waits until the participant begins.
 void person_session::introduce(const questionnaire& q)
 {
     session::show("\n");
@@ -319,7 +319,7 @@ void person_session::ask_item(const session_step& s)
     if (flow_.next() != s)
         return;
     keys_.drop_keys();
-    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early(); // b is a text then
+    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early(); // then b is text
     const auto a =
         ask(ask_about_item(q, s.item, p_.definition.page, flow_.can_go_back() && !is_line, page_ != nullptr));
     if (!a)
@@ -397,7 +397,7 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
     if (!t.method_2)
         return [](std::uint64_t) {};
     const stimulus_set& all = p_.stimuli;
-    // The gap's mark is there, too: both stimuli are seen to begin and end.
+    // The gap has a mark, too, so that the participant sees both stimuli begin and end.
     const std::array<std::pair<std::uint64_t, unsigned>, 3> changes{
         {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
     return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
@@ -437,7 +437,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
                 stage_.cancel();
         });
         if (g.flaw.empty())
-            mark(stimuli.frames()); // where the process was too slow to look
+            mark(stimuli.frames()); // in case the process was too slow to look
     }
     heed(); // drops keys that were pressed too early
     if (quit_)
@@ -483,11 +483,12 @@ void person_session::trial(const session_step& s)
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     held_->add(s, row, started_ns);
     flow_.took(row.is_void);
-    codes_.write(r, row, held_->table(s)); // after the answer, which a kill during its code must not lose
+    codes_.write(r, row,
+                 held_->table(s)); // last: a kill during the code must not lose the answer
     find_device();
 }
 
-// Waits for an answer; returns none if the experimenter has changed the next step.
+// Blocks until an answer. Returns nothing if the experimenter changed the next step.
 std::optional<person_session::given_answer> person_session::ask(const question& q)
 {
     const session_step now = flow_.next();
@@ -515,7 +516,7 @@ std::optional<person_session::given_answer> person_session::ask(const question& 
                 return {};
             }
         } else if (is_answer && is_second_press(k)) {
-            on_page(q.screen); // which the press has answered
+            on_page(q.screen); // asks again, because the page took the press as an answer
         } else if (is_answer) {
             answered_ = k;
             if (q.is_text() || q.is_estimate())
@@ -531,7 +532,7 @@ std::optional<person_session::given_answer> person_session::ask(const question& 
     }
 }
 
-// Lines are no presses.
+// Returns false for lines, which are not presses.
 bool person_session::is_second_press(const session_key& k) const
 {
     return (k.is_key || page_ != nullptr) && k.answer && k.answer == answered_.answer &&
@@ -599,24 +600,25 @@ void person_session::walk(unsigned tactor)
     } else if (key == 'b') {
         flow_.walk_back();
     } else if (key == 'n' && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
-        // On a page a finger slips: the first No drives the tactor once more.
+        // On a page a finger may slip, so the first No only drives the tactor once more.
         throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
                     "find out why with tactor check --walk; then begin again");
     }
 }
 
-// Begins after consent and walk: a participant who did not agree, or did not feel a tactor, leaves no data.
+// Creates the session's files. Runs after consent and walk, so that a participant who does not agree or does
+// not feel a tactor leaves no data.
 void person_session::begin_store()
 {
     if (std::exchange(begun_, true))
         return;
     const std::string now = acq_time_text(rt::unix_ns());
     store_.begin(p_.stimuli.all(), describe_events(p_));
-    if (store_.facts()["date"].is_null()) // new, or it ended before the date was written
+    if (store_.facts()["date"].is_null()) // a new session, or one that ended before this line
         store_.note("date", now);
     if (!agreed_at_.empty())
         store_.note("consent", agreed_at_);
-    json walks = store_.facts().value("walk", json::array()); // a session that goes on is walked again
+    json walks = store_.facts().value("walk", json::array()); // a resumed session has a walk, too
     for (const json& one : walked_)
         walks.push_back(one);
     store_.note("walk", walks);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A session with somebody at a terminal or before a page: takes the steps of a session_flow on the stage.
+/// A session with a person at a terminal or at the participant's page. It carries out the steps of a
+/// session_flow.
 #pragma once
 
 #include <cstddef>
@@ -31,13 +32,13 @@ namespace tactor::study {
 
 /// A terminal that shows targets.
 struct target_display {
-    bool moves = false; ///< false: a line stands for the target
-    /// Shows a target. Returns the function that draws it at a time from its start, s; the picture lasts as
-    /// long as that function, and as both arguments.
+    bool moves = false; ///< false if a line of text replaces the target
+    /// Shows a target. Returns a function that draws it at a time since its start, s. The picture lives as
+    /// long as that function; both arguments must live longer.
     std::function<std::function<void(double t_s)>(const array& a, const stroke& target)> show;
 };
 
-/// Devices of a session, for its data; empty: none.
+/// Names of a session's devices, for its data; empty if there is none.
 struct session_devices {
     std::string pcm = {};
     std::string pcm_server = {}; ///< sound server between the program and the card
@@ -47,13 +48,14 @@ struct session_devices {
 
 class person_session {
 public:
-    /// `with` has the participant's page (null: the terminal). All must live as long.
+    /// Prepares the session. `with.page` is null if the participant uses the terminal. All arguments must
+    /// outlive this object.
     person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
                    target_display display, session_devices devices, sync_codes& codes);
 
-    /// Holds the rest of the session. \throws stage::interruption; error (runtime): the participant did not
-    /// agree or did not feel a tactor, no answer can come any more, the device did not come back, or the
-    /// system refuses to write.
+    /// Runs the rest of the session, and blocks until its end. \throws stage::interruption; error (runtime)
+    /// if the participant does not agree or does not feel a tactor, no more answers can come, the device does
+    /// not come back, or a file cannot be written.
     void hold();
 
 private:
@@ -67,32 +69,33 @@ private:
     void ask_item(const session_step& s);
     void rest(const session_step& s);
     void pause();
-    /// Returns false if the last trial was made void, so that the session goes on.
+    /// Shows the last screen. Returns false if the last trial was then made void, so that the session
+    /// continues.
     bool end();
 
     struct given_answer {
-        double number = 0.0; ///< not of a text
+        double number = 0.0; ///< unused for a text
         std::string text;
         std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
     };
-    /// Returns a watcher that asks for a moment's patience when it is first called.
+    /// Returns a watcher that asks the participant to wait when it is first called.
     std::function<bool(double)> waiting();
-    /// Shows the target. Returns the reason if that made the trial void.
+    /// Shows the target. Returns a reason if that makes the trial void, else an empty text.
     std::string animate(const session_step& s, const planned_trial& t);
     given_stimulus give(const session_step& s, const planned_trial& t);
-    /// Returns a watcher that shows which of two stimuli plays at a frame, and what came before.
+    /// Returns a watcher that shows which of two stimuli plays at a frame, and catches up on earlier changes.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     std::optional<given_answer> ask(const question& q);
     bool is_second_press(const session_key& k) const;
 
     /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);
-    /// Takes the experimenter's keys while something plays. Returns false if the trial has to end.
+    /// Obeys the experimenter's keys while something plays. Returns false if the trial must end.
     bool heed();
     void obey(operator_key k);
     void void_last();
     void wait_for_any_key();
-    /// Waits for one of these keys. Only q is a command meanwhile.
+    /// Blocks until one of these keys. Meanwhile q is the only command.
     char wait_for_one_of(std::string_view keys);
     void find_device();
     void note_stream();
@@ -106,16 +109,16 @@ private:
     sync_codes& codes_;
     session_keys keys_;
     session_flow flow_;
-    std::optional<held_run> held_ = {}; ///< present run
+    std::optional<held_run> held_ = {}; ///< run in progress
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
-    std::optional<unsigned> doubted_ = {};    ///< tactor whose first No offered it again
-    std::optional<session_step> voided_ = {}; ///< trial that the experimenter made void: its code is to come
+    std::optional<unsigned> doubted_ = {};    ///< tactor that gets a second try after a No
+    std::optional<session_step> voided_ = {}; ///< trial that was made void, and whose code is not yet sent
     unsigned stream_ = 0;
-    std::string agreed_at_ = {};                                    ///< time of the yes; empty: not asked
-    bool begun_ = false;                                            ///< of the store
-    session_key answered_ = {};                                     ///< answer before
-    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< questionnaires, and the runs before
-    bool repeat_ = false;                                           ///< wanted while the stimulus plays
+    std::string agreed_at_ = {};                                    ///< time of consent; empty if not asked
+    bool begun_ = false;                                            ///< true after begin_store()
+    session_key answered_ = {};                                     ///< previous answer
+    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< questionnaires shown, with their runs
+    bool repeat_ = false; ///< true if requested while a stimulus plays
     bool quit_ = false;
 };
 

@@ -10,9 +10,9 @@
 namespace tactor::study {
 namespace {
 
-constexpr double picture_points = 60.0; // nobody sees the straight lines between them
+constexpr double picture_points = 60.0; // enough to look smooth
 
-// Returns a key for each answer, or none if there are too many.
+// Returns a key for each answer; empty if there are too many answers.
 std::string number_keys(std::size_t answers)
 {
     return answers <= most_keys ? std::string("123456789").substr(0, answers) : "";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Questions to somebody at a terminal or before a page: of trials, and of the items of questionnaires.
+/// Questions about trials and questions of questionnaires, for the terminal and the participant's page.
 #pragma once
 
 #include <string>
@@ -21,29 +21,30 @@ namespace tactor::study {
 
 /// A question with its answers: numbers from the screen's lowest to its greatest, an estimate, or a text.
 struct question {
-    page_screen screen;   ///< the terminal shows its `question`
-    std::string possible; ///< the answers, for the terminal: "1 or 2"; may be empty
+    page_screen screen;   ///< screen of the page; the terminal shows its `question`
+    std::string possible; ///< possible answers for the terminal: "1 or 2"; may be empty
 
     bool is_text() const noexcept { return screen.entry == entry_kind::text; }
     bool is_estimate() const noexcept { return screen.entry == entry_kind::estimate; }
-    /// Returns true if an answer takes several keys, and Enter.
+    /// Returns true if an answer takes several keys and then Enter.
     bool is_typed() const noexcept;
 };
 
-/// Returns the answers to the question of a run.
+/// Returns the possible answers to the question of a run.
 trial_answers find_answers(const experiment_definition& d, const run_definition& r);
 
 /// Returns the place of a step in the session.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);
 
-/// Returns a target's places on the array at equal parts of its time.
+/// Returns a target's positions at `parts` equal parts of its time. Moves each position outside the array to
+/// the nearest point of the array.
 std::vector<point> sample_way(const stroke& target, const array& a, double parts);
 
 /// Returns the question of a trial.
 question ask_about_trial(const prepared_experiment& p, const session_step& s);
 
-/// Returns the question of an item. `back`: somebody can go to the item before, by key b; at a terminal
-/// alone, where b is a letter of a text, by Backspace.
+/// Returns the question of an item. `back`: the participant can go to the previous item with key b, or with
+/// Backspace if a text is typed at the terminal.
 question ask_about_item(const questionnaire& q, std::size_t item, const page_words& w, bool back,
                         bool on_page);
 

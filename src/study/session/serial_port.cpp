@@ -45,17 +45,18 @@ public:
 
 private:
     detail::owned_fd port_;
-    std::atomic<unsigned> shown_ = 256; ///< no byte yet
+    std::atomic<unsigned> shown_ = 256; ///< last byte sent; 256 before the first
 };
 
-// Tests whether a path is a terminal, without opening it: opening some devices has effects.
+// Returns true if a file is a terminal device. Does not open it, because opening some devices has side
+// effects.
 bool is_terminal(const struct stat& s)
 {
     const unsigned kind = major(s.st_rdev);
     if (!S_ISCHR(s.st_mode))
         return false;
     if (kind >= UNIX98_PTY_SLAVE_MAJOR && kind < UNIX98_PTY_SLAVE_MAJOR + UNIX98_PTY_MAJOR_COUNT)
-        return true; // the only ones that /sys does not list
+        return true; // the only terminals that /sys does not list
     std::error_code ec;
     const auto subsystem = std::filesystem::read_symlink(
         fmt::format("/sys/dev/char/{}:{}/subsystem", kind, minor(s.st_rdev)), ec);

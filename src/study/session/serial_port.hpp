@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A serial trigger box as lines that show a number: its outputs hold the byte that came last.
+/// A serial trigger box, used like lines that show a number: its outputs hold the last byte that it received.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,11 @@
 namespace tactor::study {
 
 /// Opens a serial port with eight data bits, no parity, one stop bit and no flow control, for this process
-/// alone, and sends a 0. set() sends a byte if the number is another one than before, and does not wait.
-/// Opens terminals alone, and sends nothing to that of this session: the path may be a stranger's.
+/// only, and sends a 0. set() sends a byte if the number changes, and does not block. Opens only terminal
+/// devices, and never the terminal of this session, because the path may come from somebody else's file.
 /// `baud`: one of detail::baud_rates. `where`: place of the path in a file. \throws error: not_available if
-/// the port is missing, belongs to another program or does not have the rate; bad_input if it is not a serial
-/// port.
+/// the port is missing, belongs to another program or does not support the rate; bad_input if it is not a
+/// serial port.
 std::unique_ptr<amplifier::code_lines> open_serial_port(const std::string& device, unsigned baud,
                                                         const source_place& where);
 

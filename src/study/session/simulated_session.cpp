@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A session with a simulated observer: without a device, on a clock of its lines.
+// A session with a simulated observer. It has no device, and its clock follows from its lines.
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -15,9 +15,9 @@
 namespace tactor::study {
 namespace {
 
-constexpr double pause_s = 0.5; // from an answer to what comes next
+constexpr double pause_s = 0.5; // time from an answer to the next step
 
-// Begin of a simulated session's clock: the year 2000, because its trials have no real time.
+// Start of a simulated session's clock: the year 2000, because its trials have no real time.
 constexpr std::int64_t epoch_ns = 946684800LL * 1000000000LL;
 
 class simulated_session {
@@ -73,13 +73,13 @@ private:
         return static_cast<std::uint64_t>(std::llround(seconds * p_.render.rate));
     }
 
-    // Draws each number of an item as likely as the others; a text is "simulated".
+    // Draws the answer to an item: each number is equally likely, and a text is "simulated".
     std::string draw_answer(const questionnaire& q, std::size_t place, const std::string& after) const
     {
         random_numbers r(fmt::format(
             "{}/{}/{}", session_seed(simulation_.seed, p_.definition, p_.participant), q.name, after));
         std::string answer;
-        for (std::size_t i = 0; i <= place; ++i) // a draw for each number before it
+        for (std::size_t i = 0; i <= place; ++i) // repeats the draws of earlier items
             if (const questionnaire_item& item = q.items[i]; item.kind == item_kind::text)
                 answer = "simulated";
             else
@@ -94,14 +94,14 @@ private:
         return epoch_ns + static_cast<std::int64_t>(microseconds) * 1000;
     }
 
-    // Sets the clock after a trial from its line alone: a session that goes on has nothing else.
+    // Sets the clock after a trial, only from its line: a resumed session has nothing else.
     void pass(const trial_row& row)
     {
         now_ = row.frame_1.value_or(now_) + frames(row.duration_s) +
                frames(row.response_time_s.value_or(0.0)) + frames(pause_s);
     }
 
-    // Sets the clock of a session that goes on.
+    // Sets the clock of a resumed session to the end of its lines.
     void go_to_end_of_lines()
     {
         for (const run_sequence& s : p_.runs) {

@@ -29,7 +29,7 @@ double stage::room_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
         before_ + position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
-    const std::uint64_t wait = room_.wait(s, at).value_or(0); // without room: give() reports it as limited
+    const std::uint64_t wait = room_.wait(s, at).value_or(0); // 0 if no wait helps: give() reports it
     return static_cast<double>(wait) / s.rate();
 }
 
@@ -48,7 +48,7 @@ void stage::mask(sink_opener open, const masking_options& o)
 
 void stage::mask(const std::string& pcm, const masking_options& o)
 {
-    // A buffer of 40 ms: only the beginning of the noise has to wait for it.
+    // A buffer of 40 ms is short enough: it delays only the start of the noise.
     const alsa_options stereo{.pcm = pcm, .channels = 2, .wider = true, .period_frames = 480, .periods = 4};
     mask([stereo] { return open_alsa(stereo); }, o);
 }
@@ -64,7 +64,7 @@ bool stage::fade_in()
     if (!masker_)
         return true;
     if (masker_->ended() != io_kind::ok) {
-        masker_.reset(); // it has the device open
+        masker_.reset(); // closes the device first
         masker_ = std::make_unique<masker>(open_masker_(), masking_);
     }
     masker_->fade_in();
@@ -90,7 +90,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     }
     const unsigned breaks = masker_ ? masker_->breaks() : 0;
     const player_stats before = stats();
-    // A frame that is known before. If the stimulus is late all the same, the report says by how many frames.
+    // Starts at a frame that is known in advance. If the stimulus is late, the report has the delay.
     const std::uint64_t at = position().played + setup().buffer_frames +
                              static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
     const auto gone = submit(s, start_at::frame(at));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The devices that give stimuli to a person: the array, and the noise that hides its sound.
+/// The devices that present stimuli to a person: the array, and the noise that hides its sound.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +17,28 @@
 
 namespace tactor::study {
 
-/// Record of a stimulus that was given.
+/// Record of a stimulus after it was presented.
 struct given_stimulus {
-    std::string flaw = {};                         ///< deviation from the plan; empty: none
-    std::optional<std::uint64_t> first_frame = {}; ///< of the stream; none: it never sounded
-    std::uint64_t frames = 0;                      ///< of it that were played
+    std::string flaw = {};                         ///< deviation from the plan; empty if there is none
+    std::optional<std::uint64_t> first_frame = {}; ///< first frame in the stream; missing if nothing sounded
+    std::uint64_t frames = 0;                      ///< number of frames that were played
     std::int64_t started_ns = 0;                   ///< CLOCK_MONOTONIC of its first frame at the DAC
-    std::int64_t ended_ns = 0;                     ///< and of its last
-    unsigned xruns = 0;                            ///< since the request
-    bool limited = false;                          ///< limits of the array changed it
+    std::int64_t ended_ns = 0;                     ///< CLOCK_MONOTONIC of its last frame at the DAC
+    unsigned xruns = 0;                            ///< number of xruns since the request
+    bool limited = false;                          ///< true if limits of the array changed it
 
-    /// Returns the reason why it does not count: its flaw, or that it was limited; empty: it counts.
+    /// Returns the reason why the stimulus does not count: its flaw, or a limit. Returns an empty text if it
+    /// counts.
     std::string fault() const;
 };
 
-/// A session on the array that a signal ends by an exception. One thread.
+/// A session on the array. A signal ends it with an exception. For use by one thread.
 class stage : public session::play_session {
 public:
     /// Early end of a session.
     struct interruption {
-        int signal;                       ///< 0: the session was not interrupted
-        std::string_view by = "a signal"; ///< what ended it, for messages
+        int signal;                       ///< signal number; 0 if nothing interrupted the session
+        std::string_view by = "a signal"; ///< cause in messages
     };
 
     /// Opens the device. \throws error.
@@ -45,43 +46,44 @@ public:
           const session::stream_source& source = {});
 
     using sink_opener = std::function<std::unique_ptr<sink>()>;
-    /// Plays noise around each stimulus from now on. \throws error as masker, and what the opener throws.
+    /// Plays noise around each stimulus from now on. \throws error as masker does, and errors of `open`.
     void mask(sink_opener open, const masking_options& o);
-    /// Plays it on the PCM of this name, in stereo.
+    /// Plays the noise on the PCM with this name, in stereo.
     void mask(const std::string& pcm, const masking_options& o);
 
-    /// Returns how long a score that is to begin in `lead_s` has to wait, so that no tactor is driven for
-    /// longer than the limits allow, together with the stimuli before.
+    /// Returns the time, s, by which a score that would begin in `lead_s` must be delayed so that no tactor
+    /// exceeds the limits of drive time. Counts earlier stimuli, too.
     double room_s(const score& s, double lead_s) const;
-    /// Lets that time pass, as pass().
+    /// Waits for the time room_s(), as pass() does.
     bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
-    /// Called some 25 times a second with the stimulus' current frame.
+    /// Function that is called some 25 times a second with the current frame of the stimulus.
     using watcher = std::function<void(std::uint64_t stimulus_frame)>;
-    /// Plays a score. Masking noise, if any, sounds before it and goes on after it. \throws interruption;
-    /// error if the noise's device cannot be opened again.
+    /// Plays a score. Masking noise, if any, starts before it and continues after it. Blocks until the score
+    /// ends. \throws interruption; error if the noise's device cannot be opened again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
 
-    /// Plays a score as give(). If a limit changed it, because earlier runs drove the tactors, lets these
-    /// rest completely and plays it once more. `watch`: as of pass().
+    /// Plays a score as give() does. If a limit changed it because earlier runs drove the tactors, lets them
+    /// rest completely and plays it once more. `watch`: as for pass().
     given_stimulus give_after_limits(const score& s, const std::function<bool(double passed_s)>& watch);
 
-    /// Begins noise until fade_out(). Returns false if it does not sound. \throws as give().
+    /// Starts the noise, which lasts until fade_out(), and blocks until it has full level. Returns false if
+    /// it does not sound. Throws as give().
     bool fade_in();
     void fade_out() noexcept;
 
-    /// Reason for the end of the noise; `ok` while it goes on, and without noise.
+    /// Returns the reason why the noise ended; `ok` while it plays, and without noise.
     io_kind noise_ended() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
 
-    /// Lets so much of the stream's time pass; the watcher gets the time passed and returns false to stop
-    /// early. Returns false if the stream has ended meanwhile. \throws interruption.
+    /// Blocks until `seconds` of the stream's time have passed. `watch` gets the time passed and returns
+    /// false to stop early. Returns false if the stream ended meanwhile. \throws interruption.
     bool pass(double seconds, const std::function<bool(double passed_s)>& watch);
-    /// Waits for a descriptor. \throws interruption.
+    /// Blocks until a descriptor is readable. \throws interruption.
     void wait_for(int descriptor);
 
-    /// Waits for the device to come back. Returns false if it did not. \throws interruption.
+    /// Blocks until the device comes back. Returns false if it does not. \throws interruption.
     bool reopen();
-    /// Ends the streams in silence. \throws error if the amplifier may be on.
+    /// Fades the noise out and ends the streams. \throws error if the amplifier may still be on.
     void finish();
 
 private:
@@ -89,12 +91,12 @@ private:
 
     sink_opener open_masker_ = {};
     masking_options masking_ = {};
-    std::unique_ptr<masker> masker_; ///< null: no noise
+    std::unique_ptr<masker> masker_; ///< null without noise
     synth::drive_room room_;
     std::uint64_t before_ = 0; ///< frames of earlier streams; the time between streams does not count
 };
 
-/// Guard that ends the noise, however the trial ends.
+/// Guard that fades the noise out at the end of a trial, even after an exception.
 class noise_around {
 public:
     explicit noise_around(stage& s) : stage_(s) {}
@@ -106,8 +108,9 @@ private:
     stage& stage_;
 };
 
-/// Calls `held`, which uses the stage, and ends its streams in each case. Returns the early end, if any.
-/// \throws what `held` throws, except stage::interruption.
+/// Calls `held`, which uses the stage, and ends the stage's streams in any case. Returns the interruption, if
+/// any.
+/// \throws all that `held` throws, except stage::interruption.
 template <typename Held>
 [[nodiscard]] stage::interruption until_interrupted(stage& s, const Held& held)
 {

@@ -23,7 +23,7 @@
 namespace tactor::study {
 namespace {
 
-// Event of a code that was cut.
+// Name of the event of a code that was cut short.
 constexpr std::string_view broken = "broken";
 
 std::uint64_t bit_frames(const code_settings& c, unsigned rate)
@@ -31,7 +31,7 @@ std::uint64_t bit_frames(const code_settings& c, unsigned rate)
     return static_cast<std::uint64_t>(std::max(1LL, std::llround(c.bit_s * rate)));
 }
 
-// Returns the frames that a code on the channel takes before its event; 0 without a channel.
+// Returns the length of a code on the channel, in frames; 0 without a channel.
 std::uint64_t code_frames(const code_settings& c, unsigned rate)
 {
     return c.channel ? synth::code_bits * bit_frames(c, rate) : 0;
@@ -89,7 +89,7 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
     const bool has_outputs = c != nullptr && !name_outputs(*c).empty();
     if (has_outputs)
         check(c->pulse_s, shortest_s, "the answer's number", c->where, "code: ");
-    constexpr double bits = 10.0; // of a byte, with start and stop
+    constexpr double bits = 10.0; // bits of a byte, including start and stop
     if (c != nullptr && !c->serial.empty() && c->pulse_s < bits / c->baud)
         throw error(error_kind::bad_input, c->where,
                     fmt::format("code: pulse_ms is {:.4g}, but a byte takes {:.4g} ms at {} baud",
@@ -205,8 +205,8 @@ lsl_markers::lsl_markers(const std::string& source_id)
     const bool found = find(clock_, "lsl_local_clock") && find(push_, "lsl_push_sample_itp") &&
                        find(make_info, "lsl_create_streaminfo") && find(make_outlet, "lsl_create_outlet");
     const char* const cause = found ? nullptr : ::dlerror();
-    constexpr int int32 = 4;        // cft_int32
-    constexpr int buffered_s = 360; // as usual
+    constexpr int int32 = 4;        // cft_int32 of liblsl
+    constexpr int buffered_s = 360; // usual value for liblsl
     if (found)
         outlet_ =
             make_outlet(make_info("tactor", "Markers", 1, 0.0, int32, source_id.c_str()), 0, buffered_s);
@@ -235,7 +235,7 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
     if (code_->lsl && there != nullptr)
         lsl_.emplace("tactor-" + p.participant);
     if (there != nullptr && !code_->channel && lines == nullptr && !lsl_)
-        code_ = nullptr; // lines that are left alone
+        code_ = nullptr; // only lines, and these are not opened
 }
 
 coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned interval) const
@@ -268,8 +268,9 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
         parts.push_back({make(second), p_.stimuli.second(t)});
     const double rate = p_.render.rate;
     if (lines_ != nullptr) {
-        there_->fade_in(); // now, because it takes a time that nobody knows
-        // Between the starts of both stimuli there is time enough for a late pulse.
+        there_->fade_in(); // now, because its duration is unknown
+        // Changes the number halfway between the starts of both stimuli, so that a late pulse still has the
+        // right one.
         const double until_s = stimulus_lead_s + (t.method_2 ? p_.stimuli.second(t) / 2.0 / rate : 0.0) +
                                there_->setup().buffer_frames / rate;
         lines_->expect(first, second, rt::monotonic_ns() + std::llround(until_s * 1e9));
@@ -278,7 +279,7 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
     given_stimulus g = there_->give(lead > 0 ? synth::join_scores(parts) : stimuli,
                                     stimulus_lead_s - static_cast<double>(lead) / rate,
                                     [&](std::uint64_t frame) { watch(frame - std::min(frame, lead)); });
-    // A code comes before its stimulus: of the second, where that begins in the stimuli alone.
+    // A code comes before its stimulus. With the first code in front, the second code begins at second(t).
     const std::uint64_t played = g.frames;
     const auto find_cut = [&](std::uint64_t begins, unsigned number) {
         if (!g.first_frame || played <= begins || played >= begins + lead)

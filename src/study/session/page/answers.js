@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Answers are buttons with numbers, which are keys, too, or many of them a line with a mark.
+// Shows answers: as buttons with numbers, which are also keys, or if there are many, as a line with a mark.
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {draw_picture} from "./motion.js";
 import {fits_entry} from "./entry.js";
 
-const MOST_BUTTONS = 11; // of a scale
+const MOST_BUTTONS = 11; // greatest number of steps that a scale shows as buttons
 
 function has_words_at_ends(choices) {
   return choices.length > 2 && choices[0] && choices.slice(1, -1).every(c => !c);
@@ -27,7 +27,7 @@ function make_button(s, label, i, tactors) {
   return b;
 }
 
-// Makes a line whose mark shows once it is set, and a button that answers. Only the steps of a scale have numbers.
+// Makes a line whose mark appears when it is set, and a button that answers. Only the steps of a scale have numbers.
 function make_line({choices, visual}, word, answer) {
   const describe = i => [...visual ? [] : [i + 1], choices[i]].join(" ").trim();
   const number = make("output"), confirm = make("button", {type: "button", onclick: () => answer(mark.valueAsNumber)}, word);
@@ -37,7 +37,7 @@ function make_line({choices, visual}, word, answer) {
     if (!visual) number.textContent = describe(mark.value - 1);
     mark.setAttribute("aria-valuetext", visual ? mark.value - 1 : number.textContent);
   };
-  // Safari lets people only drag the mark, which is hidden at first: here each place on the line sets it.
+  // Safari only lets people drag the mark, which is hidden at first. Here a press anywhere on the line sets it.
   const point = e => {
     const {x, width} = mark.getBoundingClientRect();
     mark.style.setProperty("--at", e.buttons || e.pointerType !== "mouse" || mark.disabled ? "-20px" : `${e.clientX - x - 4}px`);
@@ -50,17 +50,17 @@ function make_line({choices, visual}, word, answer) {
   return [mark, make("span", {id: "low"}, describe(0)), make("span", {id: "high"}, describe(choices.length - 1)), number, confirm];
 }
 
-// Makes a place for a number, with its range, or for a text, and a button that answers.
+// Makes a field for a number, with its range, or for a text, and a button that answers.
 function make_entry(entry, words, answer) {
   const {greatest, lowest, longest, most} = entry;
   const confirm = make("button", {type: "button", onclick: () => answer(most || longest ? place.value : Number(place.value))}, words.confirm);
-  const look = () => { // leaves all as it is typed: 1.5 and 1e5 must not become 15
+  const look = () => { // leaves the text as typed: 1.5 and 1e5 must not become 15
     const fits = fits_entry(place.value, entry);
     by_id("answers").classList.toggle("unset", !fits);
     place.setAttribute("aria-invalid", place.value !== "" && !fits);
     confirm.disabled = place.disabled || !fits;
   };
-  // The keyboard of numbers has no point in locales that write a comma.
+  // The numeric keyboard has no point in locales with a decimal comma.
   const keyboard = !longest ? "numeric" : (0.5).toLocaleString().includes(".") ? "decimal" : "text";
   const place = most ? make("textarea", {rows: 5, maxlength: most, "aria-labelledby": "question"})
     : make("input", {inputmode: keyboard, autocomplete: "off", "aria-labelledby": "question range", oninput: look,
@@ -68,10 +68,10 @@ function make_entry(entry, words, answer) {
   return [place, ...most ? [] : [make("span", {id: "range"}, longest ? words.any_number : `${lowest}–${greatest}`)], confirm];
 }
 
-let kept = ""; // what the buttons show
+let kept = ""; // content of the answers shown, as JSON
 let focused = -1;
 
-// Shows the buttons of a screen. Those of the same question stay, with the keyboard's focus.
+// Shows the answers of a screen. Keeps the buttons and the focus if the question is the same.
 export function show_answers(s, tactors, words, answer) {
   const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen, s.entry, s.question,
     s.screen === "questionnaire" && s.progress]); // the next item may look the same
@@ -110,10 +110,10 @@ export function enable_answers(yes) {
 }
 export function mark_answer(choice) {
   const buttons = by_id("answers").querySelectorAll("button");
-  (buttons[choice - 1] ?? buttons[0]).classList.add("chosen"); // a line has one
+  (buttons[choice - 1] ?? buttons[0]).classList.add("chosen"); // a line has only one button
 }
 
-// Shows the stimuli of a trial at the places of the answers, and lights the one that plays.
+// Shows the stimuli of a trial where their answers will be, and highlights the one that plays.
 export function show_stimuli(count, playing, names = []) {
   const all = by_id("stimuli");
   show_only_if(all, count > 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Returns true if a text answers an entry: any text, a whole number, or where it has a longest length an estimate with a point.
+// Returns true if a text fits an entry: any text with `most`, an estimate in range with `longest`, else a whole number in range.
 export function fits_entry(text, {lowest, greatest, longest, most}) {
   if (most) return true;
   const shape = longest ? /^(\d+\.?\d*|\.\d+)$/ : /^\d+$/;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The array and a motion over it, to scale: millimetres are the units.
+// Draws the array and a motion over it, to scale in millimetres.
 import {by_id, make} from "../../../net/page/dom.js";
 import {viridis} from "../../../net/page/viridis.js";
 
-const SEGMENTS = 30; // of a picture
+const SEGMENTS = 30; // number of line segments in a picture
 
 function find_pitch(tactors) {
   const apart = tactors.flatMap((a, i) => tactors.slice(i + 1).map(b => Math.hypot(a[0] - b[0], a[1] - b[1])));
@@ -34,7 +34,7 @@ export function move_target(path, part) {
   by_id("dot").setAttribute("cy", y);
 }
 
-// Draws a motion from its ring to its arrow, in the colours of time.
+// Draws a motion from a ring at its start to an arrow at its end. The colours show time.
 export function draw_picture(tactors, path) {
   const box = frame([...tactors, ...path], find_pitch(tactors) * .45), size = Math.max(box[2], box[3]);
   const places = Array.from({length: SEGMENTS + 1}, (_, i) => place_at(path, i / SEGMENTS));

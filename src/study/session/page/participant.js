@@ -5,13 +5,13 @@ import {show_answers, enable_answers, mark_answer, show_stimuli} from "./answers
 import {make_key_guard} from "./key_guard.js";
 
 const RETRY_MS = 500;
-const LAST = ["over", "elsewhere"]; // screens after which nothing comes
+const LAST = ["over", "elsewhere"]; // last screens of a session or a page
 const ALONE = ["target", "rest", "wait", "pause", "over", "elsewhere"]; // screens without answers
-const BETWEEN = ["wait", "pause"];  // screens that leave the progress as it is
+const BETWEEN = ["wait", "pause"];  // screens that keep the progress shown before
 
 let socket = null, words = {}, tactors = [], state = {screen: "wait", ask: 0}, began = 0;
 
-// The program holds the session's state; this page shows its last message, and keeps nothing.
+// The program has the session's state. This page shows the program's last message and stores nothing else.
 function connect() {
   socket = new WebSocket(`ws://${location.host}/rpc`);
   socket.onopen = () => socket.send('{"hello":true}');
@@ -43,9 +43,9 @@ function show(s) {
   const looks = document.querySelector("main").classList;
   looks.value = s.screen;
   looks.toggle("alone", ALONE.includes(s.screen));
-  looks.toggle("replies", Boolean(s.choices || s.entry || s.stimuli || s.screen === "walk")); // or a place for them
+  looks.toggle("replies", Boolean(s.choices || s.entry || s.stimuli || s.screen === "walk")); // answers, or room for them
   by_id("text").textContent = s.screen === "elsewhere" ? words.elsewhere : s.text ?? "";
-  by_id("text").tabIndex = s.screen === "consent" ? 0 : -1; // a long one is scrolled
+  by_id("text").tabIndex = s.screen === "consent" ? 0 : -1; // so that keys can scroll a long text
   by_id("question").textContent = s.question ?? "";
   for (const mark of by_id("mark").children) show_only_if(mark, !s.stimuli && mark.dataset.on.split(" ").includes(s.screen));
   if (s.progress || !BETWEEN.includes(s.screen)) show_progress(s.progress, s.screen === "rest");
@@ -59,7 +59,7 @@ function show(s) {
   if (s.lasts_s) move(s);
 }
 
-// Shows where the session is. The bar has a segment for each part; the present one fills with its trials.
+// Shows the progress of the session. The bar has a segment for each part; the present segment fills with its trials.
 function show_progress(p, part_is_over) {
   const bar = by_id("bar"), parts = [];
   show_only_if(bar, p);
@@ -77,7 +77,7 @@ function show_progress(p, part_is_over) {
   [...bar.children].forEach((segment, i) => segment.style.setProperty("--done", i + 1 < p.run ? 1 : i + 1 === p.run ? done / p.trials : 0));
 }
 
-// The target moves, and a break passes, in the program's own time.
+// Moves the target, or shows the time left of a break, in the time of the program.
 function move(s) {
   if (s !== state) return;
   const passed_s = (performance.now() - began) / 1000;
@@ -104,16 +104,16 @@ function send(reply) {
 }
 const go_back = () => state.back && send({back: true});
 const guard = make_key_guard();
-// A double click answers once: at its second click the next screen may be there. Questions about stimuli come later.
+// A double click answers once: its second click may hit the next screen. A question about stimuli cannot follow so soon.
 addEventListener("click", e => { if (e.detail > 1 && state.screen !== "question") e.stopPropagation(); }, true);
 addEventListener("keydown", e => {
   const presses = e.key === " " || e.key === "Enter", types = e.target.matches?.("textarea, input:not([type=range])");
-  if (guard(e.key, performance.now()) && types && !e.target.value) return e.preventDefault(); // it answered the question before
-  if (e.repeat && presses) e.preventDefault(); // a key that is held answers once
+  if (guard(e.key, performance.now()) && types && !e.target.value) return e.preventDefault(); // the key answered the previous question
+  if (e.repeat && presses) e.preventDefault(); // a held key answers once
   if (e.repeat || e.ctrlKey || e.altKey || e.metaKey) return;
-  if (/^[1-9]$/.test(e.key) && state.choices?.length < 10) answer(Number(e.key)); // of more, digits do not tell 1 from 10
+  if (/^[1-9]$/.test(e.key) && state.choices?.length < 10) answer(Number(e.key)); // with more choices, 1 may be the start of 10
   else if (presses && state.choices?.length === 1 && !["full", "back"].includes(e.target.id)) {
-    e.preventDefault(); // or the button's own click would follow
+    e.preventDefault(); // else the button would also get a click
     answer(1);
   } else if (e.key === "b" && !types) go_back();
 });
@@ -122,14 +122,14 @@ by_id("back").addEventListener("click", go_back);
 by_id("full").addEventListener("click", () => {
   const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
   done.catch(() => {});
-  by_id("full").blur(); // or space would answer it
+  by_id("full").blur(); // else the space key would press it
 });
-// Follows the system's light or dark.
+// Follows the system's light or dark theme.
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const set_theme = () => { document.documentElement.dataset.theme = dark.matches ? "dark" : "light"; };
 dark.onchange = set_theme;
 set_theme();
 connect();
 
-// For the console, and for tests: what esbuild joins is not seen from outside.
+// For the console and for tests: variables in esbuild's bundle are not visible from outside.
 Object.defineProperties(globalThis, {state: {get: () => state}, began: {get: () => began}, socket: {get: () => socket}});
