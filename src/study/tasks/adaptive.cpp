@@ -23,9 +23,9 @@ namespace {
 using detail::toml_table;
 
 constexpr unsigned most_tracks = 8;
-constexpr double range_steps = 40.0; ///< in its range
+constexpr double range_steps = 40.0; ///< number of steps in the range of values
 
-// Reads two ends, between which `count` numbers come, or a list of other length.
+// Reads a list of numbers. If it has two, returns `count` numbers from the first to the second.
 std::vector<double> read_prior(const toml_table& t, std::string_view key, const detail::bounds& b,
                                std::vector<double> usual, std::size_t count, bool by_ratio)
 {
@@ -44,7 +44,7 @@ std::vector<double> read_prior(const toml_table& t, std::string_view key, const 
     return all;
 }
 
-// Returns a number without the last digits, which a sum of steps leaves.
+// Returns a number rounded to nine decimals, which removes the error of a sum of steps.
 double tidy(double v)
 {
     constexpr double digits = 1e9;
@@ -57,7 +57,7 @@ std::size_t find_nearest(const std::vector<double>& values, double v)
     return static_cast<std::size_t>(at - values.begin());
 }
 
-// Sets the steps of a staircase, as multiples of the least.
+// Sets the steps of a staircase, as multiples of the smallest step.
 void set_steps(const toml_table& t, adaptive_options& a, const std::vector<double>& steps, double step)
 {
     if (steps.empty())
@@ -97,8 +97,8 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     for (std::size_t i = 0; i < count; ++i)
         o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
     set_steps(t, a, steps, step);
-    // A staircase that needs several answers for a step stays on one side of the pse: the fit would place it
-    // there, and find a jnd that is too small.
+    // A staircase that needs several answers for a step stays on one side of the pse. A fit would then move
+    // the pse to that side and find a jnd that is too small.
     const bool one_sided = a.down > 1;
     a.tracks = t.whole("tracks", 1, most_tracks).value_or(one_sided ? 2 : 1);
     if (one_sided && a.tracks % 2 != 0)
@@ -109,7 +109,7 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
     if (start.size() > 1 && start.size() != a.tracks)
         t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
-    for (unsigned i = 0; i < a.tracks; ++i) // from both ends in turn
+    for (unsigned i = 0; i < a.tracks; ++i) // alternates between both ends
         a.start.push_back(find_nearest(o.values, start.empty()       ? range[i % 2 == 0 ? 1 : 0]
                                                  : start.size() == 1 ? start[0]
                                                                      : start[i]));

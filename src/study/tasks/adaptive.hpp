@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Adaptive procedures: each answer of a track chooses the value of its next trial. Values, without a clock.
+/// Adaptive procedures: each answer in a track determines the value of the track's next trial.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,14 @@
 
 namespace tactor::study {
 
-/// A transformed up-down staircase (Levitt 1971) on a list of values. A number of positive answers in a row
-/// makes one step down, a negative one a step up; a mirrored one goes up after so many negative answers, and
-/// down after a positive one. From every second reversal on the next step counts.
+/// A transformed up-down staircase (Levitt 1971) on a list of values. Several positive answers in a row move
+/// it one step down, and one negative answer moves it one step up. A mirrored staircase goes up after several
+/// negative answers in a row, and down after one positive answer. Every second reversal moves on to the next
+/// step size.
 class value_staircase {
 public:
-    /// `in_row`, above 0: answers for the step that needs several. `top`: the greatest place.
+    /// Starts at `start`. `in_row`: number of answers in a row for a step, above 0. `top`: greatest index of
+    /// a value.
     value_staircase(unsigned in_row, bool mirrored, std::vector<std::size_t> steps, std::size_t start,
                     std::size_t top)
         : needed_(in_row), mirrored_(mirrored), steps_(std::move(steps)), at_(start), top_(top)
@@ -41,14 +43,14 @@ private:
     std::size_t reversals_ = 0;
 };
 
-/// The tracks of an adaptive run, by the answers so far.
+/// The tracks of an adaptive run, with the answers so far.
 class adaptive_tracks {
 public:
     explicit adaptive_tracks(const run_definition& r) : run_(r) {}
 
-    /// Returns the place of the value of a track's next trial. `track` is from 1.
+    /// Returns the index of the value for a track's next trial. `track` counts from 1.
     std::size_t next(unsigned track);
-    /// Takes the answer to it.
+    /// Takes the answer to the trial of next().
     void answer(unsigned track, bool positive);
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A task whose trials are each motion by each condition, drawn so that all are balanced.
+/// A task with a trial for each motion and condition. The draw balances motions and conditions.
 #pragma once
 
 #include <cstddef>

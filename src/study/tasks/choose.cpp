@@ -15,8 +15,8 @@
 namespace tactor::study {
 namespace {
 
-// Lists the pairs of methods in one order. They are a cyclic design: of the first n pairs, and of the next n,
-// each of the n methods comes first once.
+// Lists the pairs of methods in one order. They are a cyclic design: in each group of n pairs, each of the n
+// methods comes first once.
 std::vector<planned_trial> list_pairs(std::size_t motion, const std::vector<std::size_t>& methods)
 {
     const std::size_t n = methods.size();
@@ -26,7 +26,7 @@ std::vector<planned_trial> list_pairs(std::size_t motion, const std::vector<std:
     return all;
 }
 
-// Tests whether a run chooses among three methods or more: each has a row of cells and a worth.
+// Returns true if a run has three or more methods. Each of them then has a row of cells and a worth.
 bool has_several(const run_outline& o)
 {
     return o.methods.size() > 2;
@@ -37,7 +37,8 @@ std::size_t find_chosen(const trial& t)
     return t.response == 1 ? t.method_1 : t.method_2;
 }
 
-// Per cent of trials in which the last method was chosen; of three or more by method: of its trials.
+// Plans the per cent of trials that chose the last method; with three or more methods, the per cent of each
+// method's trials.
 cell_plan plan_choices(const run_outline& o)
 {
     if (has_several(o))
@@ -133,7 +134,7 @@ public:
         const std::vector<cell_means> means = test_cells(o, plan, all);
         std::vector<result> rows;
         if (has_several(o)) {
-            // Rows of methods are not independent: what one gains another loses.
+            // Rows of methods are not independent: each choice of one method is a loss for another.
             for (const cell_means& m : means)
                 rows.push_back(
                     {{"chosen", m.method},
@@ -175,7 +176,7 @@ public:
         return has_several(o) ? std::vector<std::string_view>{"other"} : std::vector<std::string_view>{};
     }
 
-    // A trial asks about the last of two methods; of three or more about the one felt first.
+    // A trial asks about the last of two methods; with three or more, about the method felt first.
     named_texts describe_trial(const trial& t, const run_outline& own,
                                const run_outline& whole) const override
     {

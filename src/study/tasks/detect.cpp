@@ -133,8 +133,8 @@ public:
         return compare_with(o.vary.empty() ? "dprime" : "threshold", "t", find_against(o));
     }
 
-    // The slope over the values, or over whether there was a signal, is what the run is about. The method of
-    // a trial without a stimulus is "none", which says it, too.
+    // The slope is over the values, or over the presence of a signal. With several methods, the factor of
+    // methods already has the signal: the method of a trial without a stimulus is "none".
     std::string model_in_r(const run_outline& o, bool grouped) const override
     {
         const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;

@@ -51,8 +51,8 @@ std::vector<planned_trial> draw_by_turns(const experiment_definition& d, const r
                                          std::vector<planned_trial> cells, random_numbers& numbers)
 {
     shuffle(std::span(cells), numbers);
-    // The turn of a cell: the number of earlier cells with its motion and method, then of those with its
-    // motion that have the same number.
+    // A cell's turn has two numbers: first the number of earlier cells with its motion and method, then the
+    // number of earlier cells of its motion that have the same first number.
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> cells_before;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> turns_before;
     std::multimap<std::pair<std::size_t, std::size_t>, planned_trial> turns;
@@ -96,8 +96,8 @@ std::vector<planned_trial> draw_balanced(const run_definition& r, const conditio
     std::vector<std::size_t> methods = r.methods;
     shuffle(std::span(motions), numbers);
     shuffle(std::span(methods), numbers);
-    // Each motion meets each condition once: both lists go on by one at a time, and the conditions by one
-    // more before the same meet again. Then the same with each pair in its other order.
+    // Combines each motion with each condition once: both lists advance by one at a time, and the conditions
+    // by one more before a combination repeats. Then repeats this with each pair in its other order.
     const std::vector<planned_trial> listed = conditions(0, methods);
     const std::size_t kinds = listed.size();
     const std::size_t half = motions.size() * kinds;

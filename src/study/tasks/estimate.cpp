@@ -73,7 +73,7 @@ public:
 
     double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        constexpr double modulus = 100.0; // of the standard, or of the middle value
+        constexpr double modulus = 100.0; // estimate for the standard, or for the middle value
         const run_outline& o = who.run.outline;
         const double middle = o.standard.value_or(o.values[o.values.size() / 2]);
         const double ratio = size_ratio(o, find_value(who.definition, t).value(), middle);
@@ -123,7 +123,7 @@ public:
                 {"estimate", estimate}};
     }
 
-    // Estimates follow the logarithm of a value that is no level.
+    // Estimates follow the logarithm of a value that is not a level.
     std::string model_in_r(const run_outline& o, bool grouped) const override
     {
         const double middle = std::sqrt(o.values.front() * o.values.back());

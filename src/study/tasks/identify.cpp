@@ -17,7 +17,7 @@
 namespace tactor::study {
 namespace {
 
-// Returns the target's places at equal parts of its time.
+// Returns the target's positions at equal parts of its time.
 std::vector<tactor::point> target_path(const stroke& s)
 {
     std::vector<tactor::point> parts;
@@ -39,7 +39,7 @@ double find_chance(const run_outline& o)
     return 100.0 / static_cast<double>(o.motions.size());
 }
 
-// Per cent correct by method, against chance.
+// Plans the per cent correct by method, against chance.
 cell_plan plan_names(const run_outline& o)
 {
     return {o.methods,

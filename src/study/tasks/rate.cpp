@@ -18,7 +18,7 @@
 namespace tactor::study {
 namespace {
 
-// Mean ratings by method, not tested.
+// Plans mean ratings by method, without a test against a value.
 cell_plan plan_ratings(const run_outline& o)
 {
     return {o.methods,
@@ -30,7 +30,7 @@ cell_plan plan_ratings(const run_outline& o)
             "mean rating"};
 }
 
-// Returns the last method's mean less the first's; 0 for what rounding leaves of it.
+// Returns the last method's mean minus the first's; 0 if only rounding makes a difference.
 double subtract_methods(const cell_values& cells, const cell_plan& plan)
 {
     const double difference = mean(cells.back()) - mean(cells.front());

@@ -69,7 +69,7 @@ public:
     {
         if (const auto key = lapse(who, r))
             return *key;
-        // Differs if what is felt is further apart than this, in units of d'.
+        // Answers "different" if the felt difference exceeds this, in units of d'.
         constexpr double criterion = std::numbers::sqrt2;
         const double apart = t.method_1 != *t.method_2 ? who.truth.dprime : 0.0;
         return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;

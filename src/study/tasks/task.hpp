@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Tasks of a study. Each is a file in this folder with one object, which says all that is special about its
-/// runs; list_tasks() has them. Objects without state, for any thread.
+/// Tasks of a study. Each task is a file in this folder with one object, which defines everything special
+/// about its runs. list_tasks() lists the objects. They have no state, and any thread may use them.
 #pragma once
 
 #include <array>
@@ -33,16 +33,17 @@ struct simulation;
 
 /// Answers that a participant may give in a trial.
 struct trial_answers {
-    unsigned lowest = 1;                  ///< of the numbers of the answers
-    std::vector<std::string> labels = {}; ///< of each answer; empty where its number is enough
-    std::string possible = {};            ///< all of them for a terminal: "1 or 2"
-    bool is_line = false;                 ///< they are places on a line, without numbers
-    bool is_estimate = false;             ///< a number above 0, in place of all this
-    bool names_stimuli = false;           ///< they name the stimuli of the trial
-    bool shows_motions = false;           ///< they are the run's motions, which a page draws
+    unsigned lowest = 1;                  ///< number of the first answer
+    std::vector<std::string> labels = {}; ///< label of each answer; empty if the number is enough
+    std::string possible = {};            ///< all answers for a terminal: "1 or 2"
+    bool is_line = false;                 ///< answers are places on a line, without numbers
+    bool is_estimate = false;             ///< the answer is a number above 0, and all else is unused
+    bool names_stimuli = false;           ///< labels name the stimuli of the trial
+    bool shows_motions = false;           ///< answers are the run's motions, which a page draws
 };
 
-/// Chooses values by the answers so far. This one chooses none: the trials have theirs.
+/// Procedure that chooses values from the answers so far. This base class leaves the values of trials as they
+/// are.
 class value_chooser {
 public:
     virtual ~value_chooser() = default;
@@ -57,7 +58,7 @@ struct simulated_run {
     const simulation& truth;
     const experiment_definition& definition;
     const run_definition& run;
-    /// Returns the predicted error of a stimulus, or how uneven it is. \throws error: it is not felt.
+    /// Returns the predicted error or unevenness of a stimulus. \throws error if it is not felt.
     std::function<double(std::size_t motion, std::size_t method)> cost;
     std::function<const std::vector<point>&(std::size_t motion, std::size_t method)> felt_path;
     double mean_utility = 0.0;                    ///< rate: mean of -ln cost over the stimuli
@@ -67,35 +68,35 @@ struct simulated_run {
 /// Main comparison of a run.
 struct main_comparison {
     std::string text;
-    std::optional<double> against = {}; ///< none: there is nothing to compare with
+    std::optional<double> against = {}; ///< missing if there is nothing to compare with
     double rounding = 0.0;              ///< as in varies()
 };
 
 /// A participant in the main comparison of a run.
 struct compared_person {
-    std::optional<double> value = {};             ///< none: left out
+    std::optional<double> value = {};             ///< missing if the participant is left out
     std::optional<difference_counts> counts = {}; ///< same-different
 };
 
 /// Outcome of a study.
 struct compared {
-    std::optional<double> p = {}; ///< none: it cannot be tested
-    bool is_above = false;        ///< the mean is above what it is compared with
+    std::optional<double> p = {}; ///< missing if it cannot be tested
+    bool is_above = false;        ///< true if the mean is above the value compared with
 };
 
 using named_texts = std::vector<std::pair<std::string_view, std::string>>;
 
 class task {
 public:
-    /// A task as definitions and descriptions have it.
+    /// A task's texts for definitions and descriptions.
     struct facts {
         std::string_view name;
         std::string_view trial;    ///< kind of a trial
         std::string_view response; ///< meaning of its response; {} is the range of ratings
-        /// Usual questions about similarity, uniformity, another attribute; empty: none.
+        /// Usual questions about similarity, uniformity and other attributes; empty if there is none.
         std::array<std::string_view, 3> questions = {};
-        std::vector<std::string_view> keys = {}; ///< of [[run]], which only some tasks have
-        std::string_view column = {};            ///< of its tables alone; empty: none
+        std::vector<std::string_view> keys = {}; ///< keys of [[run]] that only some tasks have
+        std::string_view column = {};            ///< column that only its tables have; empty if none
     };
 
     virtual ~task() = default;
@@ -105,83 +106,90 @@ public:
     std::string_view name() const noexcept { return facts_.name; }
     const facts& about() const noexcept { return facts_; }
 
-    /// Reads of [[run]] what the analysis needs, after motions, methods, labels and choices.
-    /// \throws error (bad_input) with line and column, as the next two do.
+    /// Reads the parts of a [[run]] that the analysis needs. `r` must already have motions, methods, labels
+    /// and choices.
+    /// \throws error (bad_input) with line and column, as the next two functions do.
     virtual void read_outline(const detail::toml_table& t, run_definition& r) const;
-    /// Refuses a run, or a group's part of it, with too few motions or methods. `t`: the table to blame.
+    /// Throws error (bad_input) if a run, or a group's part of it, has too few motions or methods. `t`: table
+    /// named in the error.
     virtual void check(const detail::toml_table& t, const run_outline& o) const;
-    /// Reads what only a session needs.
+    /// Reads the parts that only a session needs.
     virtual void read(const detail::toml_table& t, run_definition& r) const;
-    /// Returns the words of both answers that a definition need not give; usually none.
+    /// Returns the default words of both answers; usually none.
     virtual std::vector<std::string> usual_choices(const page_words& w) const;
-    /// Returns the range of ratings as --dry-run has it; null without one.
+    /// Returns the range of ratings for --dry-run; null if there is none.
     virtual nlohmann::ordered_json scale(const run_outline& o) const;
 
     /// Lists the cells of a run: trials that differ in stimuli or their order.
     virtual std::vector<planned_trial> list_cells(const run_definition& r) const = 0;
-    /// Draws n trials: each cell equally often as far as n allows, in no order.
+    /// Draws n trials in no particular order: each cell equally often as far as n allows.
     virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                             random_numbers& numbers) const;
     virtual std::unique_ptr<value_chooser> choose_values(const run_definition& r) const;
 
-    /// Returns the answers to ask for. Usually two.
+    /// Returns the possible answers; usually two.
     virtual trial_answers ask(const run_definition& r, const page_words& w) const;
     /// Sets the cells of an answer in the row of its trial.
     virtual void take(trial_row& row, const run_definition& r, double answer) const;
-    /// Lists the responses of its tables that get a number each in [sync.codes]; empty: all have one number.
+    /// Lists the responses in its tables that have separate numbers in [sync.codes]; empty if all share a
+    /// number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
-    /// Names a response in the meaning of a code; empty: all responses have one number.
+    /// Returns the name of a response in the meaning of a code; empty if all responses share a number.
     virtual std::string name_response(const run_outline& o, std::string_view response) const;
 
     /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.
     virtual void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const = 0;
-    /// Sets what an answer says. `method_1`: name of the first stimulus' method in the table.
+    /// Sets the members of a trial that depend on its answer. `method_1`: name of the first stimulus' method
+    /// in the table.
     virtual void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const;
 
-    /// Prepares an observer. \throws error (bad_input) for a run that it cannot judge.
+    /// Prepares an observer. \throws error (bad_input) if it cannot judge the run.
     virtual void prepare(simulated_run& who) const;
-    /// Answers a trial as a person would: 1 or 2, the rating, the place of a motion in the run from 1, an
-    /// estimate.
+    /// Returns an observer's answer to a trial: 1 or 2, a rating, the place of a motion in the run from 1, or
+    /// an estimate.
     virtual double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const = 0;
 
     // Results.
 
-    /// Returns the cells of a run in which each trial is a value; usually nothing: the run measures figures.
+    /// Returns the cells of a run if each trial is a value; usually nothing, because the run measures
+    /// figures.
     virtual std::optional<cell_plan> plan_cells(const run_outline&) const { return {}; }
-    /// Lists a participant's values in a run: of each cell, or the figures, the main one first. Without
-    /// trials, their names.
+    /// Lists a participant's values in a run: a value for each cell, or the figures with the main one first.
+    /// Without trials lists only the names.
     virtual std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
                                              sigmoid kind) const;
-    /// Returns the rows of a run, after those of all runs. `people`: those with a trial in each cell.
+    /// Returns the rows of a run that follow the rows which all runs have. `people`: participants with a
+    /// trial in each cell.
     virtual std::vector<result> analyse(const run_outline& o, const run_people& people,
                                         sigmoid kind) const = 0;
-    /// Returns the methods by which response times are summarised, where a trial has one.
+    /// Lists the methods by which response times are summarised, if a trial has one method.
     virtual std::vector<std::string> list_timed_methods(const run_outline& o) const { return o.methods; }
     /// Tests whether the trial has no stimulus.
     virtual bool is_silent(const trial&) const { return false; }
 
     virtual main_comparison name_comparison(const run_outline& o) const = 0;
-    /// Returns a participant in the main comparison: usually with the main figure, or the mean of the last
-    /// method's cells.
+    /// Returns a participant's value for the main comparison: usually the main figure, or the mean of the
+    /// last method's cells.
     virtual compared_person compare(const run_outline& o, const std::vector<trial>& trials) const;
-    /// Tests the main comparison, usually by t. The text `seed` determines the draws.
+    /// Tests the main comparison, usually with a t test. `seed` determines random draws.
     virtual compared test(const run_outline& o, std::span<const compared_person> people,
                           std::string_view seed) const;
 
-    /// Lists the columns of --format tsv that only studies with such a run have.
+    /// Lists the columns of --format tsv that only studies with this task have.
     virtual std::vector<std::string_view> list_columns(const run_outline& o) const;
-    /// Returns the cells of a trial there that its task has: column and text. `own`: the run as the
-    /// participant's group has it.
+    /// Returns this task's cells of a trial in --format tsv: column and text. `own`: the run as the
+    /// participant's group does it.
     virtual named_texts describe_trial(const trial& t, const run_outline& own,
                                        const run_outline& whole) const;
-    /// Returns the model of a run for R. `grouped`: groups differ in it.
+    /// Returns the model of a run for R. `grouped`: the model has a factor for groups.
     virtual std::string model_in_r(const run_outline& o, bool grouped) const = 0;
 
     /// Describes a trial in the methods section.
     virtual std::string describe(const run_outline& o) const;
     /// Lists the sections of methods.md that a run needs.
     virtual std::vector<std::string_view> list_sections(const run_outline&) const { return {"has_cells"}; }
-    /// Describes how answers choose the values; usually empty. Sets `section` to the one that it needs.
+    /// Describes how answers determine the values; usually empty. Sets `section` to the section of methods.md
+    /// that it needs.
     virtual std::string describe_procedure(const run_definition&, std::string_view& section) const
     {
         section = {};
@@ -207,14 +215,14 @@ inline const task& task_in(const run_outline& o) noexcept
     return *o.task;
 }
 
-/// Returns the comparison of a figure with a value, if there is one.
+/// Returns the comparison of a figure with the value `against`, if any.
 main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against);
 
 /// Reads `task` of a [[run]]. \throws error (bad_input) with line and column.
 const task& read_task(const detail::toml_table& t);
 
-/// Lists answers from `lowest` on for a terminal: "1 (not at all) to 5 (exactly)", "1 yes, 2 no" if `named`;
-/// only the ends where `each` is false. `between`: the word between two.
+/// Lists answers from `lowest` on for a terminal: "1 (not at all) to 5 (exactly)", or "1 yes, 2 no" if
+/// `named`. Lists only the ends if `each` is false. `between`: word between two answers.
 std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,
                              std::string_view between);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of tasks, to which a new one adds a line, and what most of them have in common.
+// The list of tasks, to which a new task adds a line, and defaults that most tasks share.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -150,7 +150,7 @@ unsigned read_one_of_two(const text_table& t, std::size_t row)
 
 namespace {
 
-// Reads a value that the run has. Other programs round it: R to 15 digits.
+// Reads one of the run's values. Other programs may round it: R rounds to 15 digits.
 double read_value(const text_table& t, std::size_t row, const run_outline& o)
 {
     const auto value = t.number(row, "value");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Parts of tasks whose runs vary a value, or have two answers.
+/// Functions for tasks that vary a value or have two answers.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace tactor::study {
 
-// Keys of [[run]]. All throw error (bad_input) with line and column.
+// Read keys of [[run]]. All throw error (bad_input) with line and column.
 
-/// Reads `trials`, or `trials_per_value` where the run has values.
+/// Reads `trials`, or `trials_per_value` if the run has values.
 void read_trials(const detail::toml_table& t, run_outline& o);
 /// Reads `vary` and the standard. Returns the bounds of the values.
 detail::bounds read_vary(const detail::toml_table& t, run_outline& o);
@@ -26,32 +26,33 @@ detail::bounds read_vary(const detail::toml_table& t, run_outline& o);
 void read_values(const detail::toml_table& t, run_outline& o, const detail::bounds& b);
 /// Reads a list of numbers.
 std::vector<double> read_numbers(const detail::toml_table& t, std::string_view key, const detail::bounds& b);
-/// Reads numbers, or one of them.
+/// Reads a list of numbers, or one number.
 std::vector<double> read_one_or_more(const detail::toml_table& t, std::string_view key,
                                      const detail::bounds& b);
-/// Refuses blocks by methods in a run with two methods in a trial.
+/// Throws if a run has blocks by methods, but two methods in a trial.
 void refuse_method_blocks(const detail::toml_table& t, const run_outline& o);
-/// Refuses a method of a run whose name has another meaning in its tables.
+/// Throws if a method has the name `name`, which has another meaning in the run's tables.
 void refuse_method_name(const detail::toml_table& t, const run_outline& o, std::string_view name);
-/// Refuses a run that has neither the words of both answers nor a standard.
+/// Throws if a run has neither words for both answers nor a standard.
 void need_words(const detail::toml_table& t, const run_outline& o);
 
-/// Lists each motion by each method and each value. With a standard both orders, or the standard first.
+/// Lists a trial for each motion, method and value. With a standard lists both orders, or only the standard
+/// first.
 std::vector<planned_trial> list_value_cells(const run_definition& r, bool standard_first);
-/// Adds a trial with a comparison alone, or with the standard before and after it.
+/// Adds a trial with the comparison alone, or two trials with the standard before and after it.
 void add_comparison(std::vector<planned_trial>& cells, planned_trial t, const method_variants& v,
                     bool standard_first);
 
-// Rows of tables. All throw error (bad_input) with file and line.
+// Read rows of tables. All throw error (bad_input) with file and line.
 
-/// Returns the place of a cell's name in a list.
+/// Returns the index of a cell's name in a list.
 std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
                        const std::vector<std::string>& known);
 /// Reads the answer 1 or 2.
 unsigned read_one_of_two(const text_table& t, std::size_t row);
-/// Reads methods and value of a trial with a value, and perhaps a standard.
+/// Reads the methods and the value of a trial, which may have a standard.
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o);
-/// Reads an answer that stands in two columns, each by `read`.
+/// Reads an answer from two columns, which must agree, each with `read`.
 template <class Read>
 auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)
 {
@@ -65,20 +66,21 @@ auto read_twice(const text_table& t, std::size_t row, std::string_view column, c
     return own ? *own : *response;
 }
 
-/// Returns true if the comparison was chosen; without a standard, the second word.
+/// Returns true if the response is the comparison, or without a standard the second word.
 bool is_more(const run_outline& o, std::string_view method_1, unsigned response) noexcept;
 
 // Simulated observers.
 
-/// Returns true with the chance of the true psychometric function at a value.
+/// Returns true with the probability of the true psychometric function at a value.
 bool feels_more(const simulated_run& who, double value, random_numbers& r);
-/// Returns either key, in the share of trials in which an observer presses one without attention.
+/// Returns a random key in the share of trials in which an observer does not attend, else nothing.
 std::optional<double> lapse(const simulated_run& who, random_numbers& r);
 /// Answers a trial with a comparison by is_more().
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
-/// Refuses a run whose attribute an observer cannot judge; else finds the mean of its judgements.
+/// Throws error (bad_input) if an observer cannot judge the run's attribute; else computes the mean of its
+/// judgements.
 void prepare_judge(simulated_run& who);
-/// Returns a judgement of a stimulus: -ln of its cost, and noise.
+/// Returns a judgement of a stimulus: -ln of its cost, plus noise.
 double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r);
 
 } // namespace tactor::study
