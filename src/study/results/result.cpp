@@ -12,7 +12,7 @@
 namespace tactor::study {
 namespace {
 
-// Collects why figures of a run's rows are missing.
+// Collector of the reasons why figures in a run's rows are missing.
 class missing_figures {
 public:
     explicit missing_figures(const run_analysis& r) : run_(r)
@@ -110,10 +110,10 @@ public:
     void operator()(const exponents& v) { note(v); }
 
 private:
-    // A figure that some answers do not determine: by participant the conditions without it.
+    // A figure that some answers do not determine, with the conditions that lack it for each participant.
     struct undetermined {
         std::string figure;
-        std::size_t conditions = 0; // of all
+        std::size_t conditions = 0; // number of all conditions
         std::vector<std::pair<std::string, std::vector<std::string>>> whose = {};
     };
 
@@ -134,7 +134,7 @@ private:
             add(figure, "too many participants for the exact test");
     }
 
-    // Notes who lacks a figure, for one text about all conditions.
+    // Notes the participants who lack a figure, for one text about all conditions.
     template <class Person>
     void note(const measured<Person>& v)
     {

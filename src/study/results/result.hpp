@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// The results of a study: a list of rows for each run, in the order of tactor-analysis/1. Text, picture,
-/// JSON and report loop over the rows by the type of their values, and know no task.
+/// JSON and report treat rows by the type of their values, and do not depend on tasks.
 #pragma once
 
 #include <cstddef>
@@ -33,13 +33,13 @@ struct run_people {
     bool compares_groups = false;
 };
 
-/// A value of a participant, such as of the cell {METHOD, MOTION}, or the figure {"pse"}.
+/// A participant's value, for example of the cell {METHOD, MOTION} or the figure {"pse"}.
 struct named_value {
     std::vector<std::string> name;
     std::optional<double> value = {};
 };
 
-/// Mean over participants of a motion, or of all.
+/// Mean over participants for one motion or for all motions.
 struct cell_mean {
     std::string name;
     t_test test = {};
@@ -47,13 +47,13 @@ struct cell_mean {
     std::optional<double> p_holm = {};
 };
 
-/// Means of a method: "all", about the participants' unweighted means over motions, then each motion.
+/// Means of a method: first "all", for the participants' unweighted means over motions, then each motion.
 struct cell_means {
-    std::string method = {};            ///< empty: the run has no other row
+    std::string method = {};            ///< empty if the run has only one row
     std::string axis = {};              ///< title of an axis: "correct (%)"
-    std::optional<double> against = {}; ///< what guessing gives; none: not tested
-    interval possible = {};             ///< values that a mean may have
-    std::size_t rows = 1;               ///< of the run
+    std::optional<double> against = {}; ///< value expected from guessing; if missing, not tested
+    interval possible = {};             ///< possible range of a mean
+    std::size_t rows = 1;               ///< number of the run's rows
     std::vector<cell_mean> means = {};
 };
 
@@ -62,14 +62,14 @@ struct interval_share {
     t_test test;
 };
 
-/// The last method's mean over all motions less the first's.
+/// The last method's mean over all motions minus the first's.
 struct method_difference {
     std::string last;
     std::string first;
     t_test test;
 };
 
-/// Effects by name, as "group:motion"; none of a factor with one level.
+/// Effects by name, such as "group:motion". A factor with one level has no effect.
 struct effect_list {
     std::vector<std::pair<std::string, std::optional<effect>>> effects = {};
     bool of_groups = false;
@@ -77,7 +77,7 @@ struct effect_list {
 
 /// Tukey's comparisons of motions.
 struct tukey_list {
-    std::string method = {}; ///< empty: the run has no other list
+    std::string method = {}; ///< empty if the run has only one list
     std::vector<std::string> motions = {};
     std::vector<comparison> pairs = {};
 };
@@ -102,37 +102,37 @@ struct answer_counts {
     std::vector<std::vector<std::size_t>> counts = {};
 };
 
-/// Mean over participants of a figure that each has.
+/// Mean over participants of a figure.
 struct measured_figure {
     std::string name;
     t_test test = {};
-    std::optional<double> against = {}; ///< none: not tested
+    std::optional<double> against = {}; ///< if missing, not tested
 };
 
 /// A participant's psychometric function.
 struct fitted_function {
     std::vector<answer_block> blocks = {}; ///< answers by value, ascending
-    double guess = 0.0;                    ///< share of trials without a stimulus with a positive answer
+    double guess = 0.0;                    ///< share of positive answers in trials without a stimulus
     std::optional<psychometric_fit> fit = {};
     psychometric_bootstrap bootstrap = {};
-    std::optional<double> pse = {}; ///< of answers that compare: the threshold of the fit
-    std::optional<double> jnd = {}; ///< the same; none where the answers rise in one step
+    std::optional<double> pse = {}; ///< for comparisons: the threshold of the fit
+    std::optional<double> jnd = {}; ///< for comparisons; missing if the answers rise in one step
     std::optional<interval> jnd_ci = {};
 };
 
-/// Sensitivity with the rates that it is from, corrected: corrected_rate().
+/// Sensitivity with the corrected rates that it is computed from: see corrected_rate().
 struct detection {
     double hits = 0.0;
     double false_alarms = 0.0;
     sensitivity found = {};
-    difference_counts counts = {}; ///< of the answers; detect: to a stimulus and to none
+    difference_counts counts = {}; ///< counts of answers; detect: with a stimulus and without
 };
 
 /// Estimates of one value.
 struct value_estimate {
     double value = 0.0;
-    double ratio = 1.0; ///< of the geometric mean of its estimates to that of all values
-    std::size_t n = 0;  ///< estimates
+    double ratio = 1.0; ///< geometric mean of its estimates, relative to that of all values
+    std::size_t n = 0;  ///< number of estimates
 };
 
 struct fitted_exponent {
@@ -140,25 +140,25 @@ struct fitted_exponent {
     std::vector<value_estimate> estimates = {}; ///< by value, ascending; empty without an exponent
 };
 
-/// Participants in one condition, METHOD:MOTION, or in all trials, where its name is empty. The main figure
-/// is the first.
+/// Participants in one condition, METHOD:MOTION, or in all trials if `condition` is empty. The first figure
+/// is the main one.
 template <class Person>
 struct measured {
     std::string condition = {};
     std::vector<std::string> codes = {};
     std::vector<Person> people = {}; ///< by code
     std::vector<measured_figure> figures = {};
-    std::vector<std::vector<std::optional<double>>> values = {}; ///< of the figures, by participant
+    std::vector<std::vector<std::optional<double>>> values = {}; ///< values of the figures, by participant
 };
 
 struct psychometric_functions : measured<fitted_function> {
     psychometric_family family = {}; ///< without a guess
     bool on_db_axis = false;         ///< the values are levels in dB
-    std::string axis = {};           ///< of the answers: "felt (%)"
+    std::string axis = {};           ///< title of the axis of answers: "felt (%)"
 };
 
 struct sensitivities : measured<std::optional<detection>> {
-    std::optional<difference_test> ratio = {}; ///< in place of t and p
+    std::optional<difference_test> ratio = {}; ///< replaces t and p
 };
 
 struct exponents : measured<fitted_exponent> {};
@@ -169,44 +169,44 @@ using result_value = std::variant<std::monostate, std::string, double, cell_mean
 
 /// A row of a run's results.
 struct result {
-    std::vector<std::string> at; ///< place in the run's JSON, as {"correct", METHOD}
-    std::string heading = {};    ///< of its table; empty: it has none
-    result_value value = {};     ///< monostate: null
-    bool is_main = false;        ///< it begins with the run's main figure
+    std::vector<std::string> at; ///< place in the run's JSON, such as {"correct", METHOD}
+    std::string heading = {};    ///< heading of its table; empty if it has none
+    result_value value = {};     ///< monostate is null in JSON
+    bool is_main = false;        ///< true if it begins with the run's main figure
 };
 
-/// Response times: the median of the participants' medians, each of the times that were recorded. Nothing
-/// where there is none.
+/// Response times: median of the participants' medians over their recorded times. Missing without recorded
+/// times.
 struct response_times {
-    std::optional<double> median_s = {}; ///< of all trials
-    /// The same for each condition: MOTION, or METHOD:MOTION where a trial has one stimulus.
+    std::optional<double> median_s = {}; ///< median over all trials
+    /// Medians by condition: MOTION, or METHOD:MOTION if a trial has one stimulus.
     std::vector<std::pair<std::string, std::optional<double>>> by = {};
 };
 
 struct run_analysis {
     run_outline run;
-    std::size_t n = 0;                  ///< participants with a trial that counts in each cell
-    std::vector<left_out> missing = {}; ///< have trials that are not in the figures
-    std::size_t trials = 0;             ///< that count, of the n
-    std::size_t voids = 0;              ///< of everybody who was selected
-    std::size_t early = 0;              ///< answers marked early, of the same; they count
-    response_times times = {};          ///< of the n
-    /// Group of the participants, whose name is in that of `run`, too. Empty: those whose group has all of
-    /// it.
+    std::size_t n = 0;                  ///< number of participants with a valid trial in each cell
+    std::vector<left_out> missing = {}; ///< participants whose trials are not in the figures
+    std::size_t trials = 0;             ///< number of valid trials of these n
+    std::size_t voids = 0;              ///< number of void trials of all selected participants
+    std::size_t early = 0;              ///< number of early answers of all selected participants; they count
+    response_times times = {};          ///< response times of the n
+    /// Group of the participants; the name of `run` has it, too. Empty for the participants whose group does
+    /// the whole run.
     std::string group = {};
     std::string whole = {}; ///< name of the run without the group
     std::vector<result> results = {};
 };
 
 struct analysis {
-    std::string experiment; ///< its name
+    std::string experiment; ///< name of the experiment
     std::size_t participants = 0;
     bool simulated = false;
-    std::vector<left_out> excluded = {}; ///< by whoever asked for the analysis
-    /// Results of everybody, then of each group those of the runs that it has.
+    std::vector<left_out> excluded = {}; ///< participants who are not selected
+    /// Results of everybody, then the results of each group in the runs that it does.
     std::vector<run_analysis> runs = {};
     std::vector<std::string> warnings = {};   ///< about files and participants
-    std::vector<std::string> no_figures = {}; ///< why figures are missing
+    std::vector<std::string> no_figures = {}; ///< reasons for missing figures
 };
 
 /// Lists the values of a type among results, in order.
@@ -223,16 +223,16 @@ std::vector<const T*> list_values(const std::vector<result>& results)
 /// Returns the row with the run's main figure; null if it has none.
 const result* find_main(const std::vector<result>& results) noexcept;
 
-/// Tests whether a value has figures to show in a table.
+/// Returns true if a value has figures to show in a table.
 bool has_table(const result_value& v);
 
-/// Says why figures of a run are missing, each as "RUN: FIGURE: WHY".
+/// Lists the reasons why figures of a run are missing, each as "RUN: FIGURE: WHY".
 std::vector<std::string> explain_missing(const run_analysis& r);
 
-/// Limits of a mean of per cents.
+/// Range of a mean in per cent.
 inline constexpr interval per_cents{0.0, 100.0};
 
-/// Cuts an interval from t, which knows no bounds of the values, to what is possible.
+/// Cuts a t interval, which may exceed the range of the values, to the possible range.
 interval cut_to(const interval& i, const interval& possible);
 
 } // namespace tactor::study

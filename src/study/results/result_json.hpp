@@ -14,7 +14,7 @@ namespace tactor::study {
 /// Returns an object with the schema tactor-analysis/1.
 nlohmann::ordered_json make_analysis_json(const analysis& a);
 
-// Return parts of it.
+// Return parts of this object.
 nlohmann::ordered_json value_json(const result_value& v);
 nlohmann::ordered_json times_json(const response_times& t);
 nlohmann::ordered_json left_out_json(const std::vector<left_out>& all);
