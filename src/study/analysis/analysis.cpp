@@ -52,7 +52,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         r.voids += own.voids;
         r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
         if (find_run(d, i, which) != r.run)
-            continue; // the results of the group have it
+            continue; // the results of the group have these participants
         if (own.trials.empty() || (plan && !compute_cells(r.run, *plan, own.trials))) {
             r.missing.push_back({d.participants[i], own.trials.empty()
                                                         ? "no trial counts"
@@ -81,7 +81,7 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
     }
 }
 
-// Adds the results of everybody, or of a group.
+// Adds the results of everybody or of a group.
 void add_results(analysis& a, const dataset& d, const std::string& group, sigmoid kind)
 {
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The analysis of a study, run by run, as values.
+/// The analysis of a study, run by run.
 #pragma once
 
 #include <string>
@@ -11,10 +11,11 @@
 
 namespace tactor::study {
 
-/// Tests whether two groups or more have all of a run: of others the group cannot be told from what it lacks.
+/// Returns true if two or more groups do the whole run. For other groups the effect of the group cannot be
+/// separated from the parts that it lacks.
 bool has_groups(const run_outline& run, const std::vector<group_outline>& groups);
 
-/// `kind`: of the psychometric functions.
+/// Analyses a study. `kind`: shape of the psychometric functions.
 analysis analyse(const dataset& d, sigmoid kind = sigmoid::normal);
 
 /// Returns the name of the results of a group in a run.

@@ -24,7 +24,7 @@ cell_table lay_out_cells(const std::vector<cell_values>& all, std::size_t from_r
     return t;
 }
 
-// Tests all participants' values in one row of cells, by motion, and their means over motions.
+// Tests all participants' values in one row of cells by motion, and their means over motions.
 std::vector<cell_mean> test_row(const std::vector<cell_values>& all, std::size_t row,
                                 const std::vector<std::string>& motions, double against)
 {
@@ -41,14 +41,14 @@ std::vector<cell_mean> test_row(const std::vector<cell_values>& all, std::size_t
         one.test = test_mean(one.values, against);
         p.push_back(one.test.p);
     }
-    p.erase(p.begin()); // that of all
+    p.erase(p.begin()); // p of "all"
     p = holm(p);
     for (std::size_t m = 0; m < motions.size(); ++m)
         means[m + 1].p_holm = p[m];
     return means;
 }
 
-// Adds the intervals within participants: of all cells together, and of the rows' means.
+// Adds the within-participant intervals of all cells together and of the rows' means.
 void add_within_intervals(std::vector<cell_means>& rows, const std::vector<cell_values>& all,
                           std::size_t motions, double rounding)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Results of a task in which each trial is a value of a cell: of a method, or both, and a motion.
+/// Results of a task in which each trial is a value of a cell: a motion with one method, or with both.
 #pragma once
 
 #include <cstddef>
@@ -17,28 +17,28 @@ namespace tactor::study {
 /// Values by row (method; one row for choose between two) and motion.
 using cell_values = std::vector<std::vector<double>>;
 
-/// Cells of a run, with what makes values of trials.
+/// Cells of a run, with the function that computes values from trials.
 struct cell_plan {
-    std::vector<std::string> methods = {}; ///< of the rows
+    std::vector<std::string> methods = {}; ///< methods of the rows
     /// Lists the rows that a trial is in, each with its value.
     std::function<std::vector<std::pair<std::size_t, double>>(const trial&)> score = {};
     interval possible = per_cents;
-    std::optional<double> against = {}; ///< what guessing gives; none: means are not tested
+    std::optional<double> against = {}; ///< value expected from guessing; if missing, means are not tested
     std::string axis = {};
 
-    /// Returns the largest difference of the values that rounding may leave of 0.
+    /// Returns the largest difference between equal values that rounding may leave.
     double rounding() const noexcept { return few_digits * possible.second; }
 };
 
-/// Returns a participant's values. Nothing if a cell has no trial.
+/// Returns a participant's values; nothing if a cell has no trial.
 std::optional<cell_values> compute_cells(const run_outline& run, const cell_plan& plan,
                                          const std::vector<trial>& trials);
 
-/// Lists the values by METHOD and MOTION; without values if a cell has no trial.
+/// Lists the values by METHOD and MOTION. Lists only the names if a cell has no trial.
 std::vector<named_value> list_cell_values(const run_outline& run, const cell_plan& plan,
                                           const std::vector<trial>& trials);
 
-/// Returns the values of all participants, of whom none lacks a cell.
+/// Returns the values of all participants. \pre Each participant has a trial in each cell.
 std::vector<cell_values> compute_all_cells(const run_outline& run, const cell_plan& plan,
                                            const run_people& people);
 
@@ -46,7 +46,7 @@ std::vector<cell_values> compute_all_cells(const run_outline& run, const cell_pl
 std::vector<cell_means> test_cells(const run_outline& run, const cell_plan& plan,
                                    const std::vector<cell_values>& all);
 
-/// Computes the effects of motions, and with `methods` those of methods and of both together.
+/// Computes the effects of motions; if `methods`, also the effects of methods and of both together.
 effect_list list_effects(const run_outline& run, const std::vector<cell_values>& all, bool methods);
 
 /// Compares the motions of a row by Tukey's test.
@@ -55,11 +55,11 @@ tukey_list compare_by_tukey(const std::vector<cell_values>& all, std::size_t row
 /// Compares the motions of a row by paired t tests.
 paired_list compare_in_pairs(const cell_means& means, double rounding);
 
-/// Adds the groups' mixed analysis of variance, if they are compared. `all`: cells of these participants.
+/// Adds the mixed analysis of variance of groups, if groups are compared. `all`: cells of `people`.
 void add_groups(std::vector<result>& results, const run_outline& run, const run_people& people,
                 const std::vector<cell_values>& all, bool methods);
 
-/// Adds the same of one value of each participant, who may lack it.
+/// Adds the same analysis of one value per participant, which may be missing.
 void add_groups(std::vector<result>& results, const run_people& people,
                 const std::vector<std::optional<double>>& values);
 

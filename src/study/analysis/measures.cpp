@@ -29,7 +29,7 @@ std::vector<answer_block> make_blocks(const std::vector<trial>& trials)
     return blocks;
 }
 
-// Counts positive answers, to a signal and without one.
+// Counts positive answers with and without a signal.
 difference_counts count_positive(const std::vector<trial>& trials)
 {
     const auto count = [&](bool signal, bool positive) {

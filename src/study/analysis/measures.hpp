@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Figures that a task measures in a participant's trials: a psychometric function, d', or the exponent of
+/// Figures that a task measures from a participant's trials: a psychometric function, d', or the exponent of
 /// magnitude estimates.
 #pragma once
 
@@ -16,53 +16,55 @@
 
 namespace tactor::study {
 
-/// Fits a function to answers. The family's guess is the share of trials without a stimulus with a positive
-/// answer. The bootstrap draws from `seed`; empty: there is none.
+/// Fits a function to answers. Its guess rate is the share of positive answers in trials without a stimulus.
+/// `seed` seeds the bootstrap; if it is empty, there is no bootstrap.
 fitted_function fit_answers(const std::vector<trial>& trials, psychometric_family family,
                             std::string_view seed);
 
-/// Fits the function of answers that compare, with pse and jnd.
+/// Fits the function of comparisons, with pse and jnd.
 fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, std::string_view seed);
 
-/// Returns the rates of positive answers with a signal and without one; nothing where one of them has no
-/// trial. `model`: computes d' from both.
+/// Returns the rates of positive answers with and without a signal; nothing if either has no trial. `model`
+/// computes d' from both rates.
 std::optional<detection> measure_detection(const std::vector<trial>& trials,
                                            sensitivity (*model)(double hits, double false_alarms));
 
 fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials);
 
-/// Returns the ratio of the sizes of two values: of the amplitudes, if they are levels in dB.
+/// Returns the ratio of two values; for levels in dB, the ratio of their amplitudes.
 double size_ratio(const run_outline& run, double value, double to) noexcept;
 
-/// Trials of one condition, METHOD:MOTION, or all trials, where its name is empty.
+/// Trials of one condition, METHOD:MOTION, or all trials if the name is empty.
 struct condition_trials {
     std::string name;
     std::vector<std::vector<trial>> people = {}; ///< by participant
 };
 
-/// Returns all trials, and then those of each condition, if there are several. A trial without a stimulus is
-/// in those of its motion. `methods`: of the run, if conditions are of a method.
+/// Returns all trials, and then the trials of each condition, if there are several. A trial without a
+/// stimulus belongs to all conditions of its motion. `methods`: the run's methods, if conditions depend on
+/// the method.
 std::vector<condition_trials> split_conditions(const run_outline& run, const run_people& people,
                                                const std::vector<std::string>& methods);
 
-/// Begins the results of a task that measures, whose main figure is tested against a value, if any.
+/// Returns the first results of a task that measures figures. `against`: value that the main figure is tested
+/// against, if any.
 std::vector<result> begin_measured(const run_outline& run, std::optional<double> against);
 
-/// Returns the row of a condition. `name`: of its kind in JSON.
+/// Returns the row of a condition. `name`: name of this kind of row in JSON.
 result make_row(const condition_trials& c, std::string_view name, std::string_view heading,
                 result_value value);
 
 /// Returns the seed of a participant's draws in a condition.
 std::string make_seed(const run_outline& run, const condition_trials& c, std::string_view code);
 
-/// Lists figures of a participant, the main one first: pse and jnd; the threshold; d' and c; the exponent.
+/// List a participant's figures, the main figure first: pse and jnd; the threshold; d' and c; the exponent.
 std::vector<named_value> list_pse(const fitted_function& f);
 std::vector<named_value> list_threshold(const fitted_function& f);
 std::vector<named_value> list_sensitivity(const std::optional<detection>& d);
 std::vector<named_value> list_exponent(const fitted_exponent& e);
 
-/// Measures each participant in a condition, by `fit(trials, code)`, and tests the figures that `list` lists.
-/// `against`: of the main one.
+/// Measures each participant in a condition with `fit(trials, code)`, and tests the figures that `list`
+/// lists. `against`: value for the test of the main figure.
 template <class Values, class Fit, class Figures>
 Values measure_people(Values v, const condition_trials& c, const run_people& people,
                       std::optional<double> against, const Fit& fit, const Figures& list)
@@ -97,8 +99,8 @@ std::vector<std::optional<double>> list_main(const measured<Person>& v)
     return all;
 }
 
-/// Analyses all trials of a run and then each condition: a row with what `make(condition)` measures, and the
-/// groups compared by the main figure of all trials. `methods`: as split_conditions() takes them.
+/// Analyses all trials of a run and then each condition. Makes a row for each with `make(condition)`, and
+/// compares groups by the main figure of all trials. `methods`: as for split_conditions().
 template <class Make>
 std::vector<result> analyse_conditions(const run_outline& run, const run_people& people,
                                        const std::vector<std::string>& methods, std::optional<double> against,
@@ -117,7 +119,7 @@ std::vector<result> analyse_conditions(const run_outline& run, const run_people&
     return rows;
 }
 
-/// Analyses a run whose answers compare two stimuli, or judge one by two words.
+/// Analyses a run whose answers compare two stimuli or judge one stimulus with two words.
 std::vector<result> analyse_comparisons(const run_outline& run, const run_people& people, sigmoid kind);
 
 } // namespace tactor::study

@@ -9,7 +9,7 @@
 
 namespace tactor::study {
 
-/// Family of answers that say which of two is more.
+/// Family for answers that choose one of two.
 inline constexpr const char* probit = "family = binomial(\"probit\"), ";
 
 /// Parts of a model that depend on the task.
@@ -17,23 +17,23 @@ struct r_model {
     std::string response;    ///< "lmer(rating"
     std::string family = {}; ///< "family = binomial, "
     std::string first = {};  ///< a term before the people: "order + "
-    std::string slope = {};  ///< what the run is about: a value, or whether there was a signal
-    bool by_method = true;   ///< a trial has one method
+    std::string slope = {};  ///< the variable of interest: a value, or the presence of a signal
+    bool by_method = true;   ///< true if a trial has one method
 };
 
-/// Returns the model. Motion and group are factors, and method, where there are several. People differ in
-/// what is asked about, too: without its slope for each of them, such a difference passes for an effect of
-/// all. Nothing of the stimuli is taken to be a sample.
+/// Returns the model. Motion, group and method are factors if there are several. Each participant has a slope
+/// for the variable of interest: without it, a difference between participants would look like a common
+/// effect. Stimuli have no random effects.
 std::string write_model(const run_outline& run, bool grouped, const r_model& m);
 
 /// Returns motion, group or both as a term; "1" for neither.
 std::string list_factors(const run_outline& run, bool grouped);
 
-/// Returns the values of a run less the standard, or the middle of them: effects of methods and groups are
-/// those there. Empty where nothing varies.
+/// Returns the term for the values of a run minus the standard or the middle value, so that effects of
+/// methods and groups refer to that value. Empty if nothing varies.
 std::string write_value(const run_outline& run);
 
-/// Returns a text as R reads it.
+/// Returns a text in the quotes of R.
 std::string quote(const std::string& text);
 
 } // namespace tactor::study

@@ -14,7 +14,7 @@
 namespace tactor::study {
 namespace {
 
-// A participant's trials of a run: as planned, and as the analysis has them.
+// A participant's trials of a run: as planned, and as the analysis reads them.
 struct person_run {
     std::string code;
     std::vector<planned_trial> planned = {};
@@ -51,7 +51,7 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
     return all;
 }
 
-// Fills the answers in; a trial that is void comes again until it is not.
+// Adds the answers. A void trial comes again until it is valid.
 void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
                 const run_definition& r)
 {
@@ -72,8 +72,8 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
     }
 }
 
-// Tests one study by its first participants. One without a value lacks a cell and is left out, as in the
-// analysis.
+// Tests one study with its first n participants. Leaves out a participant without a value, who lacks a cell,
+// as the analysis does.
 void count_study(power_at& at, std::span<const compared_person> people, const run_outline& run,
                  std::string_view seed)
 {

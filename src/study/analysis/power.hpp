@@ -17,32 +17,32 @@ struct power_request {
     simulation observer = {};
     std::vector<std::size_t> participants = {}; ///< sample sizes to simulate, each at least 2
     std::size_t studies = 200;
-    std::optional<std::uint64_t> seed = {}; ///< of the orders; none: the definition's, or the codes'
-    std::size_t part = 1;                   ///< from 1
-    std::size_t parts = 1;                  ///< into which the studies are divided, in their order
+    std::optional<std::uint64_t> seed = {}; ///< seed of the orders; default: as in a session
+    std::size_t part = 1;                   ///< number of the part to simulate, from 1
+    std::size_t parts = 1;                  ///< number of parts that divide the studies in order
 };
 
 /// Level of significance: a smaller p is significant.
 inline constexpr double significant_p = 0.05;
 
-/// Outcomes of studies with so many participants.
+/// Outcomes of studies with one number of participants.
 struct power_at {
     std::size_t participants = 0;
     std::size_t significant = 0; ///< studies with p < 0.05, two-sided
-    std::size_t for_last = 0;    ///< of these, those in which the last method was better
-    std::size_t untested = 0;    ///< without a test: nobody differed from anybody
+    std::size_t for_last = 0;    ///< number of these in which the last method was better
+    std::size_t untested = 0;    ///< studies without a test, because all participants are equal
 };
 
 struct run_power {
     std::size_t run = 0; ///< index in the definition
-    /// By sample size; empty for ratings of one method, where there is nothing to compare.
+    /// Outcomes by sample size; empty for ratings of one method, which have no comparison.
     std::vector<power_at> at = {};
 };
 
-/// Simulates the studies of the part and tests each. Study k (from 0) has the participants 01, 02, ... whose
-/// observers have the seed of `observer` plus k, and hold all sessions. A study of n has the first n
+/// Simulates and tests each study of the part. Study k (from 0) has the participants 01, 02, ..., each with
+/// all sessions and an observer whose seed is that of `observer` plus k. A study of n consists of the first n
 /// participants of a larger one. Void trials come again. Calls `go_on` before each study, and returns nothing
-/// if it returns false. \throws error (bad_input) as simulated_observer does.
+/// if `go_on` returns false. \throws error (bad_input) as simulated_observer does.
 std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
                                                      const stimulus_set& stimuli, const power_request& r,
                                                      const std::function<bool()>& go_on);
