@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Parts of the report's facts that several of its files use: those about stimuli are made in stimuli.cpp.
+/// Parts of the report's facts that several files use. stimuli.cpp defines the parts about stimuli.
 #pragma once
 
 #include <set>
@@ -31,10 +31,10 @@ inline std::string list_subjects(const std::vector<std::string>& codes)
 
 std::string describe_carrier(const session_facts& s);
 
-/// Tests whether any recorded stimulus has bursts.
+/// Returns true if any recorded stimulus has bursts.
 bool has_bursts(const session_facts& s);
 
-/// Lists the methods of the definition that were played, in the order in which they came.
+/// Lists the methods of the definition that were played, in the order in which they first came.
 nlohmann::ordered_json list_methods(const study_facts& f);
 
 /// Lists the plans of each motion by each method, each plan once with its values. If an option has more than

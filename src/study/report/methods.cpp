@@ -96,7 +96,7 @@ bool is_simulated(const session_facts& s)
     return s.facts()["simulated"].truth().value_or(false);
 }
 
-// Returns what the openings of the device have under a key, each once.
+// Returns the different values that the openings of the device have under a key.
 std::string stream_text(const session_facts& s, const std::string& key)
 {
     std::set<std::string> seen;
@@ -169,7 +169,7 @@ json tabulate_thresholds(const study_facts& f)
     return columns.empty() ? json(false) : json{{"numbers", numbers}, {"rows", rows}};
 }
 
-// Cuts the intervals of means to the values that a mean may have: one from t knows no bounds.
+// Cuts the intervals of means to the possible range, because t intervals may exceed it.
 void cut_intervals(json& results, const interval& possible)
 {
     if (const auto ci = results.find("ci"); ci != results.end() && ci->is_array())
@@ -180,7 +180,7 @@ void cut_intervals(json& results, const interval& possible)
             cut_intervals(inner, possible);
 }
 
-// Returns a result as methods.md has it, under the name of its kind.
+// Converter of a result to the facts of methods.md, under the name of its kind.
 class row_facts {
 public:
     explicit row_facts(const result& r) : all_(value_json(r.value))
@@ -219,7 +219,7 @@ public:
                 {{"name", m}, {"log_worth", all_.at("log_worth").at(m)}, {"se", all_.at("se").at(m)}});
         all_["rows"] = std::move(rows);
     }
-    // Only the main figure is tested, if there is something against which.
+    // Only the main figure is tested, and only if there is a value to test against.
     void operator()(const psychometric_functions& v)
     {
         kind_ = "psychometric";
@@ -270,7 +270,8 @@ std::string days_text(const session_facts& s)
     return days.empty() ? not_recorded : join(days);
 }
 
-// Returns what the template says of a session's definition; no members: the defaults of another program.
+// Returns the facts about a session's definition; empty if another program wrote it, which may have other
+// defaults.
 json describe_design(const session_facts& s)
 {
     if (!s.design)
@@ -292,7 +293,7 @@ json describe_design(const session_facts& s)
     return all;
 }
 
-// Returns what the template says of a session: what its file has, and what was so.
+// Returns the facts about a session, from its file and its trials.
 json describe_session(const session_facts& s)
 {
     const json_value from = s.facts();
@@ -362,7 +363,7 @@ json describe_session(const session_facts& s)
     return row;
 }
 
-// Returns what the template says of a run in a session. `sections`: gets what its procedure needs.
+// Returns the facts about a run in a session. Adds the sections that its procedure needs to `sections`.
 json describe_run(const session_facts& s, std::size_t run, std::set<std::string_view>& sections)
 {
     if (!s.design)
@@ -385,13 +386,13 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
             {"min_response_s", r.min_response_s}};
 }
 
-// Tests whether any row has a value under a key that is not empty.
+// Returns true if any row has a value under a key that is not empty.
 bool any_has(const json& rows, const char* key)
 {
     return std::ranges::any_of(rows, [key](const json& row) { return row.value(key, json("")) != ""; });
 }
 
-// Returns what the template says of a run. `each`: what it says of the run in each session.
+// Returns the facts about a run. `each`: facts about the run in each session.
 json describe_outline(const run_outline& o, json each)
 {
     const std::vector<std::string_view> sections = task_in(o).list_sections(o);

@@ -100,7 +100,7 @@ std::size_t count_answers(const fs::path& folder, const questionnaire& q, const 
             ++count;
             for (const questionnaire_item& item : q.items)
                 if (item.kind != item_kind::text && t.has(item.name))
-                    t.whole(i, item.name, item.lowest, item.greatest); // refuses what cannot be answered
+                    t.whole(i, item.name, item.lowest, item.greatest); // throws for an impossible answer
         }
     return count;
 }
@@ -156,7 +156,8 @@ std::string render_text(const std::string& text, const mustache::data& facts)
     return section.render(facts);
 }
 
-// Facts of a study as data for the template. Its sections belong to it.
+// Data of the template, made from the facts of a study. Its sections refer to this object, which cannot be
+// copied.
 class template_data {
 public:
     explicit template_data(const nlohmann::ordered_json& facts)
@@ -172,8 +173,9 @@ public:
     std::string fill_in(const std::string& text) const { return render_text(text, all_); }
 
 private:
-    // Returns a value. An object also has a `list` of its members: each has its name, and its value if the
-    // value is plain. Two numbers with fractions are an interval. Null is false: no section, and no text.
+    // Converts a value. An object also gets a `list` of its members, each with its name, and with its value
+    // if it is plain. Two numbers with fractions become an interval. Null becomes false, which gives no
+    // section and no text.
     mustache::data make(const nlohmann::ordered_json& v, int digits) const
     {
         if (v.is_null())
@@ -272,7 +274,7 @@ private:
     mustache::data all_{mustache::data::type::object};
 };
 
-// Keeps one of several empty lines in a row, which sections without a fact leave.
+// Reduces several empty lines in a row, which sections without facts leave, to one.
 std::string without_gaps(const std::string& text)
 {
     std::string out;

@@ -96,16 +96,16 @@ std::string_view methods_template() noexcept;
 /// Returns a name or text from a file on one line, with Markdown's own characters escaped.
 std::string escape_markdown(std::string_view text);
 
-/// Returns a template of Mustache with [[ and ]], filled in with facts. Its sections `each` are filled in for
-/// each of the sessions with the session's own facts: what all have once, others with their sessions, and
-/// "not recorded" for what is empty or only blanks and punctuation. So are sections `alike`, but one below
-/// the other, each with its sessions as `who`.
+/// Returns a template of Mustache with [[ and ]], filled in with facts. Its sections `each` are filled in
+/// with the facts of each session. A text that all sessions share appears once, and other texts appear with
+/// their sessions. A text that is empty or has only blanks and punctuation becomes "not recorded". Sections
+/// `alike` are filled in in the same way, but one below the other, each with its sessions as `who`.
 std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts);
 
 /// Returns the days from the start of each session to the start of the participant's next session.
 std::string between_text(const study_facts& f);
 
-/// Returns the least and the largest value, or the only one; "not recorded" without values.
+/// Returns the smallest and the largest value, or the only value; "not recorded" without values.
 std::string range_text(const std::vector<double>& values);
 
 /// Returns the options of a method by name, including those that have the plan's defaults: "algorithm

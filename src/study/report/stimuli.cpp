@@ -56,7 +56,7 @@ std::string describe_sound(const planned_stimulus& p)
     return text;
 }
 
-// Tests whether a name is that of a method; else it stands for a standard, or for silence.
+// Returns true if a name is that of a method. Other names stand for a standard or for silence.
 bool is_method(const session_facts& s, const std::string& name)
 {
     return !s.design || std::ranges::any_of(s.design->methods, [&](const method_definition& m) {
@@ -64,7 +64,7 @@ bool is_method(const session_facts& s, const std::string& name)
     });
 }
 
-// Returns the option whose value a stimulus has; empty: none.
+// Returns the option that a stimulus varies; empty if none.
 std::string find_varied(const session_facts& s, const planned_stimulus& p)
 {
     if (p.value && s.design)
@@ -81,9 +81,9 @@ std::string find_varied(const session_facts& s, const planned_stimulus& p)
 
 // Plans that are shown in one row.
 struct stimulus_row {
-    std::map<std::string, std::set<double>> values = {}; // by option
-    std::vector<const planned_stimulus*> plans = {};     // different ones
-    std::vector<std::string> codes = {};                 // of the participants
+    std::map<std::string, std::set<double>> values = {}; // values by option
+    std::vector<const planned_stimulus*> plans = {};     // different plans
+    std::vector<std::string> codes = {};                 // codes of the participants
 };
 
 json describe_stimuli(const stimulus_row& row)
@@ -177,7 +177,7 @@ nlohmann::ordered_json list_methods(const study_facts& f)
 
 nlohmann::ordered_json list_stimuli(const study_facts& f)
 {
-    constexpr std::size_t most_values = 12;   // of an option in rows of their own
+    constexpr std::size_t most_values = 12;   // greatest number of values of an option with separate rows
     using place = std::array<std::string, 3>; // motion, method, and an option or a plan
     std::map<place, std::set<double>> values;
     for (const session_facts& s : f.sessions)
