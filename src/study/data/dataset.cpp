@@ -91,7 +91,7 @@ error selection_error(std::string_view option, std::string_view why, std::string
     return error(error_kind::bad_input, option, why, hint).with_field(option);
 }
 
-// Returns the code that an option names, without sub-.
+// Returns the code that an option names, without "sub-". Throws error (bad_input) if no participant has it.
 std::string find_code(const std::vector<std::string>& known, const std::string& wanted,
                       std::string_view option)
 {
@@ -102,7 +102,7 @@ std::string find_code(const std::vector<std::string>& known, const std::string& 
     return code;
 }
 
-// Returns the selected codes; adds the others to `excluded`.
+// Returns the selected codes, and adds the others to `excluded`.
 std::vector<std::string> select(const std::vector<std::string>& known, const selection& who,
                                 std::vector<left_out>& excluded)
 {

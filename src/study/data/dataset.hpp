@@ -43,7 +43,7 @@ struct run_outline {
     unsigned scale = 5;                    ///< rate: the highest rating
     bool visual = false;                   ///< rate: a visual analogue scale, without numbers
     std::string vary = {};           ///< name of the option or stroke parameter that changes; empty if none
-    bool on_db_axis = false;         ///< the values are levels in dB
+    bool on_db_axis = false;         ///< true if the values are levels in dB
     std::vector<double> values = {}; ///< values of `vary`, ascending
     std::optional<double> standard = {}; ///< value of the stimulus to compare with, if a trial has one
     bool catches = false;                ///< detect: some trials have no stimulus
@@ -65,8 +65,8 @@ inline constexpr std::size_t most_estimate_characters = 12;
 std::optional<double> read_estimate(std::string_view text) noexcept;
 
 // Names that stand for special stimuli in the method columns, in place of a method of the definition.
-inline constexpr std::string_view standard_name = "standard"; ///< the stimulus with the standard's value
-inline constexpr std::string_view catch_name = "none";        ///< a trial without a stimulus
+inline constexpr std::string_view standard_name = "standard"; ///< stimulus with the standard's value
+inline constexpr std::string_view catch_name = "none";        ///< trial without a stimulus
 
 /// A group of participants. A run that the group does not do has no motions.
 struct group_outline {
@@ -158,7 +158,7 @@ struct trial_row {
     unsigned stream = 0; ///< number of the opening of the device, from 1
     std::optional<std::uint64_t> frame_1 = {};
     std::optional<std::uint64_t> frame_2 = {};
-    std::string plan_1 = {}; ///< SHA-256
+    std::string plan_1 = {}; ///< SHA-256 of the first stimulus' plan
     std::string plan_2 = {};
 };
 
@@ -166,8 +166,8 @@ struct trial_row {
 enum class column_use {
     analysis, ///< the analysis of every task, and sessions that resume
     session,  ///< sessions that resume, and the analysis of tasks that use it
-    nobody,   ///< no part; tables of older versions lack it
-    some,     ///< no part; tables have it only if the study has values for it
+    nobody,   ///< nothing needs it; tables of older versions lack it
+    some,     ///< nothing needs it; tables have it if the study has values for it
     values,   ///< the analysis of runs that vary a value; other runs lack it
     own,      ///< the analysis of one task, and sessions that resume; other tasks lack it
 };
@@ -182,7 +182,7 @@ struct trial_column {
                  std::optional<bool> trial_row::*>
         member;
     column_use use = column_use::session;
-    unsigned least = 0; ///< smallest value of a whole number
+    unsigned least = 0; ///< smallest allowed value, for whole numbers
 };
 
 /// Columns in the order of a new table.
@@ -195,7 +195,7 @@ bool has_column(const run_outline& run, const trial_column& c);
 /// column is only in some studies.
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs);
 
-/// Reads all columns of all lines. \throws error (bad_input) with file and line.
+/// Reads all lines of a run's table with all their columns. \throws error (bad_input) with file and line.
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run);
 
 /// Returns true if a crash cut the table's last line within its last cell, the hash of a plan.
@@ -211,11 +211,11 @@ struct trial {
     unsigned attempt = 1;
     std::size_t motion = 0;
     std::size_t method_1 = 0;
-    std::size_t method_2 = 0; ///< used only by choose
+    std::size_t method_2 = 0; ///< second method, only in choose
     unsigned response = 0;    ///< answer as in the table (identify: index of the motion); unused in estimate
     double estimate = 0.0;    ///< estimate: number that the participant gave
     double value = 0.0;       ///< value of what the run varies
-    bool positive = false;    ///< answer is felt, different or more (the comparison or the second word)
+    bool positive = false;    ///< true for the answer felt, different or more (comparison or second word)
     bool signal = true;       ///< detect: there was a stimulus; same-different: the stimuli differed
     std::optional<double> response_time_s = {};
     std::optional<bool> early = {}; ///< sooner than min_response_s; missing if not recorded
@@ -239,7 +239,7 @@ struct dataset {
     experiment_outline experiment;
     bool simulated = false;
     std::vector<std::string> participants = {};   ///< codes, without sub-
-    std::vector<std::vector<run_data>> data = {}; ///< by participant, then by run: see find_run()
+    std::vector<std::vector<run_data>> data = {}; ///< trials by participant and then by run, see find_run()
     std::vector<std::string> groups = {}; ///< by participant; empty if it is not known or there are no groups
     std::vector<left_out> excluded = {};  ///< participants in participants.tsv who are not selected
     std::vector<std::string> warnings = {};

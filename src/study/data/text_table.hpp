@@ -43,7 +43,7 @@ std::string read_file(const std::filesystem::path& file);
 /// without permission, or a file in place of a folder.
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
 
-/// Cells by the names of their columns.
+/// Cells with the names of their columns.
 using named_cells = std::vector<std::pair<std::string_view, std::string>>;
 
 /// Returns the first line of a new table with these columns.
