@@ -100,7 +100,7 @@ std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::pa
                    : kind == "path" ? along_path(t, duration_s, speed_mm_s)
                                     : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
     drawn.start_s.reset();                                // each stimulus plays alone
-    drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
+    drawn.choices = {.level_db = drawn.choices.level_db}; // methods give the other options
     return drawn;
 }
 
@@ -185,8 +185,8 @@ std::vector<std::string> names_at(const std::vector<std::size_t>& places, const 
 namespace fs = std::filesystem;
 
 struct extent {
-    const fs::path* folder = nullptr; ///< for file names; null leaves array and strokes out
-    bool outline_only = false;        ///< ignore the rest, which other programs may write differently
+    const fs::path* folder = nullptr; ///< folder of files; null leaves array and strokes out
+    bool outline_only = false;        ///< true to ignore the rest, which other programs may write differently
 };
 
 // Returns the name of a preset, or the path of a file in the definition's folder.
@@ -216,7 +216,7 @@ void read_level(const toml_table& t, experiment_definition& d)
         d.sl_db = *level->number(kind, {-60.0, 100.0});
 }
 
-// Reads one time, or the bounds of a random pause.
+// Reads a fixed pause, or the bounds of a random pause.
 rest_range read_rest(const toml_table& t)
 {
     constexpr detail::bounds possible{0.0, 60.0};

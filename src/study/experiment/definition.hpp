@@ -36,7 +36,7 @@ struct motion_definition {
     source_place where = {};
 };
 
-/// A key as the definition writes it.
+/// A key in the definition's spelling.
 struct written_key {
     std::string key; ///< name, with or without its unit
     source_place where;
@@ -47,12 +47,12 @@ struct method_definition {
     std::string name;
     options::option_values options = {};          ///< the method's options, and defaults for the others
     std::optional<stroke> drawn = {};             ///< stroke that replaces the motion's
-    source_place where = {};                      ///< place in the file; for a variant, of the run's values
+    source_place where = {};                      ///< place of the method; for a variant, of the run's values
     std::map<std::size_t, written_key> keys = {}; ///< keys of the method's table, by option index
     std::optional<std::size_t> made_of = {}; ///< base method of a variant; missing for a method in the file
     std::optional<double> value = {};        ///< value, if the run varies one
     std::string vary = {};                   ///< stroke parameter with the value; empty if an option has it
-    bool silent = false;                     ///< plays silence of the same duration
+    bool silent = false;                     ///< true for silence of the same duration
 
     bool is_variant() const noexcept { return made_of.has_value(); }
     /// Returns true if the method's level, in options.render, replaces the experiment's.
@@ -61,7 +61,7 @@ struct method_definition {
 
 /// Variants that a run plays in place of one of its methods, as indices into the definition's methods.
 struct method_variants {
-    std::vector<std::size_t> values = {}; ///< one for each value; empty if the run plays the method itself
+    std::vector<std::size_t> values = {}; ///< one per value; empty if the run plays the method itself
     std::optional<std::size_t> standard = {};
     std::optional<std::size_t> silent = {}; ///< variant for trials without a stimulus
 };
@@ -71,7 +71,7 @@ struct adaptive_options {
     unsigned down = 0;   ///< positive answers in a row that move a staircase down; 0 for QUEST+
     unsigned tracks = 1; ///< number of tracks; every second staircase is mirrored
     std::vector<std::size_t> start = {}; ///< first value of each track
-    std::vector<std::size_t> steps = {}; ///< steps of a staircase; every second reversal moves on to the next
+    std::vector<std::size_t> steps = {}; ///< step sizes; every second reversal moves on to the next
     std::vector<double> slopes = {};     ///< slopes for QUEST+, as standard deviations of the normal
     std::vector<double> lapses = {};
 };
@@ -88,7 +88,7 @@ struct run_definition {
     std::vector<std::string> choices = {}; ///< words of both answers, or the page's usual ones; may be empty
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
-    std::map<std::size_t, method_variants> variants = {}; ///< variants by method
+    std::map<std::size_t, method_variants> variants = {}; ///< variants by index of the method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
     bool pairs = false;                                   ///< true if a trial has two stimuli
     adaptive_options adaptive = {};
@@ -138,8 +138,8 @@ experiment_definition read_definition(std::string_view toml, const std::string& 
 /// their files may have moved. \throws error (bad_input).
 experiment_definition read_design(std::string_view toml, const std::string& name);
 
-/// Reads only what the analysis needs, with the same bounds. Ignores the rest, which other programs may write
-/// differently. \throws error (bad_input).
+/// Reads only the parts that the analysis needs, with the bounds of read_definition(). Ignores the rest,
+/// which other programs may write differently. \throws error (bad_input).
 experiment_outline read_outline(std::string_view toml, const std::string& name);
 
 /// Returns true if the level of the experiment or of a method is relative to the tactors' thresholds.

@@ -31,7 +31,7 @@ struct questionnaire_item {
     std::string name; ///< column of the table: letters, digits and _
     std::string question;
     item_kind kind = item_kind::text;
-    std::vector<std::string> labels = {}; ///< labels of all choices or steps, of both ends, or none
+    std::vector<std::string> labels = {}; ///< labels of all choices or steps, or of both ends; may be empty
     unsigned lowest = 1;                  ///< smallest answer; unused for a text
     unsigned greatest = 1;
     bool is_line = false; ///< scale: a line without numbers
@@ -69,8 +69,8 @@ std::string_view describe_time(questionnaire_time t) noexcept;
 /// the others are empty. Without labels all are empty.
 std::vector<std::string> spread_labels(const std::vector<std::string>& labels, std::size_t answers);
 
-/// Lists one label for each answer from `lowest` on; it is empty if the number is enough. The list is empty
-/// for number and text.
+/// Lists one label for each answer from `lowest` on. A label is empty if the number alone is shown. The list
+/// is empty for items that ask for a number or a text.
 std::vector<std::string> label_answers(const questionnaire_item& item);
 
 } // namespace tactor::study

@@ -38,7 +38,7 @@ T simulation_value(std::string_view key, std::string_view text, T low, T high)
     return *v;
 }
 
-// Returns the predicted error of a stimulus, or how uneven it is.
+// Returns the predicted error of a stimulus, or its unevenness in runs about uniformity.
 double find_cost(const experiment_definition& d, const run_definition& r, const stimulus_set& stimuli,
                  std::size_t motion, std::size_t method)
 {

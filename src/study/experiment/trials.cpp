@@ -170,7 +170,7 @@ std::size_t square_rows(std::string_view order, std::size_t n) noexcept
 std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row)
 {
     // The first Williams row is 0, 1, n - 1, 2, n - 2, ..., in which each difference occurs once. The other
-    // rows add 1, 2, ... to it, modulo n.
+    // rows add 1, 2, ... to it, modulo n. For odd n, n more rows are these in reverse.
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t williams = i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : n - i / 2;
@@ -200,7 +200,7 @@ std::size_t default_row(const experiment_definition& d, std::string_view code)
     const std::size_t rows = count_rows(d);
     std::size_t row = default_seed(code) % rows;
     if (const std::size_t digits = code.find_last_not_of("0123456789") + 1; digits < code.size()) {
-        std::size_t number = 0; // modulo rows, because it may have any number of digits
+        std::size_t number = 0; // kept modulo rows, because it may have many digits
         for (const char c : code.substr(digits))
             number = (number * 10 + static_cast<std::size_t>(c - '0')) % rows;
         row = (number + rows - 1) % rows;

@@ -56,8 +56,8 @@ std::size_t square_rows(std::string_view order, std::size_t n) noexcept;
 /// equally often. latin: each row is the previous row shifted by one. \pre `order` is not random.
 std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row);
 
-/// Returns the number of rows of a definition. Over all rows, each order of the runs meets each order of the
-/// blocks in a run.
+/// Returns the number of rows, that is of different orders for participants. Over all rows, each order of the
+/// runs meets each order of the blocks in a run.
 std::size_t count_rows(const experiment_definition& d);
 
 /// Returns "seed/experiment/code", or "seed/experiment/code/ses-N" in a study with several sessions.
@@ -124,7 +124,7 @@ private:
     bool last_counts_ = false;
 };
 
-/// Kind of the next step.
+/// Kind of the next step, with the function to call after it.
 enum class step_kind {
     consent,   ///< shows the consent text, then agree()
     walk,      ///< drives one tactor, then felt() or walk_back()
@@ -156,7 +156,7 @@ struct flow_run {
     bool rest = false; ///< true if a break follows the run, unless it is the last
 };
 
-/// A questionnaire at a place of the session.
+/// A questionnaire at its place in the session.
 struct flow_form {
     std::size_t form = 0; ///< index into the definition's questionnaires
     questionnaire_time when = questionnaire_time::before;
@@ -197,7 +197,7 @@ public:
     /// is being asked.
     bool void_last();
     std::size_t void_run() const noexcept { return last_run_; }
-    /// Puts a pause before the next trial.
+    /// Adds a pause before the next trial.
     void pause() noexcept { paused_ = true; }
     /// Returns true while a questionnaire is being asked.
     bool is_asking() const;
@@ -249,7 +249,7 @@ public:
     ///         run's values, of the method's option or else of the motion.
     stimulus_set(const experiment_definition& d, const array& a, const render_options& o);
 
-    /// Returns the stimulus of a motion and a method. \pre A run combines them.
+    /// Returns the stimulus of a motion and a method. \pre A run plays this motion with this method.
     const stimulus& at(std::size_t motion, std::size_t method) const;
     /// Lists all stimuli, in the order of the runs.
     const std::vector<stimulus>& all() const noexcept { return all_; }
