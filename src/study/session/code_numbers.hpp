@@ -56,7 +56,7 @@ private:
     std::string describe(const experiment_definition& d, const coded_event& e) const;
 
     std::vector<std::vector<std::string>> by_ = {}; ///< parts that tell numbers apart, by event
-    std::map<std::string, unsigned> numbers_ = {};  ///< by description
+    std::map<std::string, unsigned> numbers_ = {};  ///< numbers by description
     std::map<unsigned, std::vector<std::string>> meanings_ = {};
 };
 

@@ -41,7 +41,7 @@ using files::or_null;
 // Threshold assumed for an unmeasured tactor in a session that nobody feels.
 constexpr double assumed_threshold_dbfs = -40.0;
 
-// Sets the threshold of each tactor without any, if `nobody_feels` the session. Returns true if it set one.
+// If `nobody_feels` the session, gives a threshold to each tactor that has none. Returns true if it gave one.
 // Throws error (bad_input) for a session with a person, which needs measured thresholds.
 bool assume_thresholds(array& a, bool nobody_feels)
 {

@@ -28,8 +28,8 @@ namespace tactor::study {
 /// Kind of participant.
 enum class audience {
     person,
-    observer, ///< a simulated one
-    nobody,   ///< a dry run
+    observer, ///< a simulated participant
+    nobody,   ///< no participant: a dry run
 };
 
 /// Hand that wears the array.
@@ -64,7 +64,7 @@ struct prepared_experiment {
     std::size_t row = 1;                         ///< row of the orders, from 1
     code_numbers codes = {};                     ///< empty without [sync] code
 
-    /// Returns the run at a place in the session's order.
+    /// Returns the run at a position in the session's order.
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }
 };
 
@@ -121,7 +121,8 @@ bool finished(const prepared_experiment& p, const session_store& store);
 /// Makes the flow of a session from its present state on. Consent and walk are only for a person.
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person);
 
-/// Returns the name of the run before a questionnaire that is asked between runs; empty for others.
+/// Returns the name of the run before a questionnaire that comes between runs; empty for other
+/// questionnaires.
 std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run);
 
 /// The table of one run or of its practice. Times count from the run's first sample at the DAC.
@@ -145,7 +146,7 @@ private:
     bool empty_ = true;
     unsigned first_stream_ = 0;
     std::optional<std::uint64_t> first_frame_ = {}; ///< first frame in that stream
-    std::optional<std::int64_t> began_ns_ = {};     ///< CLOCK_REALTIME
+    std::optional<std::int64_t> began_ns_ = {};     ///< start of the run, CLOCK_REALTIME
 };
 
 /// A run in progress: its tables, and the values that an adaptive procedure chooses from the answers.

@@ -29,8 +29,8 @@
 namespace tactor::study {
 namespace {
 
-// Returns an epoll of all descriptors, so that a caller can wait for one. If standard input is a file, epoll
-// refuses it; a file is always ready.
+// Returns an epoll of all descriptors, so that a caller can wait for one. Standard input stays out if it is a
+// file: epoll refuses files, which are always ready.
 detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
 {
     detail::owned_fd any(::epoll_create1(EPOLL_CLOEXEC));

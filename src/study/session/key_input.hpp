@@ -79,7 +79,7 @@ public:
 private:
     static constexpr std::int64_t quiet_ns = 100'000'000;
 
-    char last_ = '\0'; ///< no key yet
+    char last_ = '\0'; ///< last key; 0 before the first
     std::int64_t last_ns_ = 0;
 };
 
@@ -130,7 +130,7 @@ struct session_key {
     std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< repeat_guard::since_ns()
     bool from_keypad = false;
     bool is_dot = false;    ///< true for a keypad's dot, which means b except in an estimate
-    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
+    std::int64_t at_ns = 0; ///< time of the key, CLOCK_MONOTONIC
 };
 
 /// The participant's ways to answer besides the terminal.
@@ -163,13 +163,13 @@ public:
     /// with `subject` if no more keys can come.
     session_key wait(const std::string& subject = "the session", bool repeated = false);
     /// Blocks until a number or a command. Shows digits as keys type them; a line or the page gives the whole
-    /// number. Ignores the key that answered the previous question until a first digit is typed. `estimate`:
-    /// the number may have a point. Throws as wait().
+    /// number. The key that answered the previous question cannot begin the number. `estimate`: the number
+    /// may have a point. Throws as wait().
     session_key wait_for_number(typed_number& number, bool estimate);
-    /// Blocks until a text, which `entered` has after tidy_text(); if `entered` is missing, the text was
-    /// refused. With a page it also returns the experimenter's commands. Without a page all keys are text,
-    /// except Backspace before the text, which is the command `back`. Shows the text as keys type it. Ignores
-    /// the key that answered the previous question as first key. Throws as wait().
+    /// Blocks until a text, and returns it in `entered` after tidy_text(). If `entered` is missing, the text
+    /// was not allowed. With a page it also returns the experimenter's commands. Without a page all keys are
+    /// text, except Backspace before the text, which is the command `back`. Shows the text as keys type it.
+    /// The key that answered the previous question cannot begin the text. Throws as wait().
     session_key wait_for_text(typed_text& text);
     /// Returns true if no more keys or lines can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
@@ -187,7 +187,7 @@ private:
     stage& stage_;
     participant_page* page_;
     std::list<keypad> keypads_;
-    detail::owned_fd any_; ///< epoll of all inputs, if there are others than standard input
+    detail::owned_fd any_; ///< epoll of all inputs, unless standard input is the only one
     termios before_{};     // declared before terminal_, whose initializer fills it
     bool terminal_;
     std::string text_ = {};

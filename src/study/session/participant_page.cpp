@@ -161,7 +161,7 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
     if (!is_text && !number && !is_back)
         return {.understood = false};
     if (theirs_ != from)
-        return h; // another page replaced this one, which was told so
+        return h; // the page already knows that another page replaced it
     if (open_ && whole_number(received, "ask") == asked_) {
         if (is_back && screen_.back)
             return go_back();

@@ -39,9 +39,9 @@ inline constexpr std::size_t most_text_characters = 2000;
 /// if the text is too long or not UTF-8.
 std::optional<std::string> tidy_text(std::string_view entered);
 
-/// Place in the session.
+/// Progress of the session.
 struct page_progress {
-    std::size_t run = 0; ///< from 1
+    std::size_t run = 0; ///< number of the run, from 1
     std::size_t runs = 0;
     bool practice = false;
     unsigned trial = 0; ///< number of the trial, from 1; 0 before the first
@@ -58,7 +58,7 @@ struct page_screen {
     std::vector<std::string> choices = {}; ///< possible answers; the page shows an empty one as its number
     std::string keys = {};                 ///< a key for each choice; may be empty
     bool is_line = false; ///< true if the choices are places on a line, from 0 on, without numbers
-    entry_kind entry = entry_kind::none; ///< replaces the choices
+    entry_kind entry = entry_kind::none; ///< kind of typed answer, in place of choices
     unsigned lowest = 1;                 ///< smallest number that may be entered
     unsigned greatest = 1;
     bool back = false;                             ///< true if key b goes to the previous question
@@ -91,7 +91,7 @@ public:
     struct heard {
         bool understood = true; ///< false if the visitor must be disconnected
         std::vector<message> replies = {};
-        std::optional<char> answer = {}; ///< key of the answer, or 0; each question has at most one
+        std::optional<char> answer = {}; ///< key of the answer, or 0; a question gets at most one answer
         unsigned number = 0;             ///< number entered, or place of the choice from 1 (on a line from 0)
         std::optional<std::string> text = {}; ///< text that was entered, after tidy_text(); an estimate
     };
@@ -141,7 +141,7 @@ public:
     void press(char key);
     /// Returns true if somebody has the page open.
     bool is_watched();
-    /// Returns the answer to the open question, if any.
+    /// Returns the answer to the open question, if any, and only once. Does not block.
     std::optional<page_answer> poll();
     /// Returns a descriptor that is readable while poll() has an answer.
     int descriptor() const noexcept { return answered_.fd(); }

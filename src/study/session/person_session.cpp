@@ -287,7 +287,7 @@ void person_session::rest(const session_step& s)
         return !ended && flow_.next() == s;
     });
     if (!there)
-        return find_device(); // the break begins again
+        return find_device(); // then next() asks for the same break again
     if (flow_.next() == s)
         flow_.go_on();
 }
@@ -483,8 +483,8 @@ void person_session::trial(const session_step& s)
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     held_->add(s, row, started_ns);
     flow_.took(row.is_void);
-    codes_.write(r, row,
-                 held_->table(s)); // last: a kill during the code must not lose the answer
+    // Comes after add(), so that a kill during the code does not lose the answer.
+    codes_.write(r, row, held_->table(s));
     find_device();
 }
 
@@ -606,15 +606,15 @@ void person_session::walk(unsigned tactor)
     }
 }
 
-// Creates the session's files. Runs after consent and walk, so that a participant who does not agree or does
-// not feel a tactor leaves no data.
+// Creates the session's files at the first call, after consent and walk: a participant who does not agree or
+// does not feel a tactor leaves no data.
 void person_session::begin_store()
 {
     if (std::exchange(begun_, true))
         return;
     const std::string now = acq_time_text(rt::unix_ns());
     store_.begin(p_.stimuli.all(), describe_events(p_));
-    if (store_.facts()["date"].is_null()) // a new session, or one that ended before this line
+    if (store_.facts()["date"].is_null()) // a new session, or one that ended before this point
         store_.note("date", now);
     if (!agreed_at_.empty())
         store_.note("consent", agreed_at_);

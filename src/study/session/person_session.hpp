@@ -76,7 +76,7 @@ private:
     struct given_answer {
         double number = 0.0; ///< unused for a text
         std::string text;
-        std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
+        std::int64_t at_ns = 0; ///< time of the answer, CLOCK_MONOTONIC
     };
     /// Returns a watcher that asks the participant to wait when it is first called.
     std::function<bool(double)> waiting();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Questions about trials and questions of questionnaires, for the terminal and the participant's page.
+/// Questions of trials and questionnaires, for the terminal and the participant's page.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ namespace tactor::study {
 
 /// A question with its answers: numbers from the screen's lowest to its greatest, an estimate, or a text.
 struct question {
-    page_screen screen;   ///< screen of the page; the terminal shows its `question`
+    page_screen screen;   ///< screen for the page; the terminal shows only its `question`
     std::string possible; ///< possible answers for the terminal: "1 or 2"; may be empty
 
     bool is_text() const noexcept { return screen.entry == entry_kind::text; }
@@ -33,7 +33,7 @@ struct question {
 /// Returns the possible answers to the question of a run.
 trial_answers find_answers(const experiment_definition& d, const run_definition& r);
 
-/// Returns the place of a step in the session.
+/// Returns the progress of the session at a step.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);
 
 /// Returns a target's positions at `parts` equal parts of its time. Moves each position outside the array to

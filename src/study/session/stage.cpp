@@ -114,7 +114,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     if (g.first_frame)
         room_.played(s, before_ + *g.first_frame);
     if (after.drives_cut != before.drives_cut)
-        room_.close(before_ + position().played); // another program drives the array, too
+        room_.close(before_ + position().played); // some other program must have driven the array
     if (r.state != state_kind::finished)
         g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;
     else if (g.xruns > 0)

@@ -17,7 +17,7 @@
 
 namespace tactor::study {
 
-/// Record of a stimulus after it was presented.
+/// Record of a presented stimulus.
 struct given_stimulus {
     std::string flaw = {};                         ///< deviation from the plan; empty if there is none
     std::optional<std::uint64_t> first_frame = {}; ///< first frame in the stream; missing if nothing sounded
@@ -54,7 +54,7 @@ public:
     /// Returns the time, s, by which a score that would begin in `lead_s` must be delayed so that no tactor
     /// exceeds the limits of drive time. Counts earlier stimuli, too.
     double room_s(const score& s, double lead_s) const;
-    /// Waits for the time room_s(), as pass() does.
+    /// Blocks for the time of room_s(), as pass() does.
     bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
     /// Function that is called some 25 times a second with the current frame of the stimulus.

@@ -235,7 +235,7 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
     if (code_->lsl && there != nullptr)
         lsl_.emplace("tactor-" + p.participant);
     if (there != nullptr && !code_->channel && lines == nullptr && !lsl_)
-        code_ = nullptr; // only lines, and these are not opened
+        code_ = nullptr; // the only outputs are lines, which are not open
 }
 
 coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned interval) const

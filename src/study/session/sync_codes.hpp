@@ -85,7 +85,8 @@ session::stream_source with_codes(const session::stream_options& o, const sessio
 /// constructor loads liblsl, so that other sessions do not need it.
 class lsl_markers {
 public:
-    /// Loads $PYLSL_LIB, or liblsl.so.2, and opens the stream. \throws error (not_available) if that fails.
+    /// Loads the library $PYLSL_LIB, or liblsl.so.2, and opens the stream. \throws error (not_available) if
+    /// that fails.
     explicit lsl_markers(const std::string& source_id);
 
     /// Sends a number with its time, CLOCK_REALTIME.
@@ -118,8 +119,8 @@ public:
     /// Blocks until the end of a code that send() started, if any, and notes it.
     void finish();
 
-    /// Notes the codes of stimuli that began at `frame_1` and played for `frames`. `ns`: CLOCK_REALTIME of
-    /// `frame_1`.
+    /// Notes the codes of stimuli that began at `frame_1` and of which `frames` frames were played. `ns`:
+    /// CLOCK_REALTIME of `frame_1`.
     void note_stimuli(const session_step& s, const planned_trial& t, std::uint64_t frame_1,
                       std::uint64_t frames, std::int64_t ns);
     /// Notes the code of an answer or a void trial at a frame. `ns`: CLOCK_REALTIME of the frame.
@@ -135,7 +136,7 @@ private:
         unsigned number;
         std::uint64_t frame;    ///< first frame of the code
         std::uint64_t at_frame; ///< frame of the event
-        std::int64_t at_ns;     ///< CLOCK_REALTIME
+        std::int64_t at_ns;     ///< time of the event, CLOCK_REALTIME
         std::uint64_t frames;   ///< length of the event
     };
     /// A code that is being sent.

@@ -43,7 +43,7 @@ function show(s) {
   const looks = document.querySelector("main").classList;
   looks.value = s.screen;
   looks.toggle("alone", ALONE.includes(s.screen));
-  looks.toggle("replies", Boolean(s.choices || s.entry || s.stimuli || s.screen === "walk")); // answers, or room for them
+  looks.toggle("replies", Boolean(s.choices || s.entry || s.stimuli || s.screen === "walk")); // shows answers, or keeps room for them
   by_id("text").textContent = s.screen === "elsewhere" ? words.elsewhere : s.text ?? "";
   by_id("text").tabIndex = s.screen === "consent" ? 0 : -1; // so that keys can scroll a long text
   by_id("question").textContent = s.question ?? "";
@@ -77,7 +77,7 @@ function show_progress(p, part_is_over) {
   [...bar.children].forEach((segment, i) => segment.style.setProperty("--done", i + 1 < p.run ? 1 : i + 1 === p.run ? done / p.trials : 0));
 }
 
-// Moves the target, or shows the time left of a break, in the time of the program.
+// Moves the target, or shows the time left of a break, by the program's clock.
 function move(s) {
   if (s !== state) return;
   const passed_s = (performance.now() - began) / 1000;
