@@ -34,7 +34,7 @@ class Sessions(PageTest):
             target = p.until("target", asked=False)
             self.assertEqual(target["lasts_s"], 0.2)
             self.assertLess(target["passed_s"], 0.2)
-            self.assertEqual({tuple(target["path"][0]), tuple(target["path"][-1])}, {(0, 0), (20, 0)})
+            self.assertEqual({tuple(target["paths"][0][0]), tuple(target["paths"][0][-1])}, {(0, 0), (20, 0)})
             p.until("stimulus", asked=False)
             asked = p.answer("question", i)
             self.assertEqual((asked["choices"], asked["progress"]["trial"]), (["", ""], i))
@@ -97,7 +97,7 @@ class Sessions(PageTest):
         for i in (1, 2):
             asked = p.answer("question", i)
             self.assertEqual(asked["choices"], ["east", "west"])
-            self.assertEqual([(way[0], way[-1]) for way in asked["pictures"]], [([0, 0], [20, 0]), ([20, 0], [0, 0])])
+            self.assertEqual([(way[0], way[-1]) for [way] in asked["pictures"]], [([0, 0], [20, 0]), ([20, 0], [0, 0])])
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([m["progress"]["trial"] for m in p.seen if m.get("screen") == "walk" and m["ask"]], [1, 2])
         self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))

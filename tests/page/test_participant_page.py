@@ -117,12 +117,12 @@ class ParticipantPage(BrowserTest, PageTest):
         p = self.open(s)
         ask = self.begin(p)
         # The target's place in each frame, and the place at the plan's time.
-        p.until("state.screen === 'target' && document.querySelector('#dot')")
-        self.assertGreater(p.value("document.querySelector('#dot').getBoundingClientRect().width"), 4)
+        p.until("state.screen === 'target' && document.querySelector('#field .dot')")
+        self.assertGreater(p.value("document.querySelector('#field .dot').getBoundingClientRect().width"), 4)
         seen = p.value("""new Promise(done => { const all = [];
             const look = () => {
                 if (state.screen !== 'target') return done([all, state.screen]);
-                all.push([(performance.now() - began) / 1000, Number(document.querySelector('#dot').getAttribute('cx'))]);
+                all.push([(performance.now() - began) / 1000, Number(document.querySelector('#field .dot').getAttribute('cx'))]);
                 requestAnimationFrame(look); };
             requestAnimationFrame(look); })""")
         places, after = seen
@@ -130,7 +130,7 @@ class ParticipantPage(BrowserTest, PageTest):
         self.assertEqual(p.value("document.querySelector('#field').getClientRects().length"), 0)
         self.assertGreater(len(places), 10)
         ask = self.click(p, "question", 1, ask)
-        p.until("state.screen === 'target' && document.querySelector('#dot')")
+        p.until("state.screen === 'target' && document.querySelector('#field .dot')")
         self.picture(p, "target")  # takes its time
         # The stimulus that plays is lit where its answer will be.
         for playing in (1, 2):

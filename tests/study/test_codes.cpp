@@ -165,7 +165,7 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
         const study::stimulus& s = c.p.stimuli.at(0, method);
         const std::uint64_t from = first + (method == t.method_1 ? 0 : c.p.stimuli.second(t));
         CHECK(part(all, from * frame, s.frames * frame) ==
-              rendered(score(c.p.where.tactors, s.plan, s.render), format_kind::s32));
+              rendered(score(c.p.where.tactors, s.made.plans, s.render), format_kind::s32));
     }
 
     study::run_table table(c.store, c.p.definition.runs[0], false);

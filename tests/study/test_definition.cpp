@@ -60,7 +60,7 @@ TEST_CASE("a recording of a motion may have intensities of another scale")
                                f.path());
     };
     const experiment_definition d = with("file = \"r.csv\"\nintensity_max = 255\n");
-    CHECK(d.motions[0].drawn.motion.intensity(0.5) == doctest::Approx(0.2));
+    CHECK(d.motions[0].strokes[0].motion.intensity(0.5) == doctest::Approx(0.2));
     has(caught_message([&] { with("file = \"r.csv\"\n"); }), "intensity_max");
     has(caught_message([&] { with("preset = \"park2016-1\"\nintensity_max = 255\n"); }),
         "[[motion]] has no file");
@@ -87,7 +87,8 @@ TEST_CASE("a motion takes the keys of a stroke, with the unit in the key or with
     const auto duration = [](const std::string& m) {
         return read(head + "[[motion]]\nname = \"m\"\n" + m + methods + run)
             .motions[0]
-            .drawn.motion.duration_s();
+            .strokes[0]
+            .motion.duration_s();
     };
     CHECK(duration("preset = \"park2016-1\"\nduration = 2.8\n") == 2.8);
     CHECK(duration("preset = \"park2016-1\"\nduration_s = 2.8\n") == 2.8);
@@ -133,13 +134,13 @@ TEST_CASE("a method takes the sound, the level, the pace and the stroke of a str
     CHECK(a.options.render.level_dbfs == -20.0);
     CHECK(!a.options.render.sl_db);
     CHECK(a.options.duration_s == 2.0);
-    CHECK(!a.drawn);
+    CHECK(a.strokes.empty());
     const method_definition& b = d.methods[1];
     CHECK(b.options.render.sl_db == 10.0);
     CHECK(b.options.plan.scale.sl_db == 10.0);
     CHECK(b.options.render.envelope.attack_s == 0.01);
-    REQUIRE(b.drawn);
-    CHECK(b.drawn->motion.duration_s() == doctest::Approx(1.5));
+    REQUIRE(b.strokes.size() == 1);
+    CHECK(b.strokes[0].motion.duration_s() == doctest::Approx(1.5));
     CHECK(a.has_level());
     CHECK(uses_thresholds(d));
     const experiment_definition plain = read(head + level + motion + methods + run);
@@ -156,7 +157,7 @@ TEST_CASE("a session's text is read without the files of its methods")
                               run;
     const experiment_definition d = read_design(named, "session.json");
     CHECK(d.methods[0].options.plan.wave.recorded->file == "gone.wav");
-    CHECK(!d.methods[1].drawn);
+    CHECK(d.methods[1].strokes.empty());
     has(refusal(named), "gone.wav");
 }
 

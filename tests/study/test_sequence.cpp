@@ -24,6 +24,7 @@
 #include "sequences.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
+#include "study/session/questions.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study::test_sequence {
@@ -495,11 +496,84 @@ TEST_CASE("a stimulus is compared with its motion in the time of the stroke that
                                                  "[[method]]\nname = \"beside\"\npath = \"M0 0H40\"\n"
                                                  "duration = 1.4\n");
     const stimulus_set all(d, felt_array(), {});
-    CHECK(all.at(0, 0).plan.stroke_duration_s == 1.4);
+    CHECK(all.at(0, 0).made.plans[0].plan.stroke_duration_s == 1.4);
     CHECK(*all.at(0, 0).felt.rms_error_mm < 8.0);
     CHECK(*all.at(0, 1).felt.rms_error_mm > 12.0);
     for (const std::size_t method : {0, 1})
-        CHECK(all.at(0, method).felt_path.back().x_mm > 25.0); // not where it is after half the time
+        CHECK(all.at(0, method).felt_paths[0].back().x_mm > 25.0); // not where it is after half the time
+}
+
+TEST_CASE("a motion of several strokes plays as its file, from its first stroke on")
+{
+    const folder f;
+    const auto file = f.write("two.toml", "[[stroke]]\npath = \"M0 20H40\"\nduration_s = 0.7\nstart_s = 1.5\n"
+                                          "[[stroke]]\npath = \"M20 40V0\"\nduration_s = 0.6\nstart_s = 1.0\n"
+                                          "[[stroke]]\npath = \"M10 10\"\nduration_s = 0.2\n");
+    const experiment_definition d =
+        with_methods("file = \"two.toml\"\n", "[[method]]\nname = \"a\"\nlevel_dbfs = -30\n", f.path());
+    const array a = felt_array();
+    const stimulus_set all(d, a, {});
+
+    const std::vector<stroke> drawn = load_strokes(file);
+    const score alone(a,
+                      {{make_plan(a, drawn[0], {}), 0.5},
+                       {make_plan(a, drawn[1], {}), 0.0},
+                       {make_plan(a, drawn[2], {}), {}}}, // when the one before it has sounded
+                      {.level_dbfs = -30.0});
+    CHECK(all.at(0, 0).frames == alone.frames());
+    CHECK(all.make_score({0, 0, {}}).starts() == alone.starts());
+    CHECK(samples(all.make_score({0, 0, {}})) == samples(alone));
+    CHECK(find_duration_s(d.motions[0].strokes) == doctest::Approx(1.2));
+
+    // The page shows a stroke only while it plays, on the array's hull.
+    const auto shown = sample_target(d.motions[0].strokes, a, 12.0);
+    REQUIRE(shown.size() == 3);
+    CHECK(!shown[0][4]);
+    REQUIRE(shown[0][12]);
+    CHECK(shown[0][12]->x_mm == doctest::Approx(40.0));
+    REQUIRE(shown[1][0]);
+    CHECK(shown[1][0]->y_mm == doctest::Approx(40.0));
+    CHECK(!shown[1][7]);
+    CHECK(!shown[2][5]);
+    CHECK(shown[2][7] == point{10.0, 10.0});
+}
+
+TEST_CASE("strokes vary together: their distance, their length, their turn about a common middle")
+{
+    const folder f;
+    f.write("two.toml", "[[stroke]]\npath = \"M15 20H16\"\nduration_s = 0.4\nstart_s = 0\n"
+                        "[[stroke]]\npath = \"M25 20H24\"\nduration_s = 0.4\nstart_s = 0\n");
+    const auto plan = [&f](const std::string& motion, const std::string& vary, const std::string& values) {
+        const experiment_definition d = read_definition(
+            fmt::format("[experiment]\nname = \"x\"\nlevel = {{ dbfs = -30 }}\n[[motion]]\nname = \"m\"\n{}"
+                        "[[method]]\nname = \"a\"\nalgorithm = \"continuous\"\nphantom = \"barycentric\"\n"
+                        "[[run]]\nname = \"r\"\ntask = \"constant\"\nquestion = \"?\"\nchoices = [\"1\", "
+                        "\"2\"]\nvary = \"{}\"\n"
+                        "values = {}\ntrials = 4\n",
+                        motion, vary, values),
+            "x.toml", f.path());
+        return stimulus_set(d, felt_array(), {});
+    };
+    const auto starts = [&plan](const std::string& vary, const std::string& values) {
+        const stimulus_set all = plan("file = \"two.toml\"\n", vary, values);
+        std::vector<std::vector<point>> firsts;
+        for (const stimulus& s : all.all())
+            firsts.push_back({s.felt_paths[0].front(), s.felt_paths[1].front()});
+        return firsts;
+    };
+    const auto near_points = [](const std::vector<point>& felt, point a, point b) {
+        return distance_mm(felt[0], a) < 1e-6 && distance_mm(felt[1], b) < 1e-6;
+    };
+    const auto apart = starts("apart_mm", "[6, 30]");
+    CHECK(near_points(apart[0], {17.0, 20.0}, {23.0, 20.0}));
+    CHECK(near_points(apart[1], {5.0, 20.0}, {35.0, 20.0}));
+    const auto length = starts("length_mm", "[1, 2]"); // of the first: all is twice as large
+    CHECK(near_points(length[0], {15.0, 20.0}, {25.0, 20.0}));
+    CHECK(near_points(length[1], {10.0, 20.0}, {30.0, 20.0}));
+    const auto turned = starts("rotate_deg", "[0, 90]");
+    CHECK(near_points(turned[1], {20.0, 15.0}, {20.0, 25.0}));
+    has(caught_message([&] { plan("path = \"M0 0H9\"\n", "apart_mm", "[1, 2]"); }),
+        "there are no two strokes that start at two places");
 }
 
 TEST_CASE("methods that make the same stimulus are named")

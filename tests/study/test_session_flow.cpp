@@ -326,9 +326,11 @@ TEST_CASE("a page gets pictures of motions, and which stimulus plays")
     page_dialogue d(json::object());
     static_cast<void>(d.hear(1, hello, 0));
     page_screen s = question();
-    s.pictures = {{{0.0, 0.0}, {2.0, 1.0}}, {{2.0, 0.0}, {0.0, 0.0}}};
+    s.pictures = {{{{0.0, 0.0}, {2.0, 1.0}}}, {{{2.0, 0.0}, {0.0, 0.0}}, {{1.0, 0.0}}}};
     const json asked = only(d.show(s, 0), 1);
-    CHECK(asked["pictures"] == json{{{0.0, 0.0}, {2.0, 1.0}}, {{2.0, 0.0}, {0.0, 0.0}}});
+    CHECK(asked["pictures"] == json::parse("[[[[0, 0], [2, 1]]], [[[2, 0], [0, 0]], [[1, 0]]]]"));
+    CHECK(only(d.show({.name = "target", .paths = {{point{3.0, 4.0}, {}}}}, 0), 1)["paths"] ==
+          json::parse("[[[3, 4], null]]"));
     CHECK_FALSE(asked.contains("stimuli"));
     CHECK(only(d.show({.name = "stimulus", .stimuli = 2, .playing = 1}, 0), 1) ==
           json{{"screen", "stimulus"}, {"ask", 0}, {"stimuli", 2}, {"playing", 1}});

@@ -41,7 +41,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
             return part(all, from * frame, n * frame);
         };
         const auto alone = [&](const study::stimulus& x) {
-            return rendered(score(palm(), x.plan, x.render), format_kind::s32);
+            return rendered(score(palm(), x.made.plans, x.render), format_kind::s32);
         };
         CHECK(piece(*g.first_frame, first.frames) == alone(first));
         CHECK_FALSE(sounds(piece(*g.first_frame + first.frames, gap)));

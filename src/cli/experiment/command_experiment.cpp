@@ -90,14 +90,16 @@ void warn_of_session(const study::prepared_experiment& p, const experiment_optio
 }
 
 // Shows the moving target on standard output, if that is a terminal.
-std::function<void(double)> show_target(const array& a, const stroke& target)
+std::function<void(double)> show_target(const array& a, const std::vector<stroke>& target)
 {
     const auto picture = std::make_shared<live_picture>(a);
-    return [picture, &motion = target.motion, faces = layout(a),
+    return [picture, &target, faces = layout(a), total_s = study::find_duration_s(target),
             now = instant{std::vector<double>(a.tactors.size(), 0.0), {}}](double t_s) mutable {
-        const point p = motion.position(t_s);
-        now.target = faces.contains(p) ? p : faces.nearest(p);
-        picture->draw(now, t_s, motion.duration_s());
+        now.targets.clear();
+        for (const std::optional<point>& p : study::find_places(target, faces, t_s))
+            if (p)
+                now.targets.push_back(*p);
+        picture->draw(now, t_s, total_s);
     };
 }
 
@@ -179,7 +181,7 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
         show(on ? "noise\n" : "silence\n");
     };
     const auto play = [&] {
-        const score s(p.where.tactors, stimuli[next].plan, stimuli[next].render);
+        const score s = session::make_score(stimuli[next].made, p.where.tactors, stimuli[next].render);
         next = (next + 1) % stimuli.size();
         const study::given_stimulus g = there.give(s, 0.0, [](std::uint64_t) {});
         show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),

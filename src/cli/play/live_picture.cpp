@@ -78,7 +78,7 @@ public:
             levels_[i] = std::max(levels_[i], level);
     }
 
-    void put_target(point p) { target_ = find_cell(p) + 1; }
+    void put_target(point p) { targets_.push_back(find_cell(p) + 1); }
 
     std::vector<std::string> lines(picture_style style) const
     {
@@ -108,7 +108,7 @@ private:
         const auto coloured = [&](const char* colour, const char* text) {
             return style.colours ? fmt::format("{}{}{}", colour, text, no_colour) : text;
         };
-        if (target_ == i)
+        if (std::ranges::count(targets_, i) != 0)
             return coloured(target_colour, "o");
         if (levels_[i] > 0.0)
             return coloured(level_colour, shade(levels_[i], style.unicode));
@@ -119,8 +119,8 @@ private:
     double mm_;
     unsigned columns_;
     unsigned rows_;
-    std::vector<double> levels_; // by cell; below 0: no tactor
-    std::optional<std::size_t> target_ = {};
+    std::vector<double> levels_;            // by cell; below 0: no tactor
+    std::vector<std::size_t> targets_ = {}; // cells
 };
 
 // Returns the longest status that fits.
@@ -129,8 +129,9 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
     const double t = std::max(t_s, 0.0);
     const std::string time = fmt::format("{:.2f} s", t);
     const std::string times = fmt::format("{:.2f} / {:.2f} s", t, total_s);
-    const std::string place =
-        now.target ? fmt::format("   at {:.1f}, {:.1f} mm", now.target->x_mm, now.target->y_mm) : "";
+    std::string place;
+    if (now.targets.size() == 1)
+        place = fmt::format("   at {:.1f}, {:.1f} mm", now.targets[0].x_mm, now.targets[0].y_mm);
     // Assumes a place of this length, so that the length of the bar does not change.
     const std::size_t beside = times.size() + std::string_view("   at -000.0, -000.0 mm").size() + margin + 3;
     if (columns >= beside + 10) {
@@ -166,8 +167,8 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
         grid g(b, columns - margin, rows - gap - 1);
         for (std::size_t i = 0; i < a.tactors.size(); ++i)
             g.put_tactor(a.tactors[i].position, now.levels[i]);
-        if (now.target)
-            g.put_target(*now.target);
+        for (const point& p : now.targets)
+            g.put_target(p);
         lines = g.lines(style);
         lines.resize(lines.size() + gap);
     }
@@ -175,17 +176,18 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
     return lines;
 }
 
-// Returns the place of the touch at a time of the piece, s; nothing between two strokes.
-std::optional<point> find_target(const piece& p, const score& s, const layout& faces, double t_s)
+// Returns the places of the touches at a time of the piece, s; none between two strokes.
+std::vector<point> find_targets(const piece& p, const score& s, const layout& faces, double t_s)
 {
+    std::vector<point> all;
     for (std::size_t i = 0; i < std::min(p.strokes.size(), s.plans().size()); ++i) {
         const double t = t_s - static_cast<double>(s.starts()[i]) / s.rate();
         if (t < 0.0 || t > s.plans()[i].plan.total_s)
             continue;
         const point at = p.strokes[i].motion.position(t);
-        return faces.contains(at) ? at : faces.nearest(at);
+        all.push_back(faces.contains(at) ? at : faces.nearest(at));
     }
-    return {};
+    return all;
 }
 
 // Returns true if the characters of the environment's locale are UTF-8. The program stays in the C locale.
@@ -359,7 +361,7 @@ stroke_report follow_drawn(session::play_session& session, const array& a, const
     return session.follow([&] {
         frame = session.stroke_frame().value_or(frame);
         const double t_s = static_cast<double>(frame) / s.rate();
-        picture.draw({sounding.at(frame), find_target(p, s, faces, t_s)}, t_s, total_s);
+        picture.draw({sounding.at(frame), find_targets(p, s, faces, t_s)}, t_s, total_s);
         return session::look{.most_ms = session::frame_ms};
     });
 }

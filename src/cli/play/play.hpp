@@ -64,8 +64,8 @@ private:
 
 /// State of a piece at one time.
 struct instant {
-    std::vector<double> levels;  ///< by tactor, linear; 1: the intensity of the stroke
-    std::optional<point> target; ///< place of the touch
+    std::vector<double> levels; ///< by tactor, linear; 1: the intensity of the stroke
+    std::vector<point> targets; ///< places of the touches
 };
 
 /// Returns true if standard output is a terminal on which lines can be drawn again.

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/choices.hpp>
 #include <tactor/error.hpp>
 #include <tactor/waveform.hpp>
 
@@ -62,32 +63,44 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     }
 }
 
-stroke read_file_stroke(const toml_table& t, const std::filesystem::path& folder)
+// Lets the first stroke of a file start at 0: a stimulus begins when it is felt.
+void start_at_once(std::vector<stroke>& strokes)
+{
+    const std::vector<stroke_span> spans = list_spans(strokes);
+    const double first_s = std::ranges::min(spans, {}, &stroke_span::start_s).start_s;
+    for (stroke& s : strokes)
+        if (s.start_s && s.anchor.from == start_from_kind::piece)
+            *s.start_s -= first_s;
+    if (strokes.front().start_s == 0.0)
+        strokes.front().start_s.reset();
+}
+
+std::vector<stroke> read_file_strokes(const toml_table& t, const std::filesystem::path& folder)
 {
     const double intensity_max = t.number("intensity_max", detail::bounds_of::intensity_max).value_or(1.0);
-    std::vector<stroke> all = at_key(
-        t, "file", [&] { return load_strokes(folder / *t.text("file"), intensity_max); }); // may be relative
-    if (all.size() != 1)
-        t.fail("file", fmt::format("there are {} strokes in it", all.size()),
-               "a motion needs exactly one stroke");
-    return std::move(all.front());
+    return at_key(t, "file", [&] {
+        std::vector<stroke> all = load_strokes(folder / *t.text("file"), intensity_max); // may be relative
+        start_at_once(all);
+        return all;
+    });
 }
 
 // Keys of a stroke: its three sources, and the scale of a recording's intensities.
 constexpr std::array<std::string_view, 4> stroke_keys{"preset", "path", "file", "intensity_max"};
 
-stroke along_path(const toml_table& t, std::optional<double> duration_s, std::optional<double> speed_mm_s)
+std::vector<stroke> along_path(const toml_table& t, std::optional<double> duration_s,
+                               std::optional<double> speed_mm_s)
 {
     return at_key(t, "path", [&] {
         stroke s = session::path_stroke(*t.text("path"), duration_s, speed_mm_s.value_or(default_speed_mm_s));
         s.speed_mm_s.reset(); // so that changing the length keeps the duration
-        return s;
+        return std::vector{std::move(s)};
     });
 }
 
-// Reads the stroke of a motion or a method; nothing if the table has none of the sources.
-std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::path& folder,
-                                  std::optional<double> duration_s, std::optional<double> speed_mm_s)
+// Reads the strokes of a motion or a method; none if the table has none of the sources.
+std::vector<stroke> read_strokes(const toml_table& t, const std::filesystem::path& folder,
+                                 std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
     if (!t.has("file") && t.has("intensity_max"))
         t.fail("intensity_max", fmt::format("{} has no file", t.title()),
@@ -96,12 +109,13 @@ std::optional<stroke> read_stroke(const toml_table& t, const std::filesystem::pa
     if (std::none_of(kinds.begin(), kinds.end(), [&t](std::string_view key) { return t.has(key); }))
         return {};
     const std::string_view kind = t.one_of(kinds);
-    stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
-                   : kind == "path" ? along_path(t, duration_s, speed_mm_s)
-                                    : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
-    drawn.start_s.reset();                                // each stimulus plays alone
-    drawn.choices = {.level_db = drawn.choices.level_db}; // methods give the other options
-    return drawn;
+    std::vector<stroke> all =
+        kind == "file"   ? read_file_strokes(t, folder)
+        : kind == "path" ? along_path(t, duration_s, speed_mm_s)
+                         : at_key(t, "preset", [&] { return std::vector{preset_stroke(*t.text("preset"))}; });
+    for (stroke& s : all)
+        s.choices = {.level_db = s.choices.level_db}; // methods give the other options
+    return all;
 }
 
 // Finds the option of a method for a key with or without its unit. Throws error (bad_input) for other keys.
@@ -323,12 +337,13 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
     if (duration && speed)
         t.fail(speed_key, fmt::format("{} has both {} and {}", t.title(), duration_key, speed_key),
                "keep one of them");
-    stroke drawn = *read_stroke(t, folder, duration, speed);
-    if (duration)
-        drawn.motion = at_key(t, duration_key, [&] { return drawn.motion.with_duration(*duration); });
-    else if (speed && drawn.motion.length_mm() > 0.0)
-        drawn.motion = at_key(t, speed_key, [&] { return drawn.motion.with_speed(*speed); });
-    return {name_in(t, "name"), std::move(drawn), is_mirrored(t), t.where()};
+    std::vector<stroke> strokes = read_strokes(t, folder, duration, speed);
+    for (stroke& s : strokes)
+        if (duration)
+            s.motion = at_key(t, duration_key, [&] { return s.motion.with_duration(*duration); });
+        else if (speed && s.motion.length_mm() > 0.0)
+            s.motion = at_key(t, speed_key, [&] { return s.motion.with_speed(*speed); });
+    return {name_in(t, "name"), std::move(strokes), is_mirrored(t), t.where()};
 }
 
 // Reads a method. `d` must already have the level. `folder`: folder of the method's files; null leaves them
@@ -354,10 +369,10 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     } catch (const error& e) {
         at_key(t, keys.at(options::index(*options::find(e.field()))).key, [&e] { throw error(e); });
     }
-    std::optional<stroke> drawn;
+    std::vector<stroke> strokes;
     if (folder != nullptr)
-        drawn = read_stroke(t, *folder, w.duration_s, w.speed_mm_s);
-    return {name_in(t, "name"), std::move(w), std::move(drawn), t.where(), std::move(keys)};
+        strokes = read_strokes(t, *folder, w.duration_s, w.speed_mm_s);
+    return {name_in(t, "name"), std::move(w), std::move(strokes), t.where(), std::move(keys)};
 }
 
 // Throws error (bad_input) if a run, or a group's part of it, has too few motions or methods for its task.
@@ -558,6 +573,25 @@ std::string spell_for_definition(std::string_view hint, bool own_level)
 {
     const std::span<const options::own_word> own(own_words);
     return options::spell(hint, {write_choice, options::in_method, own_level ? own.first(1) : own});
+}
+
+std::vector<stroke_span> list_spans(const std::vector<stroke>& strokes)
+{
+    std::vector<double> starts_s;
+    std::vector<double> ends_s;
+    std::vector<stroke_span> all;
+    for (const stroke& s : strokes) {
+        const double start_s = resolve_start_s(s.start_s, s.anchor, starts_s, ends_s);
+        all.push_back({start_s, start_s + s.motion.duration_s()});
+        starts_s.push_back(all.back().start_s);
+        ends_s.push_back(all.back().end_s);
+    }
+    return all;
+}
+
+double find_duration_s(const std::vector<stroke>& strokes)
+{
+    return std::ranges::max(list_spans(strokes), {}, &stroke_span::end_s).end_s;
 }
 
 bool uses_thresholds(const experiment_definition& d)

@@ -31,8 +31,8 @@ struct masking_definition {
 /// [[motion]]: the motion of a target.
 struct motion_definition {
     std::string name;
-    stroke drawn;
-    bool mirror = false; ///< true to exchange left and right for left hands
+    std::vector<stroke> strokes; ///< at least one; the earliest starts at 0
+    bool mirror = false;         ///< true to exchange left and right for left hands
     source_place where = {};
 };
 
@@ -46,7 +46,7 @@ struct written_key {
 struct method_definition {
     std::string name;
     options::option_values options = {};          ///< the method's options, and defaults for the others
-    std::optional<stroke> drawn = {};             ///< stroke that replaces the motion's
+    std::vector<stroke> strokes = {};             ///< strokes that replace the motion's; may be empty
     source_place where = {};                      ///< place of the method; for a variant, of the run's values
     std::map<std::size_t, written_key> keys = {}; ///< keys of the method's table, by option index
     std::optional<std::size_t> made_of = {}; ///< base method of a variant; missing for a method in the file
@@ -127,6 +127,18 @@ struct experiment_definition {
     experiment_outline outline = {}; ///< outline of all runs and groups
     std::string text = {};           ///< text of the whole definition, TOML
 };
+
+/// Start and end of a stroke, s from the start of its motion.
+struct stroke_span {
+    double start_s = 0.0;
+    double end_s = 0.0;
+};
+
+/// Returns the start and end of each stroke. \throws error (bad_input) if one would start below 0.
+std::vector<stroke_span> list_spans(const std::vector<stroke>& strokes);
+
+/// Returns the end of the stroke that ends last, s.
+double find_duration_s(const std::vector<stroke>& strokes);
 
 /// Reads a definition. `name` names the text in messages. File names in the text are relative to `folder`.
 /// \throws error (bad_input) with line and column if the text is not TOML, a key is missing, unknown, of the

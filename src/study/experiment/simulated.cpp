@@ -115,8 +115,8 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
            [&d, &r, &stimuli](std::size_t motion, std::size_t method) {
                return find_cost(d, r, stimuli, motion, method);
            },
-           [&stimuli](std::size_t motion, std::size_t method) -> const std::vector<point>& {
-               return stimuli.at(motion, method).felt_path;
+           [&stimuli](std::size_t motion, std::size_t method) -> const std::vector<std::vector<point>>& {
+               return stimuli.at(motion, method).felt_paths;
            }}
 {
     task_.prepare(run_);

@@ -97,22 +97,25 @@ std::vector<point> sample_path(const std::vector<percept_sample>& samples)
     return parts;
 }
 
-// Returns the stroke that a method plays for a motion: the method's stroke, or the motion's. The method's
-// carrier, waveform and modulation replace those in the stroke's file.
-stroke choose_stroke(const motion_definition& motion, const method_definition& method)
+// Returns the strokes that a method plays for a motion: the method's strokes, or the motion's. The method's
+// carrier, waveform and modulation replace those in the strokes' file.
+std::vector<stroke> choose_strokes(const motion_definition& motion, const method_definition& method)
 {
-    stroke s = vary_stroke(method.drawn.value_or(motion.drawn), method);
-    if (method.silent)
-        s.motion = s.motion.with_intensity(0.0);
-    if (method.options.gives("carrier")) {
-        s.sound.carrier_hz.reset();
-        s.sound.carrier_profile.clear();
+    std::vector<stroke> all = method.strokes.empty() ? motion.strokes : method.strokes;
+    vary_strokes(all, method);
+    for (stroke& s : all) {
+        if (method.silent)
+            s.motion = s.motion.with_intensity(0.0);
+        if (method.options.gives("carrier")) {
+            s.sound.carrier_hz.reset();
+            s.sound.carrier_profile.clear();
+        }
+        if (method.options.gives("waveform"))
+            s.sound.wave.reset();
+        if (method.options.gives("am"))
+            s.sound.am.reset();
     }
-    if (method.options.gives("waveform"))
-        s.sound.wave.reset();
-    if (method.options.gives("am"))
-        s.sound.am.reset();
-    return s;
+    return all;
 }
 
 // Returns the session's render options, replaced by those that a method gives.
@@ -142,12 +145,14 @@ std::vector<std::size_t> list_played(const run_definition& r)
     return all;
 }
 
-// Returns the target of a stimulus: the motion, with the duration of the stroke that is played.
-stroke find_target(const motion_definition& motion, const method_definition& method, const stroke& played)
+// Returns the target of stroke i of a stimulus: that stroke of the motion, or the motion's last one, with the
+// duration of the stroke that is played.
+stroke find_target(const motion_definition& motion, const method_definition& method, const stroke& played,
+                   std::size_t i)
 {
-    if (!method.drawn)
+    if (method.strokes.empty())
         return played;
-    stroke target = motion.drawn;
+    stroke target = motion.strokes[std::min(i, motion.strokes.size() - 1)];
     target.motion = target.motion.with_duration(played.motion.duration_s());
     return target;
 }
@@ -400,36 +405,44 @@ void stimulus_set::warn_of_same(const experiment_definition& d)
                                             d.methods[last.method].name));
 }
 
+void stimulus_set::predict(stimulus& s, const motion_definition& motion,
+                           const method_definition& method) const
+{
+    std::vector<percept_sample> all;
+    for (std::size_t i = 0; i < s.made.strokes.size(); ++i) {
+        const std::vector<percept_sample> samples =
+            predict_percept(array_, find_target(motion, method, s.made.strokes[i], i), s.made.plans[i].plan);
+        s.felt_paths.push_back(sample_path(samples));
+        all.insert(all.end(), samples.begin(), samples.end());
+    }
+    s.felt = summarise(all);
+}
+
 stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_at, std::size_t method_at,
                             std::string_view vary, const layout& faces)
 {
     const motion_definition& motion = d.motions[motion_at];
     const method_definition& method = d.methods[method_at];
     try {
-        session::piece one{.strokes = {choose_stroke(motion, method)}};
-        session::place_strokes(one, faces, method.options);
-        const stroke& played = one.strokes.front();
-        if (played.motion.duration_s() > longest_stimulus_s)
+        stimulus s{motion_at, method_at, {.strokes = choose_strokes(motion, method)}};
+        session::place_strokes(s.made, faces, method.options);
+        if (find_duration_s(s.made.strokes) > longest_stimulus_s)
             throw error(error_kind::bad_input, "stroke", "it lasts more than ten minutes", "make it shorter");
-        session::plan_stroke(one, 0, array_, faces, method.options);
-        stimulus s{motion_at, method_at};
-        s.plan = one.plans.front().plan;
+        session::plan_piece(s.made, array_, faces, method.options);
         s.render = choose_render(options_, method.options);
-        const score sounds(array_, one.plans, s.render);
+        const score sounds = session::make_score(s.made, array_, s.render);
         s.frames = sounds.frames();
         s.weakened_db = sounds.weakened().weakened_db;
-        s.text = files::plans_text({one, array_, sounds, s.render});
+        s.text = files::plans_text({s.made, array_, sounds, s.render});
         s.hash = detail::sha256_text(s.text);
-        const std::vector<percept_sample> samples =
-            predict_percept(array_, find_target(motion, method, played), s.plan);
-        s.felt = summarise(samples);
-        s.felt_path = sample_path(samples);
-        for (const std::string& w : s.plan.warnings) {
-            const std::string warning =
-                fmt::format("motion \"{}\" with method \"{}\": {}", motion.name, method.name, w);
-            if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end())
-                warnings_.push_back(warning);
-        }
+        predict(s, motion, method);
+        for (const placed_plan& p : s.made.plans)
+            for (const std::string& w : p.plan.warnings) {
+                const std::string warning =
+                    fmt::format("motion \"{}\" with method \"{}\": {}", motion.name, method.name, w);
+                if (std::ranges::find(warnings_, warning) == warnings_.end())
+                    warnings_.push_back(warning);
+            }
         return s;
     } catch (const error& e) {
         if (e.kind() != error_kind::bad_input)
@@ -490,7 +503,7 @@ score stimulus_set::make_score(const planned_trial& t, const std::optional<drive
         const stimulus& s = at(t.motion, method);
         render_options o = s.render;
         o.limits = limits;
-        return score(array_, s.plan, o);
+        return session::make_score(s.made, array_, o);
     };
     if (!t.method_2)
         return alone(t.method_1);

@@ -17,6 +17,7 @@
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 
+#include "session/piece.hpp"
 #include "study/experiment/definition.hpp"
 
 namespace tactor::study {
@@ -228,14 +229,15 @@ private:
 struct stimulus {
     std::size_t motion = 0; ///< index in the definition
     std::size_t method = 0;
-    tactor::plan plan = {};
-    render_options render = {};        ///< the session's options, replaced by the method's
-    double weakened_db = 0.0;          ///< reduction of the level, see weakening
-    std::uint64_t frames = 0;          ///< length from the first frame to the end of the last sound
-    std::string text = {};             ///< plan as tactor-plan/1
-    std::string hash = {};             ///< SHA-256 of `text`
-    percept_summary felt = {};         ///< predicted percept
-    std::vector<point> felt_path = {}; ///< predicted positions at path_parts equal parts of the time
+    session::piece made = {};   ///< strokes, and a plan for each
+    render_options render = {}; ///< the session's options, replaced by the method's
+    double weakened_db = 0.0;   ///< reduction of the level, see weakening
+    std::uint64_t frames = 0;   ///< length from the first frame to the end of the last sound
+    std::string text = {};      ///< plans as tactor-plan/1 or tactor-plans/1
+    std::string hash = {};      ///< SHA-256 of `text`
+    percept_summary felt = {};  ///< predicted percept of all strokes, each by itself
+    /// Predicted positions of each stroke at path_parts equal parts of its time.
+    std::vector<std::vector<point>> felt_paths = {};
 };
 
 /// Number of equal parts of time into which movements are divided for comparison.
@@ -267,6 +269,8 @@ private:
     /// Plans and predicts one stimulus. `vary`: option or stroke parameter that the run varies, if any.
     stimulus make(const experiment_definition& d, std::size_t motion, std::size_t method,
                   std::string_view vary, const layout& faces);
+    /// Predicts how each stroke feels, as if it were played alone.
+    void predict(stimulus& s, const motion_definition& motion, const method_definition& method) const;
     void warn_of_same(const experiment_definition& d);
 
     array array_;

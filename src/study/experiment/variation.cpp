@@ -25,10 +25,11 @@ namespace {
 using detail::toml_table;
 
 /// Parameters of a stroke that a run may vary. Other names are options.
-constexpr std::array<std::pair<std::string_view, detail::bounds>, 4> stroke_parameters{{
+constexpr std::array<std::pair<std::string_view, detail::bounds>, 5> stroke_parameters{{
     {"x_mm", {-detail::max_mm, detail::max_mm}},
     {"y_mm", {-detail::max_mm, detail::max_mm}},
     {"length_mm", {0.0, detail::max_mm, true}},
+    {"apart_mm", {0.0, detail::max_mm, true}},
     {"rotate_deg", detail::turn_deg},
 }};
 
@@ -46,6 +47,38 @@ const options::option* find_number(std::string_view name)
     const bool is_number =
         o != nullptr && (o->what == options::kind::number || o->what == options::kind::whole);
     return is_number && (o->where & options::in_method) != 0 ? o : nullptr;
+}
+
+// Returns the middle of the first and last places of all strokes.
+point find_middle(const std::vector<stroke>& all)
+{
+    point sum;
+    for (const stroke& s : all)
+        for (const double t_s : {0.0, s.motion.duration_s()}) {
+            sum.x_mm += s.motion.position(t_s).x_mm;
+            sum.y_mm += s.motion.position(t_s).y_mm;
+        }
+    const double share = 0.5 / static_cast<double>(all.size());
+    return {share * sum.x_mm, share * sum.y_mm};
+}
+
+// Returns the length of the first stroke, or the distance between the starts of the first two.
+// \throws error (bad_input): it is 0.
+double find_extent_mm(const std::vector<stroke>& all, const std::string& parameter)
+{
+    const trajectory& first = all.front().motion;
+    if (parameter == "length_mm") {
+        if (!(first.length_mm() > 0.0))
+            throw error(error_kind::bad_input, parameter, "the stroke is a single place",
+                        "use a path with a length");
+        return first.length_mm();
+    }
+    const double apart_mm =
+        all.size() > 1 ? distance_mm(first.position(0.0), all[1].motion.position(0.0)) : 0.0;
+    if (!(apart_mm > 0.0))
+        throw error(error_kind::bad_input, parameter, "there are no two strokes that start at two places",
+                    "use a file with two strokes");
+    return apart_mm;
 }
 
 } // namespace
@@ -101,30 +134,26 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
     }
 }
 
-stroke vary_stroke(stroke s, const method_definition& m)
+void vary_strokes(std::vector<stroke>& all, const method_definition& m)
 {
     if (m.vary.empty())
-        return s;
+        return;
     const double v = *m.value;
-    const point from = s.motion.position(0.0);
-    const point to = s.motion.position(s.motion.duration_s());
-    const point middle{0.5 * (from.x_mm + to.x_mm), 0.5 * (from.y_mm + to.y_mm)};
+    const point middle = find_middle(all);
     detail::affine map;
     if (m.vary == "rotate_deg") {
         map = detail::rotation(v);
-    } else if (m.vary == "length_mm") {
-        if (!(s.motion.length_mm() > 0.0))
-            throw error(error_kind::bad_input, "length_mm", "the stroke is a single place",
-                        "use a path with a length");
-        const double scale = v / s.motion.length_mm();
+    } else if (m.vary == "length_mm" || m.vary == "apart_mm") {
+        const double scale = v / find_extent_mm(all, m.vary);
         map = {scale, 0.0, 0.0, scale, 0.0, 0.0};
     }
     map.e = middle.x_mm + (m.vary == "x_mm" ? v : 0.0);
     map.f = middle.y_mm + (m.vary == "y_mm" ? v : 0.0);
-    s.motion = detail::moved(s.motion, middle, map, {}, m.vary);
-    if (s.speed_mm_s && s.motion.length_mm() > 0.0)
-        s.motion = s.motion.with_speed(*s.speed_mm_s);
-    return s;
+    for (stroke& s : all) {
+        s.motion = detail::moved(s.motion, middle, map, {}, m.vary);
+        if (s.speed_mm_s && s.motion.length_mm() > 0.0)
+            s.motion = s.motion.with_speed(*s.speed_mm_s);
+    }
 }
 
 void set_value(planned_trial& t, const run_definition& r, std::size_t place)

@@ -35,9 +35,11 @@ std::optional<varied> find_varied(std::string_view name);
 void make_variants(const detail::toml_table& t, run_definition& r,
                    const std::vector<method_definition>& methods, std::vector<method_definition>& more);
 
-/// Returns the stroke changed by the value of the method's stroke parameter, if it has one.
-/// \throws error (bad_input) if a stroke that does not move would get a length, or a position is out of
-///         range.
-stroke vary_stroke(stroke s, const method_definition& m);
+/// Changes strokes by the value of the method's stroke parameter, if it has one. They move, turn and grow
+/// together, about the middle between all their ends.
+/// \throws error (bad_input) if a stroke that does not move would get a length, if no two strokes start at
+/// two
+///         places that could get a distance, or if a position is out of range.
+void vary_strokes(std::vector<stroke>& all, const method_definition& m);
 
 } // namespace tactor::study

@@ -114,8 +114,10 @@ std::string acceleration_text(const session_facts& s)
     for (const json_value& t : s.facts()["array"]["tactors"].list())
         if (const auto um = t["displacement_um_at_0dbfs"].number())
             for (const planned_stimulus& p : s.stimuli)
-                if (const auto hz = p.facts()["stroke"]["carrier_hz"].number())
-                    by_carrier[*hz].push_back(*um * m_per_um * std::pow(2.0 * std::numbers::pi * *hz, 2.0));
+                for (const json_value& plan : p.plans())
+                    if (const auto hz = plan["stroke"]["carrier_hz"].number())
+                        by_carrier[*hz].push_back(*um * m_per_um *
+                                                  std::pow(2.0 * std::numbers::pi * *hz, 2.0));
     std::vector<std::string> parts;
     for (const auto& [hz, m_s2] : by_carrier)
         parts.push_back(fmt::format("{} m/s2 at {} Hz", range_text(m_s2), plain_number(hz)));
@@ -493,8 +495,9 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     json& equations = all["equations"] = json::object(); // by names from files
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
-            for (const char* key : {"algorithm", "phantom"})
-                equations[p.facts()[key].need_text()] = true;
+            for (const json_value& plan : p.plans())
+                for (const char* key : {"algorithm", "phantom"})
+                    equations[plan[key].need_text()] = true;
     all["stimuli"] = list_stimuli(f);
     all["recorded"] = !all["stimuli"].empty();
     all["valued"] = any_has(all["stimuli"], "value");

@@ -40,7 +40,7 @@ std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::pat
         const std::string text = read_file(file);
         if (const std::string is = detail::sha256_text(text); is != p.hash)
             refuse_changed(p.file, p.hash, is);
-        p.plan = files::read_object(text, p.file);
+        p.document = files::read_object(text, p.file);
         all.push_back(std::move(p));
     }
     return all;

@@ -26,16 +26,22 @@ using files::json_value;
 /// Hint for a file that differs from what a session wrote.
 inline constexpr const char* changed_file = "it was changed";
 
-/// A stimulus that a session lists, with its plan (schema tactor-plan/1).
+/// A stimulus that a session lists, with its plans (schema tactor-plan/1, or tactor-plans/1 for several
+/// strokes).
 struct planned_stimulus {
     std::string motion;
     std::string method;
     std::string hash;
     std::string file;
-    nlohmann::ordered_json plan;
+    nlohmann::ordered_json document;
     std::optional<double> value = {}; ///< value of what its run varies
 
-    json_value facts() const { return {plan, file, changed_file}; }
+    /// Returns the plan of each stroke.
+    std::vector<json_value> plans() const
+    {
+        const json_value all{document, file, changed_file};
+        return document.contains("plans") ? all["plans"].list() : std::vector{all};
+    }
 };
 
 /// Number of a session's trials of a run.

@@ -23,7 +23,8 @@ std::string join_plans(const session_facts& s, const F& text, const char* betwee
 {
     std::set<std::string> seen;
     for (const planned_stimulus& p : s.stimuli)
-        seen.insert(text(p));
+        for (const json_value& plan : p.plans())
+            seen.insert(text(p, plan));
     seen.erase("");
     return join(seen, between);
 }
@@ -38,9 +39,8 @@ std::vector<double> list_burst_numbers(const json_value& plan, const char* key)
 }
 
 // Describes the wave, its phase and envelope, and the rise times of actuators.
-std::string describe_sound(const planned_stimulus& p)
+std::string describe_sound(const planned_stimulus&, const json_value& plan)
 {
-    const json_value plan = p.facts();
     const json_value stroke = plan["stroke"];
     std::string text = stroke["waveform"].text().value_or("sine");
     for (const char* key :
@@ -91,8 +91,9 @@ json describe_stimuli(const stimulus_row& row)
     const auto range = [&row](const auto& get) {
         std::vector<double> all;
         for (const planned_stimulus* p : row.plans)
-            if (const auto v = get(p->facts()).number())
-                all.push_back(*v);
+            for (const json_value& plan : p->plans())
+                if (const auto v = get(plan).number())
+                    all.push_back(*v);
         return all.empty() ? "-" : range_text(all);
     };
     std::set<std::string> paths;
@@ -100,12 +101,13 @@ json describe_stimuli(const stimulus_row& row)
     std::vector<double> bursts_s;
     std::vector<double> overlaps;
     for (const planned_stimulus* p : row.plans) {
-        const json_value plan = p->facts();
-        const std::vector<double> own = list_burst_numbers(plan, "duration_s");
-        paths.insert(plan["stroke"]["name"].words());
-        counts.push_back(static_cast<double>(own.size()));
-        bursts_s.insert(bursts_s.end(), own.begin(), own.end());
-        overlaps.push_back(static_cast<double>(plan["conflicts"].list().size()));
+        for (const json_value& plan : p->plans()) {
+            const std::vector<double> own = list_burst_numbers(plan, "duration_s");
+            paths.insert(plan["stroke"]["name"].words());
+            counts.push_back(static_cast<double>(own.size()));
+            bursts_s.insert(bursts_s.end(), own.begin(), own.end());
+            overlaps.push_back(static_cast<double>(plan["conflicts"].list().size()));
+        }
     }
     std::vector<std::string> values;
     for (const auto& [option, all] : row.values)
@@ -136,8 +138,9 @@ std::string describe_carrier(const session_facts& s)
 {
     std::vector<double> ramps;
     for (const planned_stimulus& p : s.stimuli)
-        for (const double ramp_s : list_burst_numbers(p.facts(), "ramp_s"))
-            ramps.push_back(ramp_s);
+        for (const json_value& plan : p.plans())
+            for (const double ramp_s : list_burst_numbers(plan, "ramp_s"))
+                ramps.push_back(ramp_s);
     return join_plans(s, describe_sound, "; ") +
            (ramps.empty() ? "" : fmt::format("; ramps of {} s at both ends of a burst", range_text(ramps)));
 }
@@ -145,7 +148,9 @@ std::string describe_carrier(const session_facts& s)
 bool has_bursts(const session_facts& s)
 {
     return std::ranges::any_of(s.stimuli, [](const planned_stimulus& p) {
-        return !list_burst_numbers(p.facts(), "duration_s").empty();
+        return std::ranges::any_of(p.plans(), [](const json_value& plan) {
+            return !list_burst_numbers(plan, "duration_s").empty();
+        });
     });
 }
 
@@ -162,8 +167,8 @@ nlohmann::ordered_json list_methods(const study_facts& f)
         for (const session_facts& s : f.sessions) {
             json own = json::object();
             for (const char* key : {"algorithm", "phantom"})
-                own[key] = join_plans(s, [&](const planned_stimulus& p) {
-                    return p.method == name ? p.facts()[key].words() : "";
+                own[key] = join_plans(s, [&](const planned_stimulus& p, const json_value& plan) {
+                    return p.method == name ? plan[key].words() : "";
                 });
             if (s.design)
                 if (const auto m = std::ranges::find(s.design->methods, name, &method_definition::name);
@@ -214,16 +219,17 @@ std::set<std::string> list_notes(const study_facts& f)
 {
     std::set<std::string> notes;
     for (const session_facts& s : f.sessions)
-        for (const planned_stimulus& p : s.stimuli) {
-            if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
-                notes.insert(fmt::format("{}: {}", p.motion, note));
-            if (const auto db = p.facts()["weakened_db"].number(); db && *db < 0.0)
-                notes.insert(
-                    fmt::format("{} with {}: {:.2f} dB weaker than the level, so that no tactor exceeds it",
-                                p.motion, p.method, -*db));
-            for (const json_value& w : p.facts()["warnings"].list())
-                notes.insert(fmt::format("{} with {}: {}", p.motion, p.method, w.need_text()));
-        }
+        for (const planned_stimulus& p : s.stimuli)
+            for (const json_value& plan : p.plans()) {
+                if (const std::string note = plan["stroke"]["note"].words(); !note.empty())
+                    notes.insert(fmt::format("{}: {}", p.motion, note));
+                if (const auto db = plan["weakened_db"].number(); db && *db < 0.0)
+                    notes.insert(fmt::format(
+                        "{} with {}: {:.2f} dB weaker than the level, so that no tactor exceeds it", p.motion,
+                        p.method, -*db));
+                for (const json_value& w : plan["warnings"].list())
+                    notes.insert(fmt::format("{} with {}: {}", p.motion, p.method, w.need_text()));
+            }
     return notes;
 }
 

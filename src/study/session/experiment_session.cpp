@@ -85,10 +85,11 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
     };
     for (motion_definition& m : d.motions)
         if (m.mirror)
-            exchange(m.drawn, "motion", m.name);
+            for (stroke& s : m.strokes)
+                exchange(s, "motion", m.name);
     for (method_definition& m : d.methods)
-        if (m.drawn)
-            exchange(*m.drawn, "method", m.name);
+        for (stroke& s : m.strokes)
+            exchange(s, "method", m.name);
 }
 
 // Keeps only the runs, motions and methods of a group.
@@ -190,7 +191,8 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     std::vector<const plan*> plans;
     for (const stimulus& s : stimuli.all())
         if (s.render.sl_db)
-            plans.push_back(&s.plan);
+            for (const placed_plan& p : s.made.plans)
+                plans.push_back(&p.plan);
     if (std::string other = session::other_carrier(e, plans); !other.empty())
         doubts.push_back(std::move(other));
     return doubts;
@@ -337,7 +339,7 @@ score walk_score(const experiment_definition& d, const array& a, const render_op
 
 double find_lead_s(const prepared_experiment& p, const run_definition& r, const planned_trial& t)
 {
-    const double shown_s = r.animation ? p.definition.motions[t.motion].drawn.motion.duration_s() : 0.0;
+    const double shown_s = r.animation ? find_duration_s(p.definition.motions[t.motion].strokes) : 0.0;
     return shown_s + stimulus_lead_s;
 }
 

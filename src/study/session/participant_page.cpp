@@ -22,11 +22,20 @@ std::optional<std::uint64_t> whole_number(const ordered& j, const char* key)
                                                            : std::nullopt;
 }
 
-ordered points_list(const std::vector<point>& path)
+ordered point_list(const std::optional<point>& p)
+{
+    return p ? ordered{p->x_mm, p->y_mm} : ordered();
+}
+
+template <class Points>
+ordered paths_list(const std::vector<Points>& paths)
 {
     ordered all = ordered::array();
-    for (const point& p : path)
-        all.push_back({p.x_mm, p.y_mm});
+    for (const Points& path : paths) {
+        all.push_back(ordered::array());
+        for (const auto& p : path)
+            all.back().push_back(point_list(p));
+    }
     return all;
 }
 
@@ -97,16 +106,16 @@ std::string page_dialogue::state(std::int64_t now_ns) const
                          {"practice", screen_.where->practice},
                          {"trial", screen_.where->trial},
                          {"trials", screen_.where->trials}};
-    for (const std::vector<point>& motion : screen_.pictures)
-        j["pictures"].push_back(points_list(motion));
+    for (const auto& motion : screen_.pictures)
+        j["pictures"].push_back(paths_list(motion));
     if (screen_.stimuli > 0) {
         j["stimuli"] = screen_.stimuli;
         j["playing"] = screen_.playing;
         if (!screen_.names.empty())
             j["names"] = screen_.names;
     }
-    if (screen_.path.size() > 1)
-        j["path"] = points_list(screen_.path);
+    if (!screen_.paths.empty())
+        j["paths"] = paths_list(screen_.paths);
     if (screen_.lasts_s > 0.0) {
         j["lasts_s"] = screen_.lasts_s;
         j["passed_s"] = static_cast<double>(now_ns - since_ns_) * 1e-9;

@@ -61,13 +61,15 @@ struct page_screen {
     entry_kind entry = entry_kind::none; ///< kind of typed answer, in place of choices
     unsigned lowest = 1;                 ///< smallest number that may be entered
     unsigned greatest = 1;
-    bool back = false;                             ///< true if key b goes to the previous question
-    std::vector<std::vector<point>> pictures = {}; ///< path of a motion for each choice; may be empty
-    unsigned stimuli = 0;                          ///< number of stimuli to show; 0 if not shown one by one
-    unsigned playing = 0;                          ///< stimulus that plays now, from 1; 0 if none
-    std::vector<std::string> names = {};           ///< names of the stimuli; may be empty
-    std::vector<point> path = {};                  ///< path of the target at equal parts of its time
-    double lasts_s = 0.0;                          ///< duration of the target or the break
+    bool back = false; ///< true if key b goes to the previous question
+    /// Paths of a motion's strokes for each choice, at equal parts of their times; may be empty.
+    std::vector<std::vector<std::vector<point>>> pictures = {};
+    unsigned stimuli = 0;                ///< number of stimuli to show; 0 if not shown one by one
+    unsigned playing = 0;                ///< stimulus that plays now, from 1; 0 if none
+    std::vector<std::string> names = {}; ///< names of the stimuli; may be empty
+    /// Positions of the target's strokes at equal parts of its time; missing while a stroke does not play.
+    std::vector<std::vector<std::optional<point>>> paths = {};
+    double lasts_s = 0.0; ///< duration of the target or the break
     std::optional<page_progress> where = {};
 };
 

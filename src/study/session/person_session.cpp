@@ -59,12 +59,13 @@ page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool aske
     return s;
 }
 
-page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target)
+page_screen target_screen(const prepared_experiment& p, const session_step& s,
+                          const std::vector<stroke>& target)
 {
     page_screen shown = idle_screen(p, "target");
-    shown.lasts_s = target.motion.duration_s();
-    shown.path = sample_way(target, p.where.tactors,
-                            std::clamp(std::ceil(shown.lasts_s * points_per_s), 50.0, most_points));
+    shown.lasts_s = find_duration_s(target);
+    shown.paths = sample_target(target, p.where.tactors,
+                                std::clamp(std::ceil(shown.lasts_s * points_per_s), 50.0, most_points));
     shown.where = find_progress(p, s);
     return shown;
 }
@@ -359,8 +360,8 @@ bool person_session::end()
 std::string person_session::animate(const session_step& s, const planned_trial& t)
 {
     constexpr const char* gone = "the device is gone";
-    const stroke& target = p_.definition.motions[t.motion].drawn;
-    const double duration_s = target.motion.duration_s();
+    const std::vector<stroke>& target = p_.definition.motions[t.motion].strokes;
+    const double duration_s = find_duration_s(target);
     if (page_ != nullptr) {
         page_->show(target_screen(p_, s, target));
         const bool began = page_->is_watched();

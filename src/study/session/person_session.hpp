@@ -35,7 +35,7 @@ struct target_display {
     bool moves = false; ///< false if a line of text replaces the target
     /// Shows a target. Returns a function that draws it at a time since its start, s. The picture lives as
     /// long as that function; both arguments must live longer.
-    std::function<std::function<void(double t_s)>(const array& a, const stroke& target)> show;
+    std::function<std::function<void(double t_s)>(const array& a, const std::vector<stroke>& target)> show;
 };
 
 /// Names of a session's devices, for its data; empty if there is none.

@@ -18,6 +18,24 @@ std::string number_keys(std::size_t answers)
     return answers <= most_keys ? std::string("123456789").substr(0, answers) : "";
 }
 
+point bring_onto(const layout& faces, point p)
+{
+    return faces.contains(p) ? p : faces.nearest(p);
+}
+
+// Returns the places of each stroke at equal parts of its own time.
+std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, const layout& faces)
+{
+    std::vector<std::vector<point>> all;
+    for (const stroke& s : strokes) {
+        all.emplace_back();
+        for (double i = 0.0; i <= picture_points; ++i)
+            all.back().push_back(
+                bring_onto(faces, s.motion.position(s.motion.duration_s() * i / picture_points)));
+    }
+    return all;
+}
+
 // Returns the possible answers for a terminal: "1 none, 2 slight", "1 (never) to 7 (always)", "0 to 120".
 std::string answers_text(const questionnaire_item& item, const page_words& w)
 {
@@ -53,16 +71,29 @@ page_progress find_progress(const prepared_experiment& p, const session_step& s)
             s.practice ? run.practice.size() : run.trials.size()};
 }
 
-std::vector<point> sample_way(const stroke& target, const array& a, double parts)
+std::vector<std::optional<point>> find_places(const std::vector<stroke>& target, const layout& faces,
+                                              double t_s)
 {
-    const trajectory& m = target.motion;
+    const std::vector<stroke_span> spans = list_spans(target);
+    std::vector<std::optional<point>> all(target.size());
+    for (std::size_t i = 0; i < target.size(); ++i)
+        if (target.size() == 1 || (t_s >= spans[i].start_s && t_s <= spans[i].end_s))
+            all[i] = bring_onto(faces, target[i].motion.position(t_s - spans[i].start_s));
+    return all;
+}
+
+std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<stroke>& target,
+                                                             const array& a, double parts)
+{
     const layout faces(a);
-    std::vector<point> way;
+    const double duration_s = find_duration_s(target);
+    std::vector<std::vector<std::optional<point>>> all(target.size());
     for (double i = 0.0; i <= parts; ++i) {
-        const point p = m.position(m.duration_s() * i / parts);
-        way.push_back(faces.contains(p) ? p : faces.nearest(p));
+        const std::vector<std::optional<point>> now = find_places(target, faces, duration_s * i / parts);
+        for (std::size_t s = 0; s < now.size(); ++s)
+            all[s].push_back(now[s]);
     }
-    return way;
+    return all;
 }
 
 question ask_about_trial(const prepared_experiment& p, const session_step& s)
@@ -81,8 +112,7 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
     shown.is_line = a.is_line;
     if (a.shows_motions)
         for (const std::size_t m : r.motions)
-            shown.pictures.push_back(
-                sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
+            shown.pictures.push_back(draw_motion(p.definition.motions[m].strokes, layout(p.where.tactors)));
     return {std::move(shown), std::move(a.possible)};
 }
 

@@ -3,6 +3,7 @@
 /// Questions of trials and questionnaires, for the terminal and the participant's page.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,14 @@ trial_answers find_answers(const experiment_definition& d, const run_definition&
 /// Returns the progress of the session at a step.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);
 
-/// Returns a target's positions at `parts` equal parts of its time. Moves each position outside the array to
-/// the nearest point of the array.
-std::vector<point> sample_way(const stroke& target, const array& a, double parts);
+/// Returns the position of each stroke of a target at a time since the target's start, moved to the nearest
+/// point of the array. One of several strokes has no position before it starts and after it ends.
+std::vector<std::optional<point>> find_places(const std::vector<stroke>& target, const layout& faces,
+                                              double t_s);
+
+/// Returns these positions, by stroke, at `parts` equal parts of the target's time.
+std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<stroke>& target,
+                                                             const array& a, double parts);
 
 /// Returns the question of a trial.
 question ask_about_trial(const prepared_experiment& p, const session_step& s);

@@ -120,7 +120,7 @@ private:
     {
         const run_definition& r = p_.run_at(s.run);
         if (r.animation)
-            now_ += frames(p_.definition.motions[t.motion].drawn.motion.duration_s());
+            now_ += frames(find_duration_s(p_.definition.motions[t.motion].strokes));
         now_ += codes_.lead(s);
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
         trial_row row = planned_row(p_, t, s.which);

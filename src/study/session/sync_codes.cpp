@@ -231,7 +231,7 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
         return;
     lead_ = code_frames(*code_, p.render.rate);
     if (const stimulus& any = p.stimuli.all().front(); code_->channel && there != nullptr)
-        like_.emplace(p.where.tactors, any.plan, any.render);
+        like_ = session::make_score(any.made, p.where.tactors, any.render);
     if (code_->lsl && there != nullptr)
         lsl_.emplace("tactor-" + p.participant);
     if (there != nullptr && !code_->channel && lines == nullptr && !lsl_)

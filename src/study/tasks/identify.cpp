@@ -26,12 +26,21 @@ std::vector<tactor::point> target_path(const stroke& s)
     return parts;
 }
 
-double mean_distance(const std::vector<tactor::point>& a, const std::vector<tactor::point>& b)
+using paths = std::vector<std::vector<tactor::point>>; // by stroke
+
+// Returns the mean distance of two motions, whose strokes are compared in their order. If one has fewer,
+// its strokes come again.
+double mean_distance(const paths& a, const paths& b)
 {
+    const std::size_t strokes = std::max(a.size(), b.size());
     double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += std::hypot(b[i].x_mm - a[i].x_mm, b[i].y_mm - a[i].y_mm);
-    return sum / static_cast<double>(a.size());
+    for (std::size_t s = 0; s < strokes; ++s) {
+        const std::vector<tactor::point>& p = a[s % a.size()];
+        const std::vector<tactor::point>& q = b[s % b.size()];
+        for (std::size_t i = 0; i < p.size(); ++i)
+            sum += std::hypot(q[i].x_mm - p[i].x_mm, q[i].y_mm - p[i].y_mm);
+    }
+    return sum / static_cast<double>(strokes * a.front().size());
 }
 
 double find_chance(const run_outline& o)
@@ -109,18 +118,22 @@ public:
 
     void prepare(simulated_run& who) const override
     {
-        for (const std::size_t m : who.run.motions)
-            who.targets.push_back(target_path(who.definition.motions[m].drawn));
+        for (const std::size_t m : who.run.motions) {
+            who.targets.emplace_back();
+            for (const stroke& s : who.definition.motions[m].strokes)
+                who.targets.back().push_back(target_path(s));
+        }
     }
     double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        std::vector<tactor::point> felt = who.felt_path(t.motion, t.method_1);
-        for (tactor::point& p : felt) {
-            p.x_mm += who.truth.sigma * r.normal();
-            p.y_mm += who.truth.sigma * r.normal();
-        }
+        paths felt = who.felt_paths(t.motion, t.method_1);
+        for (std::vector<tactor::point>& path : felt)
+            for (tactor::point& p : path) {
+                p.x_mm += who.truth.sigma * r.normal();
+                p.y_mm += who.truth.sigma * r.normal();
+            }
         std::vector<double> distances;
-        for (const std::vector<tactor::point>& target : who.targets)
+        for (const paths& target : who.targets)
             distances.push_back(mean_distance(target, felt));
         return static_cast<double>(std::ranges::min_element(distances) - distances.begin() + 1);
     }

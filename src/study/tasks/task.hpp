@@ -60,9 +60,10 @@ struct simulated_run {
     const run_definition& run;
     /// Returns the predicted error or unevenness of a stimulus. \throws error if it is not felt.
     std::function<double(std::size_t motion, std::size_t method)> cost;
-    std::function<const std::vector<point>&(std::size_t motion, std::size_t method)> felt_path;
-    double mean_utility = 0.0;                    ///< rate: mean of -ln cost over the stimuli
-    std::vector<std::vector<point>> targets = {}; ///< identify: by motion
+    /// Returns where each stroke of a stimulus is felt, at equal parts of its time.
+    std::function<const std::vector<std::vector<point>>&(std::size_t motion, std::size_t method)> felt_paths;
+    double mean_utility = 0.0;                                 ///< rate: mean of -ln cost over the stimuli
+    std::vector<std::vector<std::vector<point>>> targets = {}; ///< identify: by motion and stroke
 };
 
 /// Main comparison of a run.

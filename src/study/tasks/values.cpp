@@ -46,7 +46,7 @@ detail::bounds read_vary(const toml_table& t, run_outline& o)
     if (!v)
         t.fail("vary", fmt::format("\"{}\" is not a number that a run can vary", o.vary),
                "use an option of [[method]] such as level_dbfs, speed_mm_s or soa_s, or x_mm, y_mm, "
-               "length_mm or rotate_deg of the stroke");
+               "length_mm, apart_mm or rotate_deg of the stroke");
     o.on_db_axis = v->on_db_axis;
     o.standard = t.number("standard", v->allowed);
     if (o.standard)

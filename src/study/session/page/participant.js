@@ -53,9 +53,9 @@ function show(s) {
   show_answers(s, tactors, words, answer);
   enable_answers(state.ask > 0);
   show_only_if(by_id("back"), s.back);
-  show_only_if(by_id("field"), s.path);
+  show_only_if(by_id("field"), s.paths);
   show_only_if(by_id("rest"), s.screen === "rest");
-  if (s.path) draw_target(tactors, s.path);
+  if (s.paths) draw_target(tactors, s.paths);
   if (s.lasts_s) move(s);
 }
 
@@ -81,7 +81,7 @@ function show_progress(p, part_is_over) {
 function move(s) {
   if (s !== state) return;
   const passed_s = (performance.now() - began) / 1000;
-  if (s.path) move_target(s.path, passed_s / s.lasts_s);
+  if (s.paths) move_target(s.paths, passed_s / s.lasts_s);
   else show_left(Math.max(0, s.lasts_s - passed_s), s.lasts_s);
   requestAnimationFrame(() => move(s));
 }
