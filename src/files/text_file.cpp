@@ -227,9 +227,9 @@ whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kin
     return read_text(in.get(), file.string(), max_bytes);
 }
 
-void refuse_no_text(std::string_view text, const std::string& name, std::string_view given)
+void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint)
 {
-    const std::string_view hint = choose_hint(given);
+    hint = choose_hint(hint);
     refuse_other_kind(text, name, hint);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
@@ -259,9 +259,9 @@ text_form find_text_form(std::string_view text)
 }
 
 void refuse_other_form(std::string_view text, const std::string& name, text_form wanted,
-                       std::string_view given)
+                       std::string_view hint)
 {
-    const std::string_view hint = choose_hint(given);
+    hint = choose_hint(hint);
     refuse_no_text(text, name, hint);
     constexpr std::pair<text_form, std::string_view> forms[] = {{text_form::xml, "SVG, or other XML"},
                                                                 {text_form::table, "a table (CSV)"},

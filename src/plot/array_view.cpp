@@ -450,7 +450,8 @@ private:
         std::optional<double> best;
         double least = std::numeric_limits<double>::infinity();
         for (int k = 0; k <= 2 * tries; ++k) { // the middle, then alternately after and before it
-            const double t = wanted + (k % 2 == 0 ? -1.0 : 1.0) * range * ((k + 1) / 2) / tries;
+            const int step = (k + 1) / 2;
+            const double t = wanted + (k % 2 == 0 ? -1.0 : 1.0) * range * step / tries;
             const spot at = frame_(motion.position(t));
             const auto covered = taken_.cover({at.x - r, at.y - r, 2.0 * r, 2.0 * r});
             if (covered && *covered + 0.5 * k < least) {

@@ -466,7 +466,8 @@ std::optional<std::uint64_t> service::end_request(const stroke_record& of)
     if (known != strokes.end() && out != nullptr) {
         const submissions& any = (*known)->rounds;
         const stream_setup& s = out->setup();
-        const std::uint64_t reached = out->stats().frames + s.buffer_frames + 3 * s.period_frames;
+        const std::uint64_t reached =
+            out->stats().frames + s.buffer_frames + std::uint64_t{3} * s.period_frames;
         last = any.last.value_or(any.again && reached > *any.begun ? (reached - *any.begun) / any.frames : 0);
         end = *any.begun + (last + 1) * any.frames;
     }

@@ -45,7 +45,7 @@ std::optional<plot::bar_panel> make_panel(const study::run_analysis& r, error_ba
         plot::bar_series& s = p.series.emplace_back(plot::bar_series{v->method});
         for (const study::cell_mean& m : v->means)
             s.bars.push_back({*m.test.mean, find_ends(m.test, kind, v->possible), m.values});
-        std::ranges::rotate(s.bars, s.bars.begin() + 1); // "all" comes last
+        std::rotate(s.bars.begin(), s.bars.begin() + 1, s.bars.end()); // "all" comes last
     }
     return p.series.empty() ? std::nullopt : std::optional(p);
 }
@@ -328,9 +328,10 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
             continue;
         add_curves<study::psychometric_functions>(f, r);
         add_curves<study::exponents>(f, r);
-        if (std::optional<plot::bar_panel> p = make_panel(r, kind))
-            f.bars.push_back(*std::move(p));
-        else if (p = make_sensitivity_panel(r, kind); p && r.run.vary.empty())
+        std::optional<plot::bar_panel> p = make_panel(r, kind);
+        if (!p && r.run.vary.empty())
+            p = make_sensitivity_panel(r, kind);
+        if (p)
             f.bars.push_back(*std::move(p));
         for (const study::answer_counts* v : study::list_values<study::answer_counts>(r.results))
             f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, v->method), "played",

@@ -74,7 +74,7 @@ options::serve_settings settle_serve(const options::serve_settings& o, options::
 // Returns the ceiling of the files, or that of --max-level-dbfs, which may not exceed one that the files set.
 session::ceiling settle_ceiling(const environment& e, std::optional<double> asked_dbfs)
 {
-    const session::ceiling said = session::find_ceiling(e);
+    session::ceiling said = session::find_ceiling(e);
     if (!asked_dbfs)
         return said;
     const bool is_said = e.serve.max_level_dbfs || said.from.starts_with("level-dbfs");

@@ -41,10 +41,10 @@ void refuse_owners(const settings& s)
 }
 
 // Names the stroke that was sent, and the place in it, where an error of the server is about its parameter.
-error name_argument(const server_error& e, const std::string& argument)
+error name_argument(const error& e, const std::string& param, const std::string& argument)
 {
     const std::vector<std::string_view>& sources = session::source_names();
-    if (std::find(sources.begin(), sources.end(), e.param) == sources.end())
+    if (std::find(sources.begin(), sources.end(), param) == sources.end())
         return e;
     const source_place at{argument, e.place().line, e.place().column};
     return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
@@ -244,7 +244,7 @@ private:
         try {
             r = server_.call("play", params);
         } catch (const server_error& e) {
-            throw name_argument(e, shown_name(out.name));
+            throw name_argument(e, e.param, shown_name(out.name));
         }
         say_warnings(name_in(r["warnings"].get<std::vector<std::string>>(), out.name));
         out.weakened = read_weakening(r);

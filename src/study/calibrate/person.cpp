@@ -165,7 +165,7 @@ calibration_answer person::choose(const calibration_trial& t)
     };
     const given_stimulus p = [&] {
         const noise_around noise(stage_);
-        const given_stimulus given = play(t, s, [&](double at_s) {
+        given_stimulus given = play(t, s, [&](double at_s) {
             show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
         });
         show_until(2); // where the process was too slow to look

@@ -117,34 +117,34 @@ void add_channel(score::impl& s, own_channel c)
 
 } // namespace
 
-score score::from_samples(const array& a, own_samples x, const render_options& o)
+score score::from_samples(const array& a, own_samples s, const render_options& o)
 {
     if (o.sl_db)
-        throw bad_samples(x, "it has no carrier, for which a sensation level could count",
+        throw bad_samples(s, "it has no carrier, for which a sensation level could count",
                           "give the most that its peak may be: {level_dbfs=-20}");
     array plain = a;
     for (tactor_spec& t : plain.tactors)
         t.gain_db = 0.0; // no level depends on it
     render_options exact = o;
     exact.envelope = {};
-    const auto s = synth::begin_score(plain, exact);
-    check_shape(x, o, s->channels);
-    const auto all = std::make_shared<const own_samples>(std::move(x));
+    const auto made = synth::begin_score(plain, exact);
+    check_shape(s, o, made->channels);
+    const auto all = std::make_shared<const own_samples>(std::move(s));
     std::vector<own_channel> channels = synth::read_channels(all);
     check_levels(a, *all, channels, o.level_dbfs);
     plan whole;
     whole.algorithm = "samples";
-    s->frames = synth::count_frames(*all);
-    whole.total_s = whole.stroke_duration_s = static_cast<double>(s->frames) / s->rate;
-    s->plans.push_back({std::move(whole)});
-    s->sounds.emplace_back();
-    s->starts.push_back(0);
-    s->ends.push_back(s->frames);
-    s->peaks.resize(s->tactors.size());
+    made->frames = synth::count_frames(*all);
+    whole.total_s = whole.stroke_duration_s = static_cast<double>(made->frames) / made->rate;
+    made->plans.push_back({std::move(whole)});
+    made->sounds.emplace_back();
+    made->starts.push_back(0);
+    made->ends.push_back(made->frames);
+    made->peaks.resize(made->tactors.size());
     for (own_channel& c : channels)
-        add_channel(*s, std::move(c));
-    synth::end_items(*s, exact);
-    return detail::access::make<score>(std::shared_ptr<const score::impl>(s));
+        add_channel(*made, std::move(c));
+    synth::end_items(*made, exact);
+    return detail::access::make<score>(std::shared_ptr<const score::impl>(made));
 }
 
 } // namespace v0

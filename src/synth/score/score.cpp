@@ -387,7 +387,7 @@ std::shared_ptr<score::impl> begin_score(const array& a, const render_options& o
 {
     validate(a);
     check_options(o);
-    const auto s = std::make_shared<score::impl>();
+    auto s = std::make_shared<score::impl>();
     s->rate = o.rate;
     s->phase = o.phase;
     s->envelope = o.envelope;
