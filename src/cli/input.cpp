@@ -94,6 +94,11 @@ session::source find_source(const settings& s, const environment& e, const std::
 
 } // namespace
 
+bool gives_stroke(const settings& s)
+{
+    return s.path_data || s.shape || !s.strokes.empty();
+}
+
 std::vector<std::string> stroke_arguments(const settings& s)
 {
     const std::string option = s.path_data ? "--path" : s.shape ? "--shape " + *s.shape : "";

@@ -17,6 +17,9 @@ namespace tactor::cli {
 
 using session::piece;
 
+/// Returns true if the command line has a STROKE, a path or a shape.
+bool gives_stroke(const settings& s);
+
 /// Returns the STROKE arguments, or the option in place of them. \throws error if there are none, or both.
 std::vector<std::string> stroke_arguments(const settings& s);
 

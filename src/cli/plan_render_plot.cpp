@@ -200,7 +200,9 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     if (f.animated && f.view == plot::figure_view::wave)
         refuse_option("--animate", "the waveform cannot be animated", "leave out --view wave");
     const environment e = session::read_environment(s);
-    const piece q = plan_one_piece(s, e);
+    const bool array_alone = !gives_stroke(s) && f.view != plot::figure_view::timing &&
+                             f.view != plot::figure_view::wave && !f.animated;
+    const piece q = array_alone ? piece{.name = e.tactors.name} : plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
     // Only the view of samples needs a score. Other pictures may show levels that no card can play.
     std::optional<score> sound;
@@ -214,8 +216,8 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     say_warnings(collect_warnings(q.plans));
     if (sound)
         warn_of_weakening(shown_name(q.name), sound->weakened(), q.plans.size());
-    say(stdout, "{}: {:.4g} x {:.4g} mm\n", o.file, picture.width / plot::pt_per_mm,
-        picture.height / plot::pt_per_mm);
+    say(stdout, "{}: {}{:.4g} x {:.4g} mm\n", o.file, array_alone ? "the array without a stroke, " : "",
+        picture.width / plot::pt_per_mm, picture.height / plot::pt_per_mm);
     return status_ok;
 }
 
@@ -269,7 +271,7 @@ int run_plot(command_line& line)
     line.app.add_flag("--animate", f.animated, "SVG: animate it in real time and in a loop");
     add_picture_options(line.app, o, "85, one print column");
     line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
-                    "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
+                    "tactor plot --array palm-2x4 -o array.svg\n"
                     "tactor plot park2016-1 --view wave --width 170 -o wave.png");
     line.parse();
     return draw(s, o, f);

@@ -166,7 +166,8 @@ public:
         notes_.push_back(label_strokes());
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
-        draw_amplitude_legend(y);
+        if (!scene_.plans.empty())
+            draw_amplitude_legend(y);
         if (time_.sampled)
             notes_.push_back("positions each " + seconds_text(time_.sample_s * static_cast<double>(stride_)));
         else if (stride_ > 1)
@@ -382,6 +383,8 @@ private:
     // start. Returns a note on labels without space; empty: all have space.
     std::string label_strokes()
     {
+        if (scene_.strokes.empty())
+            return "";
         if (scene_.strokes.size() == 1) {
             const trajectory& motion = scene_.strokes[0].motion;
             const bool start = label("start", "start-label", motion.position(0.0));

@@ -61,11 +61,16 @@ std::string common(const scene& s, Get&& get)
 
 std::vector<std::string> details(const scene& s, const timeline& t)
 {
+    const std::string channels = !channels_are_numbers(s.tactors) ? ""
+                                 : s.tactors.tactors.size() == 1  ? "tactor 0 on channel 0"
+                                                                  : "tactor n on channel n";
+    if (s.plans.empty())
+        return {counted(s.tactors.tactors.size(), "tactor"), channels};
+    std::vector<std::string> d{clean(s.tactors.name)};
     double length = 0.0;
     for (const placed_plan& p : s.plans)
         length += p.plan.stroke_length_mm;
     const double lasts_s = s.plans.size() == 1 ? s.plans[0].plan.stroke_duration_s : t.total_s;
-    std::vector<std::string> d{clean(s.tactors.name)};
     d.push_back(common(s, [](const plan& p) { return p.algorithm; }));
     d.push_back(common(s, describe_phantom));
     if (s.plans.size() > 1)
@@ -74,8 +79,7 @@ std::vector<std::string> details(const scene& s, const timeline& t)
         d.push_back(counted(t.bursts.size(), "burst"));
     d.push_back(
         fmt::format("{} mm in {}", plain_number(length, length < 1000.0 ? 4 : 5), seconds_text(lasts_s, 4)));
-    if (channels_are_numbers(s.tactors))
-        d.emplace_back(s.tactors.tactors.size() == 1 ? "tactor 0 on channel 0" : "tactor n on channel n");
+    d.push_back(channels);
     d.push_back(common(s, describe_sound));
     return d;
 }
@@ -106,8 +110,9 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     canvas& c = d.picture;
     c.width = o.width_mm * pt_per_mm;
     c.loop_s = o.animated ? t.total_s + loop_pause_s : 0.0;
-    const bool with_array = o.view == figure_view::array || o.view == figure_view::both;
-    c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
+    const bool with_array = o.view == figure_view::array || o.view == figure_view::both || s.plans.empty();
+    c.title = s.plans.empty() ? clean(s.tactors.name)
+                              : fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
     c.description = join(details(s, t), ", ");
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
     if (o.heading) {
@@ -123,7 +128,9 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
         rest.y += 4.0;
     rest.y += draw_stroke_legend(c, s, t, rest, o.view != figure_view::wave);
     rest.height = most.picture - margin - rest.y;
-    if (o.view == figure_view::array && !t.several())
+    if (s.plans.empty())
+        rest.y -= 4.0;
+    else if (o.view == figure_view::array && !t.several())
         rest.y += draw_time_key(c, t, rest);
     else if (o.view == figure_view::wave)
         rest.y += draw_wave_view(c, s, t, rest);

@@ -40,9 +40,9 @@ canvas make_canvas(double width_mm);
 /// Returns the name of a scene: that of the only stroke, or of the file that holds several.
 std::string name_scene(const std::vector<stroke>& strokes, const std::string& file);
 
-/// Draws a scene. The height follows from the content; it is at most 247 mm, in proportion more for pictures
-/// wider than 170 mm. \throws error (bad_input): for the waveform, see draw_wave_view(); for more than
-/// most_animated_bursts.
+/// Draws a scene; without strokes, its array alone. The height follows from the content; it is at most 247
+/// mm, in proportion more for pictures wider than 170 mm. \throws error (bad_input): for the waveform, see
+/// draw_wave_view(); for more than most_animated_bursts.
 canvas draw_figure(const scene& s, const figure_options& o);
 
 /// Draws predicted percepts of several algorithms (as figure 6 of Park et al. 2016): for each phantom model a

@@ -41,6 +41,16 @@ class Array(PlotTest):
                     self.near(got, want)
                 self.near(float(line.get("data-amplitude")), drive["amplitude"], 1e-5)
 
+    def test_without_a_stroke_the_array_alone_is_drawn(self):
+        self.assertRegex(self.ok("plot", "--array", "palm-2x4", "-o", "array.svg").stdout, r"^array.svg: the array without a stroke, 85 x [\d.]+ mm\n$")
+        svg = Svg(self.dir / "array.svg")
+        self.assertEqual([t for t in svg.texts() if t.isdigit()], [str(i) for i in range(8)])
+        for kind in ("burst", "path", "start"):
+            self.assertEqual(svg.all(kind), [])
+        self.assertEqual(svg.root.findtext(f"{NS}title"), "palm-2x4")
+        for more in (["--view", "timing"], ["--view", "wave"], ["--animate"]):
+            self.refused(2, "plot", "--array", "palm-2x4", *more, "-o", "array2.svg", says=["no stroke"])
+
     def test_tactors_and_the_scale_bar_are_to_scale(self):
         for name in ("palm-3x3", *(ROOT / "examples/arrays").glob("*.toml")):
             options = ["--path", "M 5 0 L 15 0", "--array", name, "--outside", "clamp"]

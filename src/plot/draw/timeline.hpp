@@ -24,8 +24,8 @@ namespace tactor::plot {
 /// Contents of a picture. Its parts must live as long.
 struct scene {
     const array& tactors;
-    std::string name; ///< name of the whole scene
-    const std::vector<stroke>& strokes;
+    std::string name;                      ///< name of the whole scene
+    const std::vector<stroke>& strokes;    ///< none: only the array is drawn
     const std::vector<placed_plan>& plans; ///< one for each stroke
     const score* sound = nullptr;          ///< for the waveform
     /// Felt places of bursts that were moved for an observer; none, or one for each stroke.
