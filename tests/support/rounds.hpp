@@ -3,6 +3,7 @@
 /// Length of a test.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -25,11 +26,11 @@ inline bool whole()
     return asked != nullptr && std::string_view(asked) == "whole";
 }
 
-/// Returns `all`, or an eighth where tests do less: any of the rounds can find a fault, and the suite runs
-/// all.
+/// Returns `all`, or an eighth and at least 1 where tests do less: any of the rounds can find a fault, and
+/// the suite runs all.
 inline int rounds(int all)
 {
-    return shortened() ? all / 8 : all;
+    return shortened() ? std::max(1, all / 8) : all;
 }
 
 /// Returns the same, but all rounds with TACTOR_SOAK=whole.

@@ -62,6 +62,13 @@ private:
     detail::owned_fd descriptor_;
 };
 
+[[noreturn]] void refuse_missing()
+{
+    throw error(error_kind::runtime, "picture",
+                fmt::format("{} is missing, which makes PNG and PDF", program),
+                "install librsvg2-bin, or write SVG");
+}
+
 // Starts the program with three files as its standard ones, and no others.
 pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>& files)
 {
@@ -86,9 +93,7 @@ pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>
     pid_t child = -1;
     const int failed = ::posix_spawnp(&child, program, &actions, nullptr, argv.data(), environment.data());
     if (failed == ENOENT)
-        throw error(error_kind::runtime, "picture",
-                    fmt::format("{} is missing, which makes PNG and PDF", program),
-                    "install librsvg2-bin, or write SVG");
+        refuse_missing();
     check(failed);
     return child;
 }
@@ -105,6 +110,9 @@ std::string convert(const canvas& c, std::initializer_list<std::string> options)
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
         check(errno == EINTR ? 0 : errno);
+    // An emulator reports a missing program as the child's exit status.
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+        refuse_missing();
     if (status != 0) {
         const std::string messages = files[2].read();
         throw error(error_kind::runtime, program,
