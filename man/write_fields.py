@@ -71,8 +71,8 @@ def written(page, schemas):
     for schema in schemas:
         properties = schema["properties"]
         name = properties["schema"]["const"]
-        if any("description" not in field for field in properties.values() if "const" not in field):
-            continue
+        if any("description" not in field for field in properties.values() if "const" not in field) or "$defs" in schema:
+            continue  # those are described by hand
         start = page.index(".Bl -tag -width Ds\n", page.index(f".Ss {name}\n"))
         end = page.index(".El\n", start)
         page = page[:start] + "\n".join([".Bl -tag -width Ds", *entries(properties)]) + "\n" + page[end:]

@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "core/bounds.hpp"
 
@@ -55,6 +57,12 @@ void unless_usual(Io& io, const char* name, T& v, const std::remove_const_t<T>& 
 template <class T>
 struct nullable {
     std::optional<T> value = {};
+};
+
+/// Values by names that are not known beforehand, such as those of a study's motions.
+template <class T>
+struct by_name {
+    std::vector<std::pair<std::string, T>> all = {};
 };
 
 } // namespace tactor::detail

@@ -95,6 +95,8 @@ def paths_in(schema, at="", root=None):
         yield from paths_in(v, place, root)
     if "items" in schema:
         yield from paths_in(schema["items"], at + "[]", root)
+    for one in schema.get("oneOf", []):
+        yield from paths_in(one, at, root)
     if isinstance(schema.get("additionalProperties"), dict) and member(at) == at + "{}":
         yield from paths_in(schema["additionalProperties"], at + "{}", root)
 

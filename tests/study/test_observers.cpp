@@ -26,6 +26,7 @@
 #include "study/statistics/signal_detection.hpp"
 #include "study/statistics/tests.hpp"
 #include "study/tasks/adaptive.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study::test_observers {
 namespace {

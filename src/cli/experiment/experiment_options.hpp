@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options of tactor experiment, and --dry-run, which needs no session.
+/// Options of tactor experiment, and its --dry-run (dry_run.cpp).
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,11 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
+#include "core/members.hpp"
 #include "study/analysis/power.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/session/experiment_session.hpp"
@@ -47,7 +50,27 @@ void add_experiment_options(CLI::App& command, experiment_options& o);
 void check_experiment_options(const settings& s, const experiment_options& o);
 
 void print_dry_run_text(const study::prepared_experiment& p);
-/// Schema tactor-experiment/1.
 void print_dry_run_json(const study::prepared_experiment& p);
+
+/// Returns the schema tactor-experiment/1 of that JSON.
+nlohmann::ordered_json dry_run_schema();
+
+/// Experiment that JSON is about.
+struct experiment_name {
+    std::string name = {};
+    std::string title = {};
+    std::string sha256 = {};
+};
+
+experiment_name name_experiment(const study::experiment_definition& d);
+
+template <class Io, detail::either<experiment_name> Name>
+void members(Io& io, Name& v)
+{
+    constexpr detail::about what{"name, title, and SHA-256 of the definition's text"};
+    io("name", v.name, what);
+    io("title", v.title, what);
+    io("sha256", v.sha256, what);
+}
 
 } // namespace tactor::cli

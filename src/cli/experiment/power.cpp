@@ -2,6 +2,7 @@
 #include "cli/experiment/power.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -23,10 +24,12 @@
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
+#include "core/members.hpp"
 #include "core/sha256.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
+#include "files/json/schema.hpp"
 #include "files/text_file.hpp"
 #include "options/option.hpp"
 #include "session/process.hpp"
@@ -98,32 +101,79 @@ json counts_json(const study::power_at& at)
             {"untested", at.untested}};
 }
 
-json run_power_json(const study::run_power& p, const study::run_outline& r, std::size_t studies)
+// Outcome for one number of participants, as JSON.
+struct listed_power {
+    study::power_at counts = {};
+    double power = 0.0;
+    std::array<double, 2> ci = {};
+};
+
+template <class Io, detail::either<listed_power> Power>
+void members(Io& io, Power& v)
 {
-    json j{{"name", r.name}, {"task", std::string(task_in(r).name())}, {"comparison", comparison_text(r)}};
-    j["power"] = json::array();
-    for (const study::power_at& at : p.at) {
-        const study::interval ci = study::binomial_interval(at.significant, studies);
-        j["power"].push_back(counts_json(at));
-        j["power"].back().update({{"power", share(at.significant, studies)}, {"ci", {ci.first, ci.second}}});
-    }
-    return j;
+    constexpr detail::about significant{
+        "studies with a p below alpha, and among these the studies in which the last method was better"};
+    constexpr detail::about share{"significant / studies, and both ends of its exact binomial 95 % interval",
+                                  {0.0, 1.0}};
+    io("participants", v.counts.participants, {"participants of each study", {2, detail::from_0.high}});
+    io("significant", v.counts.significant, significant);
+    io("for_last", v.counts.for_last, significant);
+    io("untested", v.counts.untested, {"studies without a test"});
+    io("power", v.power, share);
+    io("ci", v.ci, share);
+}
+
+struct listed_run_power {
+    std::string name = {};
+    std::string task = {};
+    std::string comparison = {};
+    std::vector<listed_power> power = {};
+};
+
+template <class Io, detail::either<listed_run_power> Run>
+void members(Io& io, Run& v)
+{
+    constexpr detail::about names{"name, and task"};
+    io("name", v.name, names);
+    io.one_of("task", v.task, study::task_names(), names);
+    io("comparison", v.comparison, {"the comparison, in words"});
+    io("power", v.power, {"by the requested numbers of participants; empty if there is nothing to compare"});
+}
+
+struct listed_powers {
+    experiment_name experiment = {};
+    std::string simulation = {};
+    std::size_t studies = 0;
+    std::vector<listed_run_power> runs = {};
+    std::vector<std::string> warnings = {};
+};
+
+template <class Io, detail::either<listed_powers> Powers>
+void members(Io& io, Powers& v)
+{
+    io.constant("schema", "tactor-power/1");
+    io.fact("simulated", [] { return true; }, {"true: a model answered"});
+    io("experiment", v.experiment, {"the experiment"});
+    io("simulation", v.simulation, {"the observers, as --simulate accepts them"});
+    io("studies", v.studies, {"number of simulated studies", detail::above_0});
+    io.fact("alpha", [] { return study::significant_p; }, {"a p below this is significant", {0.0, 1.0}});
+    io("runs", v.runs, {"in the order of the definition"});
+    io("warnings", v.warnings, {"warnings: unusual values that were accepted"});
 }
 
 void print_power_json(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
                       std::size_t studies, const study::simulation& s)
 {
-    const study::experiment_definition& d = e.definition;
-    json j{{"schema", "tactor-power/1"}, {"simulated", true}};
-    j["experiment"] = {{"name", d.outline.name}, {"title", d.title}, {"sha256", detail::sha256_text(d.text)}};
-    j["simulation"] = study::to_text(s);
-    j["studies"] = studies;
-    j["alpha"] = study::significant_p;
-    j["runs"] = json::array();
-    for (const study::run_power& p : all)
-        j["runs"].push_back(run_power_json(p, d.runs[p.run].outline, studies));
-    j["warnings"] = e.warnings;
-    fmt::print("{}", study::json_text(j));
+    listed_powers listed{name_experiment(e.definition), study::to_text(s), studies, {}, e.warnings};
+    for (const study::run_power& p : all) {
+        const study::run_outline& r = e.definition.runs[p.run].outline;
+        listed.runs.push_back({r.name, std::string(task_in(r).name()), comparison_text(r)});
+        for (const study::power_at& at : p.at) {
+            const study::interval ci = study::binomial_interval(at.significant, studies);
+            listed.runs.back().power.push_back({at, share(at.significant, studies), {ci.first, ci.second}});
+        }
+    }
+    fmt::print("{}", study::json_text(files::make_document(listed)));
 }
 
 std::size_t need_count(const files::json_value& v)
@@ -331,6 +381,12 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
     else
         print_power_text(e, *powers, o.studies, *o.simulate);
     return 0;
+}
+
+nlohmann::ordered_json power_schema()
+{
+    listed_powers all;
+    return files::json_schema::describe_object([&all](auto& io) { members(io, all); });
 }
 
 } // namespace tactor::cli

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: MIT
 // Writes the schemas of what the tool prints as JSON into a folder: write-schemas FOLDER
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/check/check.hpp"
+#include "cli/experiment/experiment_options.hpp"
+#include "cli/experiment/power.hpp"
 #include "cli/play/play.hpp"
 #include "cli/settings.hpp"
 #include "files/json/schema.hpp"
 #include "files/plan/plan_json.hpp"
 #include "session/device.hpp"
+#include "study/results/result_json.hpp"
 
 namespace {
 
@@ -37,6 +43,76 @@ json titled(std::string_view what, const json& object)
     spell(j);
     return j;
 }
+
+// Moves objects that a schema describes several times to its $defs. The first member with one names it.
+class object_sharer {
+public:
+    json share(json whole)
+    {
+        count(whole);
+        replace(whole, "");
+        json all = whole["$defs"];
+        for (auto& [text, def] : found_)
+            all[def.name] = std::move(def.schema);
+        whole["$defs"] = std::move(all);
+        return whole;
+    }
+
+private:
+    struct definition {
+        std::string name;
+        json schema = {};
+    };
+
+    void count(const json& j)
+    {
+        if (j.is_object() && j.contains("properties"))
+            ++uses_[j.dump()];
+        if (j.is_structured())
+            for (const json& inner : j)
+                count(inner);
+    }
+    // `name`: the member that has the schema.
+    void replace(json& j, const std::string& name)
+    {
+        const std::string text = j.is_object() && j.contains("properties") ? j.dump() : "";
+        if (text.empty() || uses_[text] < 2)
+            return replace_inner(j, name);
+        const auto [at, is_new] = found_.try_emplace(text, definition{find_name(name)});
+        if (is_new) {
+            json own = j;
+            replace_inner(own, name);
+            at->second.schema = std::move(own);
+        }
+        j = {{"$ref", "#/$defs/" + at->second.name}};
+    }
+    void replace_inner(json& j, const std::string& name)
+    {
+        if (!j.is_structured())
+            return;
+        for (auto& [key, inner] : j.items()) {
+            if (key != "properties") {
+                replace(inner, name);
+                continue;
+            }
+            for (auto& [member, its] : inner.items())
+                replace(its, member);
+        }
+    }
+    std::string find_name(const std::string& name) const
+    {
+        const auto taken = [this](const std::string& one) {
+            return std::ranges::any_of(found_, [&](const auto& f) { return f.second.name == one; });
+        };
+        std::string one = name;
+        for (unsigned n = 2; taken(one); ++n)
+            one = fmt::format("{}-{}", name, n);
+        return one;
+    }
+
+    std::map<std::string, unsigned> uses_ = {};
+    std::map<std::string, definition> found_ = {};
+};
 
 // Returns the schema of a document that only has a list of objects.
 json list_schema(const char* name, const char* key, const json& one)
@@ -75,6 +151,10 @@ int main(int argc, char** argv)
                              list_schema("tactor-compares/1", "comparisons", without_dialect(compare))));
     write("play", titled("play --format json", tactor::cli::play_schema()));
     write("devices", titled("devices --format json", tactor::session::devices_schema()));
+    write("experiment", titled("experiment --dry-run --format json", tactor::cli::dry_run_schema()));
+    write("power", titled("experiment --power --format json", tactor::cli::power_schema()));
+    write("analysis",
+          object_sharer().share(titled("analyze --format json", tactor::study::analysis_schema())));
     write("check", titled("check --format json", tactor::cli::check_schema()));
     return complete ? 0 : 1;
 }

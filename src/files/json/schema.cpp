@@ -46,6 +46,11 @@ json json_schema::make_list(json items)
     return {{"type", "array"}, {"items", std::move(items)}};
 }
 
+json json_schema::make_map(json values)
+{
+    return {{"type", "object"}, {"additionalProperties", std::move(values)}};
+}
+
 json json_schema::number(const char* type, const detail::bounds& range)
 {
     json j = {{"type", type}};

@@ -50,6 +50,11 @@ public:
     {
         put(name, described({{"enum", all}}, what), true);
     }
+    void one_of(const char* name, std::string_view, const std::vector<std::string_view>& all,
+                const detail::about& what)
+    {
+        put(name, described({{"enum", all}}, what), true);
+    }
     void constant(const char* name, std::string_view text) { put(name, {{"const", text}}, true); }
     template <class Make>
     void fact(const char* name, const Make&, const detail::about& what)
@@ -84,6 +89,18 @@ public:
         T one{};
         put(name, described(make_list(describe_object([&](auto& io) { each(io, one, 0); })), what), true);
     }
+    template <class T, class Each>
+    void named_objects(const char* name, const std::vector<T>&, const detail::about& what, const Each& each)
+    {
+        T one{};
+        put(name, described(make_map(describe_object([&](auto& io) { each(io, one); })), what), true);
+    }
+    template <class T, class Each>
+    void named_objects(const char* name, const std::vector<std::string>&, const std::vector<T>& all,
+                       const detail::about& what, const Each& each)
+    {
+        named_objects(name, all, what, each);
+    }
     template <class T, class ForEach, class Each>
     void rows(const char* name, const ForEach&, const detail::about& what, const Each& each)
     {
@@ -109,6 +126,10 @@ public:
         body(io);
         return std::move(io).result();
     }
+    /// Returns the schema of an object whose members have any names and this schema.
+    static nlohmann::ordered_json make_map(nlohmann::ordered_json values);
+    /// Returns the schema of a value that may be null.
+    static nlohmann::ordered_json null_or(nlohmann::ordered_json schema);
 
 private:
     template <class T>
@@ -121,7 +142,6 @@ private:
     static nlohmann::ordered_json described(nlohmann::ordered_json schema, const detail::about& what);
     static nlohmann::ordered_json make_list(nlohmann::ordered_json items);
     static nlohmann::ordered_json number(const char* type, const detail::bounds& range);
-    static nlohmann::ordered_json null_or(nlohmann::ordered_json schema);
 
     template <class T>
     static nlohmann::ordered_json kind(std::type_identity<T>, const detail::bounds& range)
@@ -153,6 +173,11 @@ private:
     static nlohmann::ordered_json kind(std::type_identity<detail::nullable<T>>, const detail::bounds& range)
     {
         return null_or(kind(std::type_identity<T>{}, range));
+    }
+    template <class T>
+    static nlohmann::ordered_json kind(std::type_identity<detail::by_name<T>>, const detail::bounds& range)
+    {
+        return make_map(kind(std::type_identity<T>{}, range));
     }
     template <class... T>
     static nlohmann::ordered_json kind(std::type_identity<std::variant<T...>>, const detail::bounds& range)

@@ -64,6 +64,11 @@ public:
     {
         constant(name, text);
     }
+    void one_of(const char* name, std::string_view text, const std::vector<std::string_view>&,
+                const detail::about&)
+    {
+        constant(name, text);
+    }
     void constant(const char* name, std::string_view text)
     {
         begin(name);
@@ -116,6 +121,28 @@ public:
             braces([&](auto& io) { each(io, all[i], i); });
         }
         out_ += ']';
+    }
+    /// Writes values as objects by their names: each(io, value) describes one.
+    template <class T, class Each>
+    void named_objects(const char* name, const std::vector<T>& all, const detail::about& what,
+                       const Each& each)
+    {
+        std::vector<std::string> names;
+        for (const T& v : all)
+            names.push_back(v.name);
+        named_objects(name, names, all, what, each);
+    }
+    template <class T, class Each>
+    void named_objects(const char* name, const std::vector<std::string>& names, const std::vector<T>& all,
+                       const detail::about&, const Each& each)
+    {
+        begin(name);
+        out_ += '{';
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            begin_named(names[i], i == 0);
+            braces([&](auto& io) { each(io, all[i]); });
+        }
+        out_ += '}';
     }
     /// Writes a list of up to half a million items, each on a line: for_each(row) calls row(value).
     template <class T, class ForEach, class Each>
@@ -181,6 +208,16 @@ public:
         std::visit([this](const auto& one) { this->put(one); }, v);
     }
     template <class T>
+    void put(const detail::by_name<T>& v)
+    {
+        out_ += '{';
+        for (std::size_t i = 0; i < v.all.size(); ++i) {
+            begin_named(v.all[i].first, i == 0);
+            put(v.all[i].second);
+        }
+        out_ += '}';
+    }
+    template <class T>
     void put(const std::vector<T>& all)
     {
         brackets(all);
@@ -193,6 +230,12 @@ public:
 
 private:
     void begin(const char* name);
+    void begin_named(std::string_view name, bool first)
+    {
+        out_ += first ? "" : ",";
+        append_text(out_, name);
+        out_ += ':';
+    }
     template <class Body>
     void braces(const Body& body)
     {

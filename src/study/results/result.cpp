@@ -186,4 +186,36 @@ interval cut_to(const interval& i, const interval& possible)
     return {std::max(i.first, possible.first), std::min(i.second, possible.second)};
 }
 
+cell_means outline_cells(bool tested)
+{
+    return {.against = tested ? std::optional(0.0) : std::nullopt, .means = {{"all"}}};
+}
+
+effect_list outline_effects(const std::vector<std::string>& names)
+{
+    effect_list all;
+    for (const std::string& name : names)
+        all.effects.emplace_back(name, std::nullopt);
+    return all;
+}
+
+std::vector<result_outline> outline_measured(const std::vector<result_outline>& named)
+{
+    std::vector<result_outline> all{{{"vary"}, std::string(), true}, {{"against"}, 0.0, true}};
+    for (const result_outline& row : named) {
+        all.push_back(row);
+        all.push_back({{"by", "*", row.at.front()}, row.value, row.or_null, true});
+    }
+    all.push_back({{"group_anova"}, outline_effects({"group"}), false, true});
+    return all;
+}
+
+result_outline outline_groups(bool methods)
+{
+    std::vector<std::string> names{"group", "motion", "group:motion"};
+    if (methods)
+        names.insert(names.end(), {"method", "group:method", "method:motion", "group:method:motion"});
+    return {{"group_anova"}, outline_effects(names), false, true};
+}
+
 } // namespace tactor::study

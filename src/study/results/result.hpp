@@ -175,6 +175,32 @@ struct result {
     bool is_main = false;        ///< true if it begins with the run's main figure
 };
 
+/// A row that a task may have, for the schema.
+struct result_outline {
+    std::vector<std::string> at; ///< as in result; "*" stands for names of a study
+    result_value value;          ///< value without figures
+    bool or_null = false;
+    bool optional = false; ///< absent in some studies
+};
+
+/// Returns a value of cells that are tested, or only described.
+cell_means outline_cells(bool tested);
+/// Returns a value with one figure and nobody.
+template <class Measured>
+Measured outline_figures()
+{
+    Measured v;
+    v.figures.emplace_back();
+    return v;
+}
+/// Returns a value of effects with these names.
+effect_list outline_effects(const std::vector<std::string>& names);
+/// Returns the rows of a run that measures figures: for all trials, and for each condition. `named`: rows by
+/// their names.
+std::vector<result_outline> outline_measured(const std::vector<result_outline>& named);
+/// Returns the row that compares groups. `methods`: it has the effects of methods.
+result_outline outline_groups(bool methods);
+
 /// Response times: median of the participants' medians over their recorded times. Missing without recorded
 /// times.
 struct response_times {

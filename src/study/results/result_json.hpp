@@ -14,6 +14,9 @@ namespace tactor::study {
 /// Returns an object with the schema tactor-analysis/1.
 nlohmann::ordered_json make_analysis_json(const analysis& a);
 
+/// Returns that schema.
+nlohmann::ordered_json analysis_schema();
+
 // Return parts of this object.
 nlohmann::ordered_json value_json(const result_value& v);
 nlohmann::ordered_json times_json(const response_times& t);

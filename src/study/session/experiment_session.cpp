@@ -29,6 +29,7 @@
 #include "study/bids/study_folder.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/session/session_members.hpp"
 #include "study/session/sync_codes.hpp"
 #include "study/tasks/task.hpp"
 #include "synth/score/drive_room.hpp"
@@ -373,33 +374,26 @@ std::vector<run_time> session_times(const prepared_experiment& p)
     return all;
 }
 
-json level_facts(const render_options& o)
+listed_level list_level(const render_options& o)
 {
-    return {{"sl_db", or_null(o.sl_db)}, {"dbfs", o.sl_db ? json(nullptr) : json(o.level_dbfs)}};
+    return {o.sl_db, o.sl_db ? std::nullopt : std::optional(o.level_dbfs)};
 }
 
-json masking_facts(const masking_definition& m)
+std::optional<listed_noise> list_noise(const masking_definition& m)
 {
     if (!m.noise)
-        return nullptr;
-    return {{"noise", std::string(to_string(m.noise->color))},
-            {"level_dbfs", m.noise->level_dbfs},
-            {"fade_s", m.noise->fade_s},
-            {"while", m.through_run ? "run" : "stimulus"}};
+        return {};
+    return listed_noise{std::string(to_string(m.noise->color)), m.noise->level_dbfs, m.noise->fade_s,
+                        m.through_run ? "run" : "stimulus"};
 }
 
-json stimulus_facts(const prepared_experiment& p)
+std::vector<listed_stimulus> list_stimuli(const prepared_experiment& p)
 {
-    json all = json::array();
+    std::vector<listed_stimulus> all;
     for (const stimulus& s : p.stimuli.all()) {
         const method_definition& m = p.definition.methods[s.method];
-        all.push_back(
-            {{"sha256", s.hash}, {"motion", p.definition.motions[s.motion].name}, {"method", m.name}});
-        all.back()["weakened_db"] = s.weakened_db;
-        if (m.value)
-            all.back()["value"] = *m.value;
-        if (m.has_level())
-            all.back()["level"] = level_facts(s.render);
+        all.push_back({s.hash, p.definition.motions[s.motion].name, m.name, s.weakened_db, m.value,
+                       m.has_level() ? std::optional(list_level(s.render)) : std::nullopt});
     }
     return all;
 }
@@ -427,7 +421,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
         std::ranges::any_of(d.runs, [](const auto& r) { return !r.blocks.empty(); }))
         j["order_row"] = p.row;
     j["order"] = order;
-    j["level"] = level_facts(p.render);
+    j["level"] = files::make_document(list_level(p.render));
     if (p.hand)
         j["hand"] = *p.hand == hand_kind::left ? "left" : "right";
     if (d.rest.is_random())
@@ -440,9 +434,9 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
         j["codes"] = code_facts(*c, p.codes);
     j["rate"] = p.render.rate;
     j["channels"] = p.render.channels;
-    j["masking"] = masking_facts(d.masking);
+    j["masking"] = files::make_document(list_noise(d.masking));
     j["masker"] = simulate || masker.empty() ? json(nullptr) : json(masker);
-    j["stimuli"] = stimulus_facts(p);
+    j["stimuli"] = files::make_document(list_stimuli(p));
     j["experiment"] = {{"name", d.outline.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
     j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
     j["device"] = simulate ? json(nullptr) : json(p.pcm);

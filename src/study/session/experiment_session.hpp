@@ -98,12 +98,6 @@ std::vector<run_time> session_times(const prepared_experiment& p);
 nlohmann::ordered_json describe_session(const prepared_experiment& p,
                                         const std::optional<simulation>& simulate, const std::string& masker);
 
-/// Return parts of this content: a level; the definition's noise, or null; each stimulus with its hash, and
-/// with its level if its method gives one.
-nlohmann::ordered_json level_facts(const render_options& o);
-nlohmann::ordered_json masking_facts(const masking_definition& m);
-nlohmann::ordered_json stimulus_facts(const prepared_experiment& p);
-
 /// Returns a trial's line with the cells that are known before the trial.
 trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which);
 

@@ -16,6 +16,7 @@
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/session/experiment_session.hpp"
+#include "study/session/session_members.hpp"
 
 namespace tactor::study {
 namespace {
@@ -165,7 +166,8 @@ void person_session::note_stream()
          {"opened", acq_time_text(rt::unix_ns())},
          {"device", devices_.pcm},
          {"masker", files::or_null(devices_.masker)},
-         {"masking", devices_.masker.empty() ? json(nullptr) : masking_facts(p_.definition.masking)},
+         {"masking",
+          devices_.masker.empty() ? json(nullptr) : files::make_document(list_noise(p_.definition.masking))},
          {"display", page_ != nullptr ? "page"
                      : display_.moves ? "terminal with animation"
                                       : "terminal without animation"},

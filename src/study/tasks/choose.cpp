@@ -127,6 +127,19 @@ public:
 
     std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_choices(o); }
 
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {{{{"method"}, std::string()},
+                 {{"preference"}, outline_cells(true)},
+                 {{"first_interval"}, interval_share{}},
+                 {{"anova"}, outline_effects({"motion"})},
+                 {{"tukey"}, tukey_list{}},
+                 outline_groups(false)},
+                {{{"chosen", "*"}, outline_cells(true)},
+                 {{"first_interval"}, interval_share{}},
+                 {{"bradley_terry"}, worth_list{}}}};
+    }
+
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const cell_plan plan = plan_choices(o);

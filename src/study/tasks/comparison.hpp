@@ -54,6 +54,11 @@ public:
         return list_pse(fit_comparisons(trials, kind, ""));
     }
 
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {outline_measured({{{"psychometric"}, psychometric_functions{}}})};
+    }
+
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
     {
         return analyse_comparisons(o, people, kind);

@@ -91,6 +91,12 @@ public:
         return all;
     }
 
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {outline_measured({{{"psychometric"}, psychometric_functions{}, true},
+                                  {{"dprime"}, outline_figures<sensitivities>(), true}})};
+    }
+
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
     {
         const psychometric_functions begun{{}, {kind}, o.on_db_axis, "felt (%)"};

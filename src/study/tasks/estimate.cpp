@@ -91,6 +91,11 @@ public:
         return list_exponent(fit_exponent(o, trials));
     }
 
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {outline_measured({{{"exponent"}, outline_figures<exponents>()}})};
+    }
+
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const auto fit = [&](const std::vector<trial>& trials, const std::string&) {

@@ -142,6 +142,15 @@ public:
 
     std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_names(o); }
 
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {{{{"chance"}, 0.0},
+                 {{"confusion", "*"}, answer_counts{}},
+                 {{"correct", "*"}, outline_cells(true)},
+                 {{"pairs", "*"}, paired_list{}},
+                 outline_groups(true)}};
+    }
+
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const cell_plan plan = plan_names(o);

@@ -67,9 +67,9 @@ public:
             t.fail("labels", fmt::format("labels has {} for a scale of {}", counted(labels, "text"), o.scale),
                    "give one for each end, or one for each step");
     }
-    nlohmann::ordered_json scale(const run_outline& o) const override
+    std::optional<rating_scale> scale(const run_outline& o) const override
     {
-        return o.visual ? nlohmann::ordered_json("vas") : nlohmann::ordered_json(o.scale);
+        return o.visual ? rating_scale("vas") : rating_scale(o.scale);
     }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override
@@ -117,6 +117,15 @@ public:
     // Results.
 
     std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_ratings(o); }
+
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {{{{"means", "*"}, outline_cells(false)},
+                 {{"paired"}, method_difference{}, true},
+                 {{"anova"}, outline_effects({"method", "motion", "method:motion"})},
+                 {{"tukey", "*"}, tukey_list{}},
+                 outline_groups(true)}};
+    }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {

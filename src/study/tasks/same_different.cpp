@@ -83,6 +83,11 @@ public:
         return list_sensitivity(measure_detection(trials, same_different));
     }
 
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {outline_measured({{{"dprime"}, outline_figures<sensitivities>()}})};
+    }
+
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const auto measure = [&](const condition_trials& c) {

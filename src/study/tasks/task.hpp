@@ -85,6 +85,9 @@ struct compared {
     bool is_above = false;        ///< true if the mean is above the value compared with
 };
 
+/// The highest rating, or "vas".
+using rating_scale = std::variant<unsigned, std::string>;
+
 using named_texts = std::vector<std::pair<std::string_view, std::string>>;
 
 class task {
@@ -118,8 +121,8 @@ public:
     virtual void read(const detail::toml_table& t, run_definition& r) const;
     /// Returns the default words of both answers; usually none.
     virtual std::vector<std::string> usual_choices(const page_words& w) const;
-    /// Returns the range of ratings for --dry-run; null if there is none.
-    virtual nlohmann::ordered_json scale(const run_outline& o) const;
+    /// Returns the range of ratings for --dry-run, if any.
+    virtual std::optional<rating_scale> scale(const run_outline& o) const;
 
     /// Lists the cells of a run: trials that differ in stimuli or their order.
     virtual std::vector<planned_trial> list_cells(const run_definition& r) const = 0;
@@ -163,6 +166,8 @@ public:
     /// trial in each cell.
     virtual std::vector<result> analyse(const run_outline& o, const run_people& people,
                                         sigmoid kind) const = 0;
+    /// Lists the rows that analyse() may return, in each form that a run's results may have.
+    virtual std::vector<std::vector<result_outline>> outline_results() const = 0;
     /// Lists the methods by which response times are summarised, if a trial has one method.
     virtual std::vector<std::string> list_timed_methods(const run_outline& o) const { return o.methods; }
     /// Tests whether the trial has no stimulus.
@@ -206,6 +211,8 @@ private:
 
 /// Returns all tasks.
 std::span<const task* const> list_tasks() noexcept;
+/// Lists the names of all tasks.
+std::vector<std::string_view> task_names();
 
 /// Returns the task with a name. \pre there is one.
 const task& find_task(std::string_view name) noexcept;

@@ -35,12 +35,17 @@ const task& find_task(std::string_view name) noexcept
     return **std::ranges::find(list_tasks(), name, &task::name);
 }
 
-const task& read_task(const detail::toml_table& t)
+std::vector<std::string_view> task_names()
 {
     std::vector<std::string_view> names;
     for (const task* one : list_tasks())
         names.push_back(one->name());
-    return find_task(t.need(t.choice("task", names), "task"));
+    return names;
+}
+
+const task& read_task(const detail::toml_table& t)
+{
+    return find_task(t.need(t.choice("task", task_names()), "task"));
 }
 
 void task::read_outline(const detail::toml_table& t, run_definition& r) const
@@ -61,9 +66,9 @@ std::vector<std::string> task::usual_choices(const page_words&) const
     return {};
 }
 
-nlohmann::ordered_json task::scale(const run_outline&) const
+std::optional<rating_scale> task::scale(const run_outline&) const
 {
-    return nullptr;
+    return {};
 }
 
 std::vector<planned_trial> task::draw(const run_definition& r, std::size_t n, random_numbers& numbers) const

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The values of results by their members: JSON, and the schema tactor-analysis/1, follow from them.
+/// row_member(io, name, value) describes a value as one member of an object.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/members.hpp"
+#include "study/results/result.hpp"
+
+namespace tactor::study {
+
+using detail::about;
+using detail::by_name;
+using detail::nullable;
+
+inline constexpr detail::bounds probability{0.0, 1.0};
+inline constexpr about f_test{"F, degrees of freedom and p; for epsilon and Mauchly's W see tactor-json(5)"};
+
+/// Returns both ends of an interval.
+inline std::optional<std::array<double, 2>> list_ends(const std::optional<interval>& i)
+{
+    return i ? std::optional(std::array{i->first, i->second}) : std::nullopt;
+}
+
+template <class Io>
+void mean_members(Io& io, const t_test& t)
+{
+    constexpr about ends{"both ends of the 95 % interval"};
+    io.or_null("mean", t.mean, {"mean over participants"});
+    io.or_null("se", t.se, {"standard error", detail::from_0});
+    io.or_null("ci", list_ends(t.ci), ends);
+    io.or_null("ci_within", list_ends(t.ci_within), {"the same within participants"});
+}
+
+template <class Io>
+void test_members(Io& io, const t_test& t)
+{
+    constexpr about test{"t test, two-sided"};
+    mean_members(io, t);
+    io.or_null("t", t.t, test);
+    io.or_null("df", t.df, {test.text, {1.0, detail::from_0.high}});
+    io.or_null("p", t.p, {test.text, probability});
+    io.or_null("p_signflip", t.p_signflip,
+               {"exact p of the permutation test that changes signs", probability});
+    io.or_null("d", t.d, {"effect size"});
+    io.or_null("d_ci", list_ends(t.d_ci), {"both ends of its 95 % interval"});
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const std::monostate&)
+{
+    io.or_null(name, std::optional<double>(), {"not computed"});
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const std::string& v)
+{
+    io(name, v, {"see tactor-json(5)"});
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, double v)
+{
+    io(name, v, {"see tactor-json(5)"});
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const cell_means& v)
+{
+    const auto describe = [&v](auto& inner, const t_test& t) {
+        v.against ? test_members(inner, t) : mean_members(inner, t);
+    };
+    io.object(name, {"means over participants"}, [&](auto& inner) {
+        inner.object("all", {"for the participants' means over motions"},
+                     [&](auto& all) { describe(all, v.means.front().test); });
+        inner.named_objects(
+            "motion", std::vector(v.means.begin() + 1, v.means.end()), {"by motion"},
+            [&](auto& one, const cell_mean& m) {
+                describe(one, m.test);
+                if (v.against)
+                    one.or_null("p_holm", m.p_holm, {"p adjusted by Holm for all motions", probability});
+            });
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const interval_share& v)
+{
+    io.object(name, {"per cent of trials in which people chose the first interval"}, [&v](auto& inner) {
+        inner.or_null("mean", v.test.mean, {"mean over participants"});
+        inner.or_null("t", v.test.t, {"t test against 50"});
+        inner.or_null("p", v.test.p, {"t test against 50", probability});
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const method_difference& v)
+{
+    io.object(name, {"the last method minus the first"}, [&t = v.test](auto& inner) {
+        constexpr about test{"paired t test, two-sided"};
+        inner.or_null("difference", t.mean, {"mean difference"});
+        inner.or_null("ci", list_ends(t.ci), {"both ends of its 95 % interval"});
+        inner.or_null("t", t.t, test);
+        inner.or_null("df", t.df, {test.text, {1.0, detail::from_0.high}});
+        inner.or_null("p", t.p, {test.text, probability});
+        inner.or_null("p_signflip", t.p_signflip,
+                      {"exact p of the permutation test that changes signs", probability});
+        inner.or_null("d_z", t.d, {"mean / sd of the differences"});
+        inner.or_null("d_z_ci", list_ends(t.d_ci), {"both ends of its 95 % interval"});
+    });
+}
+
+template <class Io>
+void effect_members(Io& io, const effect& e)
+{
+    const auto df = [](double v) { return v > 0.0 ? std::optional(v) : std::nullopt; };
+    const auto bounded = [](const detail::bounds& range) { return about{f_test.text, range}; };
+    io.or_null("F", e.f, bounded(detail::from_0));
+    io.or_null("df1", df(e.df1), bounded({1.0, detail::from_0.high}));
+    io.or_null("df2", df(e.df2), bounded({1.0, detail::from_0.high}));
+    io.or_null("p", e.p, bounded(probability));
+    io.or_null("epsilon_gg", e.epsilon_gg, bounded(probability));
+    io.or_null("p_gg", e.p_gg, bounded(probability));
+    io.or_null("epsilon_hf", e.epsilon_hf, bounded(detail::from_0));
+    io.or_null("p_hf", e.p_hf, bounded(probability));
+    io.or_null("mauchly_w", e.mauchly_w, bounded(probability));
+    io.or_null("mauchly_p", e.mauchly_p, f_test); // its approximation may exceed 1
+    io.or_null("eta2_partial", e.eta2_partial, {"partial eta squared", probability});
+    io.or_null("eta2_generalised", e.eta2_generalised, {"generalised eta squared", probability});
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const effect_list& v)
+{
+    io.object(name, {"analysis of variance"}, [&v](auto& inner) {
+        for (const auto& [factor, e] : v.effects)
+            inner.object_or_null(factor.c_str(), e, {"an effect; null if a factor has one level"},
+                                 [](auto& one, const effect& its) { effect_members(one, its); });
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const tukey_list& v)
+{
+    io.list(name, v.pairs, {"all pairs of motions"}, [&v](auto& inner, const comparison& c, std::size_t) {
+        inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
+        inner.fact("b", [&] { return v.motions[c.b]; }, {"the second motion"});
+        inner("difference", c.difference, {"mean of a minus mean of b"});
+        inner.or_null("q", c.q, {"studentized range", detail::from_0});
+        inner.or_null("p", c.p, {"its p", probability});
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const paired_list& v)
+{
+    io.list(name, v.pairs, {"all pairs of motions"},
+            [&v](auto& inner, const paired_comparison& c, std::size_t) {
+                constexpr about test{"paired t test, two-sided"};
+                inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
+                inner.fact("b", [&] { return v.motions[c.b]; }, {"the second motion"});
+                inner.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
+                inner.or_null("t", c.test.t, test);
+                inner.or_null("df", c.test.df, {test.text, {1.0, detail::from_0.high}});
+                inner.or_null("p", c.test.p, {test.text, probability});
+                inner.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
+            });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const worth_list& v)
+{
+    by_name<nullable<double>> worths;
+    by_name<nullable<double>> errors;
+    for (std::size_t m = 0; m < v.methods.size(); ++m) {
+        worths.all.push_back({v.methods[m], {v.worths[m].log_worth}});
+        errors.all.push_back({v.methods[m], {v.worths[m].se}});
+    }
+    io.object(name, {"worths by the model of Bradley and Terry"}, [&](auto& inner) {
+        inner("log_worth", worths, {"logarithm of the worth, by method"});
+        inner("se", errors, {"standard errors, by method", detail::from_0});
+        inner.fact("reference", [&] { return v.methods.front(); }, {"the first method"});
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const answer_counts& v)
+{
+    by_name<by_name<std::size_t>> all;
+    for (std::size_t i = 0; i < v.motions.size(); ++i) {
+        by_name<std::size_t>& row = all.all.emplace_back(v.motions[i], by_name<std::size_t>()).second;
+        for (std::size_t k = 0; k < v.motions.size(); ++k)
+            row.all.emplace_back(v.motions[k], v.counts[i][k]);
+    }
+    io(name, all, {"number of answers, by motion played and motion answered"});
+}
+
+template <class Io>
+void function_members(Io& io, const fitted_function& m)
+{
+    const auto parameter = [&m](double psychometric::*p) {
+        return m.fit ? std::optional(m.fit->parameters.*p) : std::nullopt;
+    };
+    constexpr about fitted{"parameters of the function, and figures that follow from them"};
+    io.or_null("alpha", parameter(&psychometric::threshold), fitted);
+    io.or_null("beta", parameter(&psychometric::slope), {fitted.text, detail::from_0});
+    io.or_null("lapse", parameter(&psychometric::lapse), {fitted.text, probability});
+    io("guess", m.guess, {fitted.text, probability});
+    io.or_null("pse", m.pse, fitted);
+    io.or_null("jnd", m.jnd, {fitted.text, detail::from_0});
+    io.or_null("threshold", parameter(&psychometric::threshold), fitted);
+    io.object("ci", {"bootstrapped 95 % intervals"}, [&m](auto& ci) {
+        constexpr about ends{"both ends"};
+        ci.or_null("pse", list_ends(m.pse ? m.bootstrap.threshold : std::nullopt), ends);
+        ci.or_null("jnd", list_ends(m.jnd_ci), ends);
+        ci.or_null("threshold", list_ends(m.bootstrap.threshold), ends);
+    });
+    io.or_null("deviance", m.fit ? std::optional(m.fit->deviance) : std::nullopt,
+               {"deviance of the fit", detail::from_0});
+    io.or_null("p_gof", m.bootstrap.p_gof, {"its p from the bootstrap", probability});
+    io.list("answers", m.blocks, {"answers by value, ascending"},
+            [](auto& one, const answer_block& b, std::size_t) {
+                one("value", b.x, {"the value"});
+                one("n", b.n, {"its trials", detail::above_0});
+                one("positive", b.k, {"trials with a positive answer"});
+            });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const psychometric_functions& v)
+{
+    by_name<nullable<double>> means;
+    for (const measured_figure& f : v.figures)
+        means.all.push_back({f.name, {f.test.mean}});
+    io.object(name, {"psychometric functions"}, [&](auto& inner) {
+        inner.one_of("function", v.family.kind == sigmoid::normal ? "normal" : "logistic",
+                     {"normal", "logistic"}, {"kind of the function"});
+        inner.one_of("axis", v.on_db_axis ? "dB" : "linear", {"dB", "linear"}, {"axis of the values"});
+        inner.named_objects("participants", v.codes, v.people, {"by code"},
+                            [](auto& one, const fitted_function& m) { function_members(one, m); });
+        inner("mean", means, {"means of the figures over participants"});
+        inner.named_objects("tests", v.figures, {"tests of the figures"},
+                            [](auto& one, const measured_figure& f) { test_members(one, f.test); });
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const sensitivities& v)
+{
+    std::vector<std::string> codes;
+    std::vector<detection> people;
+    for (std::size_t i = 0; i < v.codes.size(); ++i)
+        if (v.people[i]) {
+            codes.push_back(v.codes[i]);
+            people.push_back(*v.people[i]);
+        }
+    io.object(name, {"sensitivity"}, [&](auto& inner) {
+        inner.named_objects("participants", codes, people, {"by code"}, [](auto& one, const detection& d) {
+            constexpr about rates{"corrected rates", probability};
+            one("hits", d.hits, rates);
+            one("false_alarms", d.false_alarms, rates);
+            one("dprime", d.found.dprime, {"d'"});
+            one("c", d.found.c, {"criterion"});
+        });
+        test_members(inner, v.figures.front().test);
+        inner.object_or_null("likelihood_ratio", v.ratio, {"likelihood ratio of same-different, or null"},
+                             [](auto& one, const difference_test& d) {
+                                 one("value", d.likelihood_ratio, {"the ratio", detail::from_0});
+                                 one("p", d.p, {"its p", probability});
+                                 one("studies", d.studies, {"number of simulated studies", detail::above_0});
+                             });
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const exponents& v)
+{
+    by_name<nullable<double>> people;
+    for (std::size_t i = 0; i < v.codes.size(); ++i)
+        people.all.push_back({v.codes[i], {v.people[i].exponent}});
+    io.object(name, {"exponents"}, [&](auto& inner) {
+        inner("participants", people, {"by code"});
+        test_members(inner, v.figures.front().test);
+    });
+}
+
+template <class Io, detail::either<response_times> Times>
+void members(Io& io, Times& v)
+{
+    by_name<nullable<double>> by;
+    for (const auto& [condition, median_s] : v.by)
+        by.all.push_back({condition, {median_s}});
+    io.or_null("median_s", v.median_s, {"median of the participants' medians, s"});
+    io("by", by, {"the same by condition"});
+}
+
+template <class Io, detail::either<left_out> Person>
+void members(Io& io, Person& v)
+{
+    io("participant", v.participant, {"code"});
+    io("why", v.why, {"reason"});
+}
+
+} // namespace tactor::study
