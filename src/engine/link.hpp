@@ -13,11 +13,11 @@
 
 #include <tactor/player.hpp>
 
-#include "engine/audio/dac_clock.hpp"
+#include "engine/dac_clock.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/spsc_ring.hpp"
 #include "rt/triple_buffer.hpp"
-#include "synth/score/event.hpp"
+#include "synth/wave/event.hpp"
 
 namespace tactor::engine {
 

@@ -20,7 +20,7 @@
 #include <tactor/player.hpp>
 #include <tactor/sink.hpp>
 
-#include "engine/audio/dac_clock.hpp"
+#include "engine/dac_clock.hpp"
 #include "engine/link.hpp"
 #include "rt/triple_buffer.hpp"
 #include "synth/mix/mixer.hpp"

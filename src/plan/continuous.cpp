@@ -16,8 +16,8 @@
 #include "core/trajectory/spans.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/faces/layout_impl.hpp"
+#include "plan/faces/same_tactors.hpp"
 #include "plan/job.hpp"
-#include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <tactor/plan.hpp>
 
-#include "plan/phantom/same_tactors.hpp"
+#include "plan/faces/same_tactors.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -12,13 +12,13 @@
 
 #include "core/access.hpp"
 #include "synth/mix/mixer.hpp"
-#include "synth/mix/oscillator.hpp"
 #include "synth/score/drive_room.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/score/score.hpp"
 #include "synth/tone/make_timbre.hpp"
 #include "synth/tone/timbre.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 

@@ -18,7 +18,7 @@
 #include "engine/control/feeder.hpp"
 #include "engine/live.hpp"
 #include "pieces.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 
 using namespace tactor;
 

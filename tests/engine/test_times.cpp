@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/audio/dac_clock.hpp"
+#include "engine/dac_clock.hpp"
 #include "rig.hpp"
 
 namespace times_test {

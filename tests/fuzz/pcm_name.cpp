@@ -7,10 +7,10 @@
 #include <alsa/asoundlib.h>
 
 #include "holds.hpp"
-#include "sink/alsa/devices/plain_name.hpp"
-#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
+#include "sink/alsa/plain_name.hpp"
+#include "sink/alsa/route.hpp"
 
 using namespace tactor;
 

@@ -15,7 +15,7 @@
 
 #include "arrays.hpp"
 #include "has.hpp"
-#include "plan/phantom/same_tactors.hpp"
+#include "plan/faces/same_tactors.hpp"
 #include "rounds.hpp"
 #include "strokes.hpp"
 

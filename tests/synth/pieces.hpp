@@ -15,7 +15,7 @@
 #include <tactor/render.hpp>
 
 #include "own_curve.hpp"
-#include "synth/score/event.hpp"
+#include "synth/wave/event.hpp"
 
 namespace pieces {
 

@@ -16,7 +16,7 @@
 
 #include "pieces.hpp"
 #include "rounds.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/score/drive_room.hpp"
 #include "synth/score/event_source.hpp"

@@ -11,7 +11,7 @@
 
 #include "pieces.hpp"
 #include "rounds.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/tone/make_timbre.hpp"
 

@@ -22,7 +22,7 @@
 #include "pieces.hpp"
 #include "plan/curve_impl.hpp"
 #include "rounds.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/levels.hpp"

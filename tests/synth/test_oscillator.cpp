@@ -14,11 +14,11 @@
 
 #include "pieces.hpp"
 #include "rounds.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/mix/converter.hpp"
 #include "synth/mix/mixer.hpp"
-#include "synth/mix/oscillator.hpp"
-#include "synth/mix/window.hpp"
+#include "synth/wave/oscillator.hpp"
+#include "synth/wave/window.hpp"
 
 namespace oscillator_test {
 

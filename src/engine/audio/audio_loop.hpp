@@ -14,7 +14,7 @@
 
 #include <tactor/sink.hpp>
 
-#include "engine/audio/dac_clock.hpp"
+#include "engine/dac_clock.hpp"
 #include "engine/link.hpp"
 #include "engine/live.hpp"
 #include "rt/nonblocking.hpp"

@@ -18,7 +18,7 @@
 #include <tactor/player.hpp>
 
 #include "amplifier/amplifier.hpp"
-#include "engine/audio/dac_clock.hpp"
+#include "engine/dac_clock.hpp"
 #include "engine/link.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/thread.hpp"

@@ -24,7 +24,7 @@
 
 #include "engine/link.hpp"
 #include "rt/clock.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 
 namespace tactor::engine {
 

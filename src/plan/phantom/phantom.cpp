@@ -17,8 +17,8 @@
 #include "plan/faces/face_rules.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
+#include "plan/faces/same_tactors.hpp"
 #include "plan/job.hpp"
-#include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "core/refused.hpp"
 #include "core/suggest.hpp"
-#include "sink/alsa/devices/plain_name.hpp"
-#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/plain_name.hpp"
+#include "sink/alsa/route.hpp"
 
 namespace tactor::alsa {
 namespace {

@@ -16,7 +16,7 @@
 
 #include <tactor/error.hpp>
 
-#include "sink/alsa/devices/devices.hpp"
+#include "sink/alsa/devices.hpp"
 
 namespace tactor::alsa {
 

@@ -18,8 +18,8 @@
 #include "core/refused.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
-#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
+#include "sink/alsa/route.hpp"
 
 namespace tactor::alsa {
 namespace {

@@ -19,10 +19,10 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "rt/clock.hpp"
-#include "sink/alsa/devices/devices.hpp"
-#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/devices.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
+#include "sink/alsa/route.hpp"
 
 namespace tactor::alsa {
 namespace {

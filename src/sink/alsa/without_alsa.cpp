@@ -5,7 +5,7 @@
 #include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 
-#include "sink/alsa/devices/plain_name.hpp"
+#include "sink/alsa/plain_name.hpp"
 
 namespace tactor {
 inline namespace v0 {

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "core/clones.hpp"
-#include "synth/mix/oscillator.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/clones.hpp"
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/mix/converter.hpp"
 #include "synth/mix/voice.hpp"
 #include "synth/tone/timbre.hpp"

@@ -10,8 +10,8 @@
 
 #include <tactor/choices.hpp>
 
-#include "synth/guard.hpp"
-#include "synth/score/event.hpp"
+#include "synth/limits/guard.hpp"
+#include "synth/wave/event.hpp"
 
 namespace tactor::synth {
 

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "synth/mix/oscillator.hpp"
-#include "synth/mix/window.hpp"
-#include "synth/score/event.hpp"
+#include "synth/wave/event.hpp"
+#include "synth/wave/oscillator.hpp"
+#include "synth/wave/window.hpp"
 
 namespace tactor::synth {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/score/event_source.hpp"
 
 namespace tactor::synth {

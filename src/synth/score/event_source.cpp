@@ -6,9 +6,9 @@
 #include <deque>
 
 #include "core/access.hpp"
-#include "synth/mix/window.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/tone/own_samples.hpp"
+#include "synth/wave/window.hpp"
 
 namespace tactor::synth {
 namespace {

@@ -12,8 +12,8 @@
 #include <tactor/render.hpp>
 
 #include "plan/curve_impl.hpp"
-#include "synth/score/event.hpp"
 #include "synth/score/score.hpp"
+#include "synth/wave/event.hpp"
 
 namespace tactor::synth {
 

@@ -19,10 +19,10 @@
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
 #include "plan/curve_impl.hpp"
-#include "synth/mix/window.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/score/together.hpp"
+#include "synth/wave/window.hpp"
 
 namespace tactor::synth {
 

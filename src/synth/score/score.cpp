@@ -17,11 +17,11 @@
 #include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"
-#include "synth/guard.hpp"
-#include "synth/score/event.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/score/levels.hpp"
 #include "synth/tone/make_timbre.hpp"
+#include "synth/wave/event.hpp"
 
 namespace tactor {
 inline namespace v0 {

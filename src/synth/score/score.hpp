@@ -13,7 +13,7 @@
 
 #include <tactor/render.hpp>
 
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 #include "synth/tone/timbre.hpp"
 
 namespace tactor::synth {

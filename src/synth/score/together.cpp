@@ -10,8 +10,8 @@
 
 #include "core/access.hpp"
 #include "plan/curve_impl.hpp"
-#include "synth/mix/window.hpp"
 #include "synth/score/event_source.hpp"
+#include "synth/wave/window.hpp"
 
 namespace tactor::synth {
 namespace {

@@ -18,7 +18,7 @@
 
 #include "core/refused.hpp"
 #include "core/words.hpp"
-#include "synth/mix/oscillator.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 namespace {

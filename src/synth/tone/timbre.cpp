@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/clones.hpp"
-#include "synth/mix/oscillator.hpp"
 #include "synth/tone/own_samples.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "synth/mix/oscillator.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 

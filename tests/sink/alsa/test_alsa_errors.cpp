@@ -15,7 +15,7 @@
 #include "caught.hpp"
 #include "fake_system.hpp"
 #include "has.hpp"
-#include "sink/alsa/devices/devices.hpp"
+#include "sink/alsa/devices.hpp"
 #include "sink/alsa/error_text.hpp"
 
 namespace alsa_errors_test {

@@ -19,10 +19,10 @@
 #include "fake_system.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "sink/alsa/devices/devices.hpp"
-#include "sink/alsa/devices/plain_name.hpp"
-#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/devices.hpp"
 #include "sink/alsa/handle.hpp"
+#include "sink/alsa/plain_name.hpp"
+#include "sink/alsa/route.hpp"
 
 namespace devices_test {
 

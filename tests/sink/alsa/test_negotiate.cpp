@@ -20,10 +20,10 @@
 
 #include "fake_dac.hpp"
 #include "folder.hpp"
-#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/pcm_sink.hpp"
+#include "sink/alsa/route.hpp"
 
 namespace negotiate_test {
 

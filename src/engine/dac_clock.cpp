@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/audio/dac_clock.hpp"
+#include "engine/dac_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "synth/mix/oscillator.hpp"
+#include "synth/wave/oscillator.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "synth/mix/window.hpp"
+#include "synth/wave/window.hpp"
 
 #include <algorithm>
 

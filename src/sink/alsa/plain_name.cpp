@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sink/alsa/devices/plain_name.hpp"
+#include "sink/alsa/plain_name.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sink/alsa/devices/devices.hpp"
+#include "sink/alsa/devices.hpp"
 
 #include <algorithm>
 #include <map>
@@ -11,10 +11,10 @@
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "rt/system_files.hpp"
-#include "sink/alsa/devices/plain_name.hpp"
-#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
+#include "sink/alsa/plain_name.hpp"
+#include "sink/alsa/route.hpp"
 
 namespace tactor::alsa {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/route.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plan/phantom/same_tactors.hpp"
+#include "plan/faces/same_tactors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include <tactor/render.hpp>
 
-#include "synth/mix/oscillator.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 

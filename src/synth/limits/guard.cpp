@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "synth/guard.hpp"
+#include "synth/limits/guard.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "core/bounds.hpp"
 #include "core/refused.hpp"
-#include "synth/mix/oscillator.hpp"
+#include "synth/wave/oscillator.hpp"
 
 namespace tactor::synth {
 namespace {
