@@ -11,8 +11,16 @@ import sys
 
 DOCTEST = re.compile(r"\[doctest\] test cases:\s+\d+ \|\s+(\d+) passed \|\s+(\d+) failed \|\s+(\d+) skipped")
 COUNTED = re.compile(r"^(\d+) passed, (\d+) failed(?:, (\d+) skipped)?$", re.M)
-# Lines that doctest and unittest print above each case that failed, and those of this script for a lane's suites.
-FAILED = re.compile(r"^(?:TEST CASE|FAIL|ERROR|\s*FAILED): +(.*)$", re.M)
+# Lines that unittest prints above each case that failed, and those of this script for a lane's suites.
+FAILED = re.compile(r"^(?:FAIL|ERROR|\s*FAILED): +(.*)$", re.M)
+# doctest names a case above each of its messages, too.
+CASE = re.compile(r"^TEST CASE: +(.*)$", re.M)
+
+
+def failed_cases(text):
+    """Returns the names of the cases that failed, each once."""
+    names = [name for block in re.split(r"^={9,}$", text, flags=re.M) if " ERROR: " in block for name in CASE.findall(block)]
+    return list(dict.fromkeys(names + FAILED.findall(text)))
 
 
 def suite_counts(result, output):
@@ -48,7 +56,7 @@ def main():
     for name, counts, text in results(sys.argv[1:]):
         print(f"{name:<28} {counts[0]:>6} passed {counts[1]:>4} failed {counts[2]:>4} skipped")
         if counts[1]:
-            for case in dict.fromkeys(FAILED.findall(text)) or [f"{name}: crashed, ran out of time or named no case"]:
+            for case in failed_cases(text) or [f"{name}: crashed, ran out of time or named no case"]:
                 print("  FAILED: " + case)
         for line in re.findall(r"^\s*((?:SKIPPED|SHORTENED): .*)$", text, re.M):
             print("  " + line)
