@@ -196,7 +196,7 @@ unsigned check_offset(const chip& c, const gpio_line_name& wanted)
     fail(wanted,
          n == 0 ? fmt::format("chip {} has no lines", chip_text(c))
                 : fmt::format("chip {} has lines 0 to {}, no line {}", chip_text(c), n - 1, *wanted.offset),
-         "offsets count the lines of the chip from 0");
+         "count the lines of the chip from 0");
 }
 
 std::vector<std::string> all_names(std::span<const chip> chips)
@@ -216,7 +216,7 @@ std::vector<std::string> all_names(std::span<const chip> chips)
     const std::string why = wanted.chip.empty() ? "no line has this name"
                                                 : fmt::format("no line of {} has this name", wanted.chip);
     if (names.empty())
-        fail(wanted, why, "no line of this machine has a name: give chip and offset");
+        fail(wanted, why, "give chip and offset: no line of this machine has a name");
     const std::vector<std::string_view> known(names.begin(), names.end());
     const std::string_view near = detail::nearest_name(wanted.name, known);
     fail(wanted, why, near.empty() ? list(names) : fmt::format("did you mean \"{}\"?", near));
@@ -363,7 +363,7 @@ error request_error(const gpio_line_name& l, int code, const std::string& holder
     case ENXIO:
         return {error_kind::not_available, thing(l),
                 fmt::format("the chip cannot do this with the line: {}", words(code)),
-                "not every chip has pull resistors, edges or outputs; choose another line"};
+                "choose another line: not every chip has pull resistors, edges or outputs"};
     default:
         return {error_kind::not_available, thing(l),
                 fmt::format("the line cannot be opened: {}", words(code))};

@@ -189,7 +189,7 @@ void switch_off(settings& s)
     const environment e = session::read_environment(s);
     if (!e.config.amplifier)
         throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
-                    "add its line there, see tactor.toml(5), or name another file with --array");
+                    "add [amplifier] there, see tactor.toml(5), or name another file with --array");
     const amplifier_settings& a = *e.config.amplifier;
     const gpio_line_place p = wait_until_free(a.line);
     // Opening requests the line as off. set() asks once more, to learn if the driver refuses.

@@ -110,7 +110,7 @@ std::vector<std::string> stroke_arguments(const settings& s)
     if (!option.empty())
         return {option};
     if (s.strokes.empty())
-        throw error(error_kind::bad_input, "command line", "no stroke",
+        throw error(error_kind::bad_input, "command line", "the stroke is missing",
                     "give a preset such as park2016-1, a stroke file, -, --path DATA or --shape circle");
     return s.strokes;
 }
@@ -138,8 +138,8 @@ bool names_samples(std::string_view argument)
 void refuse_samples(const std::string& argument)
 {
     if (names_samples(argument))
-        throw error(error_kind::bad_input, argument, "it has samples, and there is no stroke to plan",
-                    "{command:play} and {command:render} take it");
+        throw error(error_kind::bad_input, argument, "it has samples, but no stroke to plan",
+                    "use {command:play} or {command:render}");
 }
 
 std::string shown_name(const std::string& argument)

@@ -196,7 +196,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     f.heading = o.has_title();
     const plot::file_format format = plot::find_format(o.file); // fails before the work
     if (f.animated && format != plot::file_format::svg)
-        refuse_option("--animate", "only SVG can be animated", "name a file .svg");
+        refuse_option("--animate", "only SVG can be animated", "end the name in .svg");
     if (f.animated && f.view == plot::figure_view::wave)
         refuse_option("--animate", "the waveform cannot be animated", "leave out --view wave");
     const environment e = session::read_environment(s);

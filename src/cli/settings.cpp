@@ -37,7 +37,7 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 constexpr std::array own_words{options::own_word{"command:plan", "tactor plan STROKE --format json"},
                                options::own_word{"array=none", "leave out --array"},
                                options::own_word{"force=true", "--force"},
-                               options::own_word{"wider=true", "without a number of channels it"},
+                               options::own_word{"wider=true", "leave out the number of channels"},
                                options::own_word{"participants", "--participants"},
                                options::own_word{"exclude", "--exclude"}};
 
@@ -86,7 +86,7 @@ std::size_t choose(std::string_view option, const std::string& text, const std::
     const auto at = std::find(names.begin(), names.end(), text);
     if (at == names.end())
         refuse_option(option, fmt::format("\"{}\" is unknown", text),
-                      fmt::format("one of {}", fmt::join(names, ", ")));
+                      fmt::format("use one of {}", fmt::join(names, ", ")));
     return static_cast<std::size_t>(at - names.begin());
 }
 

@@ -171,11 +171,11 @@ struct other_way {
 };
 constexpr std::array other_ways{
     other_way{"serve", "level-dbfs",
-              "--max-level-dbfs is the ceiling of its clients, which set the level of each stroke"},
-    other_way{"serve", "sl", "each client sets it with its strokes; --max-level-dbfs is their ceiling"},
-    other_way{"experiment", "level-dbfs", "the definition sets it: level = { dbfs = -18 }"},
-    other_way{"experiment", "sl", "the definition sets it: level = { sl_db = 7 }"},
-    other_way{"calibrate", "level-dbfs", "--start-dbfs is the level at which it begins"},
+              "use --max-level-dbfs to limit its clients, which set the level of each stroke"},
+    other_way{"serve", "sl", "use --max-level-dbfs to limit its clients, which set the level of each stroke"},
+    other_way{"experiment", "level-dbfs", "set it in the definition: level = { dbfs = -18 }"},
+    other_way{"experiment", "sl", "set it in the definition: level = { sl_db = 7 }"},
+    other_way{"calibrate", "level-dbfs", "set the level of the first trial with --start-dbfs"},
 };
 
 // Returns the hint for an option that a command uses and only a file sets; empty for others.
@@ -255,13 +255,13 @@ error missing(const CLI::App& app, const CLI::App& command)
     const auto o = std::find_if(options.begin(), options.end(),
                                 [](const CLI::Option* x) { return x->get_required() && x->count() == 0; });
     if (o == options.end())
-        return {error_kind::bad_input, "command line", "an argument is missing", help};
+        return {error_kind::bad_input, "command line", "an argument is missing", "see " + help};
     const std::string name = (*o)->get_name();
     if (name.starts_with('-'))
         return {error_kind::bad_input, name, "this option is missing",
-                fmt::format("add {} {}; {}", name, (*o)->get_type_name(), help)};
-    return {error_kind::bad_input, "command line", "no " + name,
-            fmt::format("tactor {} {}; {}", command.get_name(), name, help)};
+                fmt::format("add {} {}, see {}", name, (*o)->get_type_name(), help)};
+    return {error_kind::bad_input, "command line", name + " is missing",
+            fmt::format("write tactor {} {}, see {}", command.get_name(), name, help)};
 }
 
 // Returns the error for an option with too few or too many values. Its name comes first in the parser's text.
@@ -270,11 +270,11 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
     const std::string name = said.substr(0, said.find_first_of(": "));
     const CLI::Option* o = command.get_option_no_throw(name);
     if (o == nullptr)
-        return {error_kind::bad_input, "command line", said, help_command(app, command)};
+        return {error_kind::bad_input, "command line", said, "see " + help_command(app, command)};
     if (o->count() > 1)
         return {error_kind::bad_input, name, "it occurs more than once", "give it once"};
     return {error_kind::bad_input, name, "its value is missing",
-            fmt::format("write {} {}; {}", name, o->get_type_name(), help_command(app, command))};
+            fmt::format("write {} {}, see {}", name, o->get_type_name(), help_command(app, command))};
 }
 
 // Refuses a value that the option does not list.
@@ -285,7 +285,7 @@ error unlisted(const CLI::App& command, const std::string& said)
     if (o.count() > 1)
         return {error_kind::bad_input, name, "it occurs more than once", "give it once"};
     return {error_kind::bad_input, name, fmt::format("\"{}\" is unknown", o.results().front()),
-            fmt::format("one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
+            fmt::format("use one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
 }
 
 // Returns the error for an option without another one that it needs, or together with one that it excludes.
@@ -293,8 +293,13 @@ error unlisted(const CLI::App& command, const std::string& said)
 error unpaired(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::size_t blank = said.find(' ');
-    return {error_kind::bad_input, said.substr(0, blank), "it" + said.substr(blank),
-            help_command(app, command)};
+    const std::string name = said.substr(0, blank);
+    const std::string other = said.substr(said.rfind(' ') + 1);
+    if (said.find(" excludes ") != std::string::npos)
+        return {error_kind::bad_input, name, "it cannot be combined with " + other, "give one of them"};
+    if (said.find(" requires ") != std::string::npos)
+        return {error_kind::bad_input, name, "it requires " + other, "add " + other};
+    return {error_kind::bad_input, name, "it" + said.substr(blank), "see " + help_command(app, command)};
 }
 
 error unknown(const CLI::App& app, const CLI::App& command)
@@ -309,7 +314,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
                 return {error_kind::bad_input, name, fmt::format("tactor {} does not accept it", o.command),
                         o.hint};
         if (const std::string hint = file_hint(command, bare_name(name)); !hint.empty())
-            return {error_kind::bad_input, name, "only a file sets it", hint};
+            return {error_kind::bad_input, name, "only a file can set it", hint};
         const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
                                                   : nearest_option(name, option_names(command));
         return {error_kind::bad_input, name, "no such option",
@@ -319,8 +324,8 @@ error unknown(const CLI::App& app, const CLI::App& command)
         return no_such_command(app, given);
     const auto takes = command.get_options([](const CLI::Option* o) { return o->get_positional(); });
     return {error_kind::bad_input, given, "there is one argument too many",
-            takes.empty() ? help
-                          : fmt::format("{} accepts one {}; quote a name that has blanks", command.get_name(),
+            takes.empty() ? fmt::format("leave it out: tactor {} accepts none", command.get_name())
+                          : fmt::format("give one {}, and quote a name that has blanks",
                                         takes.front()->get_name(true))};
 }
 
@@ -438,7 +443,7 @@ std::optional<error> find_late_command(const words_type& words, const words_type
         if (w != at)
             line += w->find(' ') == std::string::npos ? " " + *w : fmt::format(" \"{}\"", *w);
     return error(error_kind::bad_input, words.front(), "it comes before the command",
-                 "the command comes first: " + line);
+                 "put the command first: " + line);
 }
 
 bool is_path(const std::string& data)
@@ -586,7 +591,8 @@ std::string first_steps()
 
 error no_command()
 {
-    return {error_kind::bad_input, "command line", "no command", "tactor --help lists them"};
+    return {error_kind::bad_input, "command line", "the command is missing",
+            "tactor --help lists the commands"};
 }
 
 std::optional<error> find_slip(const words_type& words, const words_type& commands)

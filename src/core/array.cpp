@@ -57,31 +57,31 @@ void check_values(const array& a, std::size_t i)
         refuse(a, i, fmt::format("is at ({}, {}) mm", t.position.x_mm, t.position.y_mm),
                "give coordinates in millimetres, within 1000000 of 0", x_fits ? "y_mm" : "x_mm");
     if (t.channel >= detail::max_channels)
-        refuse(a, i, fmt::format("is on channel {}", t.channel), "channels count from 0", "channel");
+        refuse(a, i, fmt::format("is on channel {}", t.channel), "give 0 to 1023: channels count from 0",
+               "channel");
     if (!(t.gain_db >= detail::min_db && t.gain_db <= detail::max_gain_db))
-        refuse(a, i, fmt::format("has a gain of {} dB", t.gain_db), "allowed: -200 to 60", "gain_db");
+        refuse(a, i, fmt::format("has a gain of {} dB", t.gain_db), "use -200 to 60", "gain_db");
     if (!detail::bounds_of::level_dbfs.holds(t.max_dbfs))
-        refuse(a, i, fmt::format("has a limit of {} dBFS", t.max_dbfs),
-               "0 dBFS is full scale; allowed: -200 to 0", "max_dbfs");
+        refuse(a, i, fmt::format("has a limit of {} dBFS", t.max_dbfs), "use -200 to 0: 0 dBFS is full scale",
+               "max_dbfs");
     for (std::size_t k = 0; k < t.thresholds.size(); ++k) {
         const threshold_point& p = t.thresholds[k];
         const bool ascends = p.hz > (k == 0 ? 0.0 : t.thresholds[k - 1].hz) && std::isfinite(p.hz);
         if (!ascends || !detail::bounds_of::level_dbfs.holds(p.dbfs))
             refuse(a, i, fmt::format("has a threshold of {} dBFS at {} Hz", p.dbfs, p.hz),
-                   "allowed: -200 to 0, in order of frequency", "thresholds");
+                   "use -200 to 0, in order of frequency", "thresholds");
     }
     if (t.rise_s && !(*t.rise_s > 0.0 && *t.rise_s <= 1.0))
-        refuse(a, i, fmt::format("has a rise time of {} s", *t.rise_s), "allowed: above 0 to 1", "rise_s");
+        refuse(a, i, fmt::format("has a rise time of {} s", *t.rise_s), "use above 0 to 1", "rise_s");
     if (t.displacement_um_at_0dbfs &&
         !(*t.displacement_um_at_0dbfs > 0.0 && *t.displacement_um_at_0dbfs <= detail::max_displacement_um))
         refuse(a, i, fmt::format("has a displacement of {} um", *t.displacement_um_at_0dbfs),
-               fmt::format("allowed: above 0 to {}", detail::max_displacement_um),
-               "displacement_um_at_0dbfs");
+               fmt::format("use above 0 to {}", detail::max_displacement_um), "displacement_um_at_0dbfs");
     if (t.threshold_dbfs && !detail::bounds_of::level_dbfs.holds(*t.threshold_dbfs))
-        refuse(a, i, fmt::format("has a threshold of {} dBFS", *t.threshold_dbfs), "allowed: -200 to 0",
+        refuse(a, i, fmt::format("has a threshold of {} dBFS", *t.threshold_dbfs), "use -200 to 0",
                "threshold_dbfs");
     if (t.polarity != 1 && t.polarity != -1)
-        refuse(a, i, fmt::format("has a polarity of {}", t.polarity), "1, or -1 if its wires are swapped",
+        refuse(a, i, fmt::format("has a polarity of {}", t.polarity), "use 1, or -1 if its wires are swapped",
                "polarity");
 }
 
@@ -92,12 +92,11 @@ void check_own(const array& a, std::size_t i)
     for (std::size_t j = 0; j < i; ++j)
         if (distance_mm(a.tactors[j].position, t.position) <= same_place_mm)
             refuse(a, i,
-                   fmt::format("is at ({}, {}) mm, the place of {}", t.position.x_mm, t.position.y_mm,
-                               other(a, j)),
+                   fmt::format("is at ({}, {}) mm, like {}", t.position.x_mm, t.position.y_mm, other(a, j)),
                    "give each tactor its own place");
     for (std::size_t j = 0; j < i; ++j)
         if (a.tactors[j].channel == t.channel)
-            refuse(a, i, fmt::format("is on channel {}, that of {}", t.channel, other(a, j)),
+            refuse(a, i, fmt::format("is on channel {}, like {}", t.channel, other(a, j)),
                    "give each tactor its own channel");
 }
 
@@ -141,15 +140,15 @@ array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_
     const std::size_t count = std::size_t{rows} * columns;
     const auto possible = [](unsigned n) { return n >= 1 && n <= detail::max_channels; };
     if (!possible(rows) || !possible(columns) || count > detail::max_channels)
-        throw error(error_kind::bad_input, "grid", fmt::format("{} rows x {} columns", rows, columns),
-                    fmt::format("1 to {} tactors", detail::max_channels))
+        throw error(error_kind::bad_input, "grid", fmt::format("it has {} rows x {} columns", rows, columns),
+                    fmt::format("give 1 to {} tactors", detail::max_channels))
             .with_field(!possible(rows)      ? "rows"
                         : !possible(columns) ? "columns"
                                              : "");
     const auto check_pitch = [](const char* field, double pitch) {
         if (!std::isfinite(pitch) || pitch <= 0.0)
             throw error(error_kind::bad_input, "grid", fmt::format("the pitch is {} mm", pitch),
-                        "it must be more than 0")
+                        "give more than 0 mm")
                 .with_field(field);
     };
     check_pitch("pitch_x_mm", pitch_x_mm);
@@ -188,8 +187,8 @@ void validate(const array& a)
     if (a.tactors.empty() || a.tactors.size() > detail::max_channels)
         throw error(error_kind::bad_input,
                     a.where.line != 0 ? a.where.text() : "array " + detail::quoted(a.name),
-                    fmt::format("{} tactors", a.tactors.size()),
-                    fmt::format("an array has 1 to {}", detail::max_channels))
+                    fmt::format("it has {} tactors", a.tactors.size()),
+                    fmt::format("give 1 to {}", detail::max_channels))
             .with_place(a.where)
             .with_field("tactors");
 

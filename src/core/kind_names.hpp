@@ -59,7 +59,7 @@ struct kind_table {
         if (at < N)
             return kinds[at];
         throw error(error_kind::bad_input, what, fmt::format("\"{}\" is unknown", name),
-                    fmt::format("one of {}", fmt::join(names, ", ")))
+                    fmt::format("use one of {}", fmt::join(names, ", ")))
             .with_field(what);
     }
 };

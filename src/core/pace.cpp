@@ -109,11 +109,12 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
         };
         const auto [part, value] = points[i];
         if (!bounds_of::part.holds(part))
-            refuse(fmt::format("part {}", part), "0 is the path's start, 1 its end");
+            refuse(fmt::format("part {} is out of range", part), "give 0, the path's start, to 1, its end");
         if (i > 0 && !(part > points[i - 1].part))
-            refuse(fmt::format("part {} is not after {}", part, points[i - 1].part), "parts ascend");
+            refuse(fmt::format("part {} is not after {}", part, points[i - 1].part),
+                   "put parts in ascending order");
         if (!allowed.holds(value))
-            refuse(fmt::format("{}", value),
+            refuse(fmt::format("{} is out of range", value),
                    allowed.above_low
                        ? fmt::format("give more than {:g} and at most {:g}", allowed.low, allowed.high)
                        : fmt::format("give {:g} to {:g}", allowed.low, allowed.high));
@@ -166,7 +167,7 @@ void check_movement(const movement& m)
     check_profile_points("pauses", times, {0.0, longest_stroke_s, true});
     for (const rest& r : m.rests)
         if (!bounds_of::part.holds(r.intensity))
-            throw bad_field("pauses", fmt::format("intensity {:g}", r.intensity),
+            throw bad_field("pauses", fmt::format("intensity {:g} is out of range", r.intensity),
                             "give a factor from 0 to 1");
 }
 

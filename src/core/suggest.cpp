@@ -143,7 +143,7 @@ std::string preset_hint(std::string_view name, const std::vector<std::string>& p
 std::string choice_hint(std::string_view name, std::span<const std::string_view> known)
 {
     const std::string_view near = nearest_name(name, known);
-    return fmt::format("{}one of {}", near.empty() ? "" : fmt::format("did you mean '{}'? ", near),
+    return fmt::format("{} one of {}", near.empty() ? "use" : fmt::format("did you mean '{}'? Use", near),
                        fmt::join(known, ", "));
 }
 

@@ -22,7 +22,7 @@ error unknown_key(const source_place& at, std::string_view key, std::string_view
 /// Returns "did you mean 'palm-3x3'? presets: a, b", or "presets: a, b". For short lists.
 std::string preset_hint(std::string_view name, const std::vector<std::string>& presets);
 
-/// Returns "did you mean 'level_dbfs'? one of a, b", or "one of a, b".
+/// Returns "did you mean 'level_dbfs'? Use one of a, b", or "use one of a, b".
 std::string choice_hint(std::string_view name, std::span<const std::string_view> known);
 
 /// Returns the known name that is nearest to `name`, for a hint: e.g. "channel" for "chanel" or "pitch_mm"

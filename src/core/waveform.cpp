@@ -26,7 +26,8 @@ void check_noise(const waveform& w)
           w.high_hz <= detail::bounds_of::carrier_hz.high))
         throw error(error_kind::bad_input, "waveform",
                     fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
-                    "give frequencies from 1 Hz up, the second 1 Hz above the first or more, as noise:50-500")
+                    "give two frequencies of 1 Hz or more, the second at least 1 Hz above the first, such as "
+                    "noise:50-500")
             .with_field("waveform");
 }
 
@@ -109,7 +110,7 @@ modulation parse_modulation(std::string_view text)
         depth = number_until(text, ++at, '\0');
     if (!hz || !depth)
         throw detail::bad_field("am", fmt::format("\"{}\" is not HZ or HZ:DEPTH", text),
-                                "such as 30 or 30:0.5");
+                                "write it as 30 or 30:0.5");
     m.hz = *hz;
     m.depth = *depth;
     validate(m);
@@ -127,7 +128,7 @@ void validate(const waveform& w)
 void validate(const modulation& m)
 {
     if (!detail::bounds_of::am_hz.holds(m.hz))
-        throw detail::bad_field("am", fmt::format("{} Hz cannot modulate", m.hz),
+        throw detail::bad_field("am", fmt::format("{} Hz is not a modulation frequency", m.hz),
                                 "give 0 to 20000 Hz; 0 means none");
     if (!detail::bounds_of::part.holds(m.depth))
         throw detail::bad_field("am", fmt::format("{} is not a depth", m.depth),
@@ -148,7 +149,7 @@ burst_envelope parse_envelope(std::string_view text)
     const auto part = detail::scan_number(text, at);
     if (e.kind != envelope_kind::tukey || !part || at != text.size() || !detail::bounds_of::part.holds(*part))
         throw detail::bad_field("envelope", fmt::format("\"{}\" is unknown", text),
-                                "only tukey has a part, 0 to 1, as tukey:0.5");
+                                "give a part only to tukey, from 0 to 1, such as tukey:0.5");
     e.tukey_part = *part;
     return e;
 }

@@ -85,7 +85,7 @@ std::string in_small_letters(std::string text)
 
 std::string too_large_text(std::uint64_t bytes)
 {
-    return fmt::format("its {} MB are too many: {} MB are held in memory at most", bytes >> 20,
+    return fmt::format("it has {} MB of samples, but tactor loads at most {} MB", bytes >> 20,
                        most_own_bytes >> 20);
 }
 

@@ -27,7 +27,8 @@ namespace tactor {
 /// Returns the text with A to Z in lower case, for names that ignore case.
 [[nodiscard]] std::string in_small_letters(std::string text);
 
-/// Returns the reason against samples of one's own above most_own_bytes: "its 3072 MB are too many: ...".
+/// Returns the reason against samples of one's own above most_own_bytes: "it has 3072 MB of samples, but
+/// ...".
 [[nodiscard]] std::string too_large_text(std::uint64_t bytes);
 
 /// Returns the recording's file, or "recording" if it has none.
@@ -35,7 +36,7 @@ namespace tactor {
 
 /// Hint for a text that is not a label. A label is a short name that a user gives to a thing, such as a
 /// client or the place of an array.
-inline constexpr const char* label_hint = "1 to 40 characters, no control characters";
+inline constexpr const char* label_hint = "use 1 to 40 characters, no control characters";
 
 /// Returns the longest beginning of a text that has at most `most_bytes` bytes and ends with a whole
 /// character.

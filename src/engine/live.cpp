@@ -332,16 +332,19 @@ void check(const live_options& o, unsigned rate)
         throw refused(
             "carrier_hz",
             fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
-            "use 250, for example");
+            "use a carrier below half the rate, such as 250 Hz");
     if (!detail::bounds_of::timeout_s.holds(o.timeout_s))
-        throw refused("timeout_s", fmt::format("a time-out of {} s", o.timeout_s), "give 0.001 to 86400 s");
+        throw refused("timeout_s", fmt::format("a time-out of {} s is out of range", o.timeout_s),
+                      "give 0.001 to 86400 s");
     if (o.longest_s && !detail::bounds_of::timeout_s.holds(*o.longest_s))
-        throw refused("longest_s", fmt::format("at most {} s of it", *o.longest_s), "give 0.001 to 86400 s");
+        throw refused("longest_s", fmt::format("a longest duration of {} s is out of range", *o.longest_s),
+                      "give 0.001 to 86400 s");
     if (!detail::bounds_of::smooth_s.holds(o.smooth_s))
-        throw refused("smooth_s", fmt::format("points smoothed over {} s", o.smooth_s),
+        throw refused("smooth_s", fmt::format("smoothing over {} s is out of range", o.smooth_s),
                       "give 0 (off) to 1 s");
     if (o.render.ramp_s && !detail::bounds_of::ramp_s.holds(*o.render.ramp_s))
-        throw refused("ramp_s", fmt::format("a ramp of {} s", *o.render.ramp_s), "give 0 to 10 s");
+        throw refused("ramp_s", fmt::format("a ramp of {} s is out of range", *o.render.ramp_s),
+                      "give 0 to 10 s");
 }
 
 /// Returns a plan with the members that determine its sound.
@@ -377,7 +380,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
         return l;
     const double duration_s = burst_duration_s(o.plan);
     if (o.plan.soa_s < least_live_soa_s)
-        throw refused("soa_s", fmt::format("an SOA of {} s", o.plan.soa_s),
+        throw refused("soa_s", fmt::format("an SOA of {} s is too short", o.plan.soa_s),
                       fmt::format("give {} s or more", least_live_soa_s));
     l.soa = synth::frame_at(o.plan.soa_s, s.rate);
     l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
@@ -445,9 +448,9 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
         throw refused(std::isfinite(p.x_mm) ? "y_mm" : "x_mm",
-                      fmt::format("the point ({}, {})", p.x_mm, p.y_mm), "give finite millimetres");
+                      fmt::format("the point ({}, {}) is not finite", p.x_mm, p.y_mm), "give finite numbers");
     if (stamp < 0)
-        throw refused("at_ns", fmt::format("a point at {} ns", stamp),
+        throw refused("at_ns", fmt::format("a point at {} ns is before the clock's zero", stamp),
                       "give ns of CLOCK_MONOTONIC, or none for now");
     if (model_thread.load(std::memory_order_relaxed) == std::this_thread::get_id())
         throw error(error_kind::runtime, "live stroke", "its phantom model moves the stroke inside weights()",
@@ -459,7 +462,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const bool inside = distance_mm(p, place) <= edge_tolerance_mm;
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                      "{outside=clamp} plays the nearest point of the array");
+                      "use {outside=clamp} to play the nearest point of the array");
     const bool held = intensity > 1.0 && std::isfinite(intensity);
     const bool limited = write_course(place, held ? 1.0 : intensity);
     if (!excess.empty()) {

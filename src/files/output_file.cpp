@@ -71,8 +71,8 @@ fs::path follow_links(const fs::path& named)
     for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
         if (is_shared(parent_folder(p))) {
             refuse(named,
-                   fmt::format("{}is a link in a folder that others can write to",
-                               p == named ? "" : p.string() + " "),
+                   fmt::format("{} is a link in a folder that others can write to",
+                               p == named ? "it" : p.string()),
                    "name the file that you mean");
         }
         const fs::path next = fs::read_symlink(p, ignored);
@@ -175,7 +175,7 @@ void check_same(const fs::path& file, std::string_view bytes, bool force)
         return;
     std::ifstream in(file, std::ios::binary);
     if (std::string(std::istreambuf_iterator<char>(in), {}) != bytes)
-        refuse_foreign(file, "it exists, and has another content");
+        refuse_foreign(file, "it exists with other content");
 }
 
 void sync_folder(const fs::path& folder) noexcept
@@ -198,7 +198,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     std::error_code failed;
     const fs::file_status existing = fs::status(target_, failed);
     if (fs::is_directory(existing) || !target_.has_filename())
-        refuse(name_, "is a folder", "name a file in it", EISDIR);
+        refuse(name_, "it is a folder", "name a file in it", EISDIR);
     struct stat s {};
     if (::stat(target_.c_str(), &s) == 0)
         refuse_input(s, name_, writer);
@@ -307,12 +307,12 @@ void output_file::fail(int code) const
     } else if (code == EBADF) {
         hint = "it is closed: send it to a file or a pipe, or name a file";
     } else if (code == EFBIG) {
-        hint = "the file system or a limit (ulimit -f) does not allow a file of this size";
+        hint = "use another file system or raise ulimit -f: the file is too large";
     } else if (code == EACCES || code == EPERM || code == EROFS) {
         hint = "name a file that you may write";
     }
     throw_caused(error(error_kind::runtime, source_place{name_.string()},
-                       fmt::format("cannot be written: {}", why), hint),
+                       fmt::format("it cannot be written: {}", why), hint),
                  code);
 }
 

@@ -106,7 +106,7 @@ stroke preset_stroke(std::string_view name)
             return {.name = std::string(name),
                     .motion = trajectory::along(path::from_svg(d.path), d.duration_s),
                     .made_for = "palm-2x4"};
-    throw error(error_kind::bad_input, "stroke", fmt::format("no preset {}", detail::quoted(name)),
+    throw error(error_kind::bad_input, "stroke", fmt::format("there is no preset {}", detail::quoted(name)),
                 detail::preset_hint(name, stroke_presets()));
 }
 
@@ -129,7 +129,7 @@ stroke shape_stroke(std::string_view name)
                 .fit = stroke_fit{}};
     }
     throw detail::bad_field("shape", fmt::format("{} is unknown", detail::quoted(name)),
-                            fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
+                            fmt::format("use one of {}", fmt::join(stroke_shapes(), ", ")));
 }
 
 const std::vector<std::string>& array_presets()

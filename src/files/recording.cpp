@@ -82,7 +82,7 @@ wav_format read_format(std::string_view chunk, const std::string& name)
     if (f.tag == extensible && chunk.size() >= 26)
         f.tag = get<std::uint16_t>(chunk, 24); // the first bytes of the sub-format are the plain tag
     if (f.channels == 0 || f.rate == 0 || frame_bytes % f.channels != 0)
-        refuse_wav(name, fmt::format("its frames of {} for {} at {} Hz cannot be",
+        refuse_wav(name, fmt::format("its frames of {} for {} at {} Hz are impossible",
                                      counted(frame_bytes, "byte"), counted(f.channels, "channel"), f.rate));
     f.bytes = frame_bytes == 0 ? (f.bits + 7U) / 8U : frame_bytes / std::size_t{f.channels};
     const bool known = (f.tag == integers && f.bits >= 1 && f.bits <= 32) ||
@@ -246,7 +246,7 @@ recording parse_recording(std::string_view bytes, const std::string& name)
     const wav_parts parts = find_wav_parts(bytes, name);
     if (parts.format.channels != 1)
         refuse_wav(name, fmt::format("it has {} channels", parts.format.channels),
-                   "give one, such as by: sox IN OUT remix 1");
+                   "keep one: sox IN OUT remix 1");
     const auto shared = std::make_shared<recording>();
     shared->file = name;
     shared->rate_hz = parts.format.rate;
@@ -291,8 +291,8 @@ void refuse_pipe(const std::filesystem::path& file)
     std::error_code unknown;
     if (std::filesystem::is_fifo(file, unknown) &&
         std::filesystem::exists(std::filesystem::canonical(file, unknown)))
-        throw error(error_kind::bad_input, source_place{file.string()}, "is a pipe",
-                    "name a WAV file: it is read several times");
+        throw error(error_kind::bad_input, source_place{file.string()}, "it is a pipe",
+                    "name a WAV file: tactor reads it several times");
 }
 
 } // namespace
@@ -305,7 +305,7 @@ own_samples load_samples(const std::filesystem::path& file)
     const std::uintmax_t size = std::filesystem::file_size(file, unknown);
     if (!unknown && size > most_bytes)
         throw error(error_kind::bad_input, source_place{file.string()}, too_large_text(size),
-                    "cut it into pieces, such as by: sox IN OUT trim 0 600");
+                    "cut it into pieces: sox IN OUT trim 0 600");
     const detail::whole_text bytes = detail::read_text_file(file, most_bytes);
     return detail::parse_samples(bytes, file.string());
 }
@@ -338,7 +338,7 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
     }
     if (!waveform_names_file(text))
         throw error(error_kind::bad_input, "waveform", fmt::format("{} is unknown", detail::quoted(text)),
-                    "one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav")
+                    "use one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav")
             .with_field("waveform");
     w.kind = waveform_kind::recording;
     w.recorded = std::make_shared<const recording>(load_recording(folder / std::filesystem::path(text)));

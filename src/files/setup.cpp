@@ -117,7 +117,7 @@ array read_included(const toml_table& table, const setup_source& source, located
 {
     const std::filesystem::path file = source.folder / *table.text("file");
     if (source.depth == longest_chain)
-        table.fail("file", "a chain of too many files",
+        table.fail("file", "the chain of files is too long",
                    fmt::format("use at most {}, and no file that names itself", longest_chain));
     std::error_code ignored;
     // A file from somebody else may name a pipe, which could block, or a device, for which opening may be a
@@ -169,12 +169,13 @@ void read_threshold(const toml_table& entry, tactor_spec& t)
                                 entry.to_number(pair[1], "the threshold", limit_db)};
         if (!t.thresholds.empty() && p.hz <= t.thresholds.back().hz)
             fail_at(entry.where(e),
-                    fmt::format("the frequency {} is not after {}", p.hz, t.thresholds.back().hz),
-                    "put thresholds in order of frequency, each once");
+                    fmt::format("the frequency {} Hz is not above the previous one, {} Hz", p.hz,
+                                t.thresholds.back().hz),
+                    "give each frequency once, in ascending order");
         t.thresholds.push_back(p);
     }
     if (t.thresholds.empty())
-        entry.fail("threshold_dbfs", "it has no threshold", "give [[100, -20], [250, -41]]");
+        entry.fail("threshold_dbfs", "it has no threshold", "give some, such as [[100, -20], [250, -41]]");
 }
 
 void read_tactor(const toml_table& entry, tactor_spec& t)
@@ -190,7 +191,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
         t.displacement_um_at_0dbfs = um;
     if (const auto sign = entry.number("polarity", {-1.0, 1.0})) {
         if (*sign != 1.0 && *sign != -1.0)
-            entry.fail("polarity", fmt::format("polarity is {}", *sign), "1, or -1 if its wires are swapped");
+            entry.fail("polarity", fmt::format("polarity is {}", *sign),
+                       "use 1, or -1 if its wires are swapped");
         t.polarity = *sign > 0.0 ? 1 : -1;
     }
     t.actuator = read_actuator(entry).value_or(t.actuator);
@@ -205,7 +207,7 @@ void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, arr
                 "rise_ms", "displacement_um_at_0dbfs", "tactor"});
         const unsigned i = static_cast<unsigned>(a.tactors.size());
         if (i == max_channels)
-            e.fail(fmt::format("more than {} tactors", max_channels));
+            e.fail(fmt::format("the array has more than {} tactors", max_channels));
         if (const auto number = e.whole("tactor", 0, max_channels - 1); number && *number != i)
             e.fail("tactor", fmt::format("tactor is {}, but this is entry {}", *number, i),
                    "without a grid, number the tactors from 0 in the order of the file");
@@ -295,7 +297,7 @@ void check_channels(const located_setup& s)
                 fail_at(s.channels_at,
                         fmt::format("channels is {}, but tactor {}{} is on channel {}", *count, i,
                                     place_note(t.where), t.channel),
-                        fmt::format("the array needs {}; they count from 0", counted(needed, "channel")));
+                        fmt::format("use {} or more: they count from 0", counted(needed, "channel")));
         }
     }
     if (s.contents.sync && s.contents.sync->channel && *s.contents.sync->channel >= *count)
@@ -303,7 +305,7 @@ void check_channels(const located_setup& s)
                 fmt::format("the marker's channel is {}, but there {} {}{}", *s.contents.sync->channel,
                             *count == 1 ? "is" : "are", counted(*count, "channel"),
                             place_note(s.channels_at)),
-                "channels count from 0");
+                "count channels from 0");
 }
 
 void check_marker(const located_setup& s)
@@ -314,7 +316,7 @@ void check_marker(const located_setup& s)
         const tactor_spec& t = s.contents.array->tactors[i];
         if (t.channel == *s.contents.sync->channel)
             fail_at(s.sync_channel_at,
-                    fmt::format("the marker's channel {} is that of tactor {}{}", t.channel, i,
+                    fmt::format("the marker's channel, {}, is also that of tactor {}{}", t.channel, i,
                                 place_note(t.where)),
                     "give the marker a channel without a tactor");
     }
@@ -609,12 +611,12 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
 
 located_setup read_setup(std::string_view text, const setup_source& source)
 {
-    const toml::table document =
-        parse_toml(text, source.name,
-                   {.kinds = "arrays and configurations are TOML; points, drawings and plans are strokes"});
+    const toml::table document = parse_toml(
+        text, source.name,
+        {.kinds = "use TOML for an array or a configuration; give points, drawings and plans as the STROKE"});
     const toml_table root(document, "the file", source.name);
     if (root.has("stroke"))
-        root.fail("stroke", "this is a stroke file, not an array or configuration", "name it as the STROKE");
+        root.fail("stroke", "this is a stroke file, not an array or configuration", "give it as the STROKE");
     root.only(
         {"array", "tactor", "output", "amplifier", "sync", "limits", "serve", "defaults", "calibration"});
 

@@ -82,9 +82,9 @@ bool looks_like_csv(std::string_view line)
 // Returns a caller's hint, or else that for a file of any kind.
 std::string_view choose_hint(std::string_view given)
 {
-    static const std::string kinds =
-        fmt::format("strokes are {}, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"",
-                    list_stroke_formats());
+    static const std::string kinds = fmt::format(
+        "use {} for a stroke, TOML for an array or a configuration; give sound as waveform = \"FILE.wav\"",
+        list_stroke_formats());
     return given.empty() ? std::string_view(kinds) : given;
 }
 
@@ -131,7 +131,7 @@ void refuse_other_kind(std::string_view text, const std::string& name, std::stri
     };
     for (const auto& [begin, what] : others)
         if (begins(begin))
-            throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what),
+            throw error(error_kind::bad_input, source_place{name}, fmt::format("it is {}, not text", what),
                         hint);
 }
 
@@ -157,7 +157,7 @@ void note_input(const fs::path& file, owner_kind owner)
     if (guards_standard_output && (writes_to(STDOUT_FILENO, s) || writes_to(STDERR_FILENO, s)))
         throw error(error_kind::bad_input,
                     source_place{file == "/dev/fd/0" ? "standard input" : file.string()},
-                    "is the output of this program", "write to another file");
+                    "it is the output of this program", "write to another file");
     std::error_code ignored;
     fs::path whole = fs::absolute(file, ignored);
     inputs& i = known_inputs();
@@ -179,7 +179,7 @@ void refuse_input(const struct stat& file, const fs::path& output, owner_kind wr
         std::error_code ignored;
         const bool named_so = fs::absolute(output, ignored) == read || read.string().starts_with("/dev/fd/");
         throw error(error_kind::bad_input, source_place{output.string()},
-                    named_so ? "it is an input"
+                    named_so ? "it is also an input"
                              : fmt::format("it is the same file as {}, an input", read.string()),
                     "name another file for the output");
     }
@@ -210,7 +210,8 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
         text.size_ += static_cast<std::size_t>(got);
         if (text.size_ > max_bytes)
             throw error(error_kind::bad_input, source_place{std::string(name)},
-                        fmt::format("longer than {} MB", max_bytes >> 20), "check that it is the right file");
+                        fmt::format("it is longer than {} MB", max_bytes >> 20),
+                        "check that it is the right file");
     }
 }
 
@@ -218,7 +219,7 @@ whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kin
 {
     std::error_code ignored;
     if (fs::is_directory(file, ignored))
-        throw error(error_kind::bad_input, source_place{file.string()}, "is a folder", "name a file in it")
+        throw error(error_kind::bad_input, source_place{file.string()}, "it is a folder", "name a file in it")
             .with_os_code(EISDIR);
     const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in)
@@ -236,7 +237,7 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
     // In UTF-16 without a mark, every other byte of plain letters is 0.
     const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
     if (marked || bare)
-        throw error(error_kind::bad_input, source_place{name}, "is UTF-16, not UTF-8",
+        throw error(error_kind::bad_input, source_place{name}, "it is UTF-16, not UTF-8",
                     "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
     constexpr std::size_t longest_look = 4096;
     const std::string_view line = text.substr(0, std::min(text.find('\n'), longest_look));
@@ -245,7 +246,7 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
     if (odd != line.end())
         throw error(error_kind::bad_input,
                     find_place(text, static_cast<std::size_t>(odd - line.begin()), name),
-                    "is binary, not text", hint);
+                    "it is binary, not text", hint);
 }
 
 text_form find_text_form(std::string_view text)
@@ -267,21 +268,21 @@ void refuse_other_form(std::string_view text, const std::string& name, text_form
                                                                 {text_form::table, "a table (CSV)"},
                                                                 {text_form::json, "JSON"}};
     if (without_blanks(without_mark(text)).empty())
-        throw error(error_kind::bad_input, source_place{name}, "is empty", hint);
+        throw error(error_kind::bad_input, source_place{name}, "it is empty", hint);
     const text_form form = find_text_form(text);
     for (const auto& [other, words] : forms)
         if (other == form && other != wanted)
             throw error(
                 error_kind::bad_input,
                 find_place(text, static_cast<std::size_t>(find_first_line(text).data() - text.data()), name),
-                fmt::format("is {}", words), hint);
+                fmt::format("it is {}", words), hint);
 }
 
 void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint)
 {
     if (text.size() > max_bytes)
         throw error(error_kind::bad_input, source_place{name},
-                    fmt::format("longer than {} MB", max_bytes >> 20), hint);
+                    fmt::format("it is longer than {} MB", max_bytes >> 20), hint);
 }
 
 std::string_view without_mark(std::string_view text) noexcept

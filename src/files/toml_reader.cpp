@@ -172,7 +172,8 @@ toml::table parse_toml(std::string_view text, const std::string& name, const tom
         const std::string manual = fmt::format("see {}", hints.manual);
         if (e.description().find("could not determine value type") != std::string_view::npos)
             fail_at({name, at.line, at.column}, "this is not a value",
-                    "put texts in quotes, as name = \"palm\"; numbers have no unit; " + manual);
+                    "put texts in quotes, such as name = \"palm\", and give numbers without a unit; " +
+                        manual);
         fail_at({name, at.line, at.column}, e.description(), manual);
     }
 }
@@ -294,8 +295,7 @@ double toml_table::to_number(const toml::node& n, std::string_view called, bound
         wrong_type(called, n, "a number");
     const double v = *n.value<double>();
     if (!std::isfinite(v) || !b.holds(v))
-        fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", bounds_text(b)),
-                called);
+        fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("use {}", bounds_text(b)), called);
     return v;
 }
 
@@ -314,8 +314,8 @@ std::optional<unsigned> toml_table::whole(std::string_view key, unsigned low, un
     if (!i)
         wrong_type(key, *n, "a whole number");
     if (i->get() < low || i->get() > high)
-        fail_at(where(*n), fmt::format("{} is {}", key, i->get()),
-                fmt::format("allowed: {} to {}", low, high), key);
+        fail_at(where(*n), fmt::format("{} is {}", key, i->get()), fmt::format("use {} to {}", low, high),
+                key);
     return static_cast<unsigned>(i->get());
 }
 
@@ -430,8 +430,7 @@ std::string_view toml_table::one_of(const std::vector<std::string_view>& keys) c
         found = k;
     }
     if (found.empty())
-        fail(fmt::format("{} does not say what it is", title_),
-             fmt::format("add one of: {}", fmt::join(keys, ", ")));
+        fail(fmt::format("{} is incomplete", title_), fmt::format("add one of: {}", fmt::join(keys, ", ")));
     return found;
 }
 

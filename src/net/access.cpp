@@ -95,7 +95,7 @@ address_prefix parse_prefix(const std::string& text, const std::string& what)
     if (!bits || failed)
         throw error(error_kind::bad_input, what,
                     fmt::format("\"{}\" is neither an address nor a prefix", text),
-                    "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
+                    "give one such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
     return {address, *bits};
 }
 

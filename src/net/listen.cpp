@@ -164,8 +164,9 @@ bool holds(const fs::path& process, const std::set<std::string>& sockets)
     const std::string holder = code == EADDRINUSE ? find_port_holder(port, stream) : "";
     if (holder.empty())
         refused(what, code,
-                code == EACCES && port < 1024 ? "ports below 1024 need rights; use another, such as 4003"
-                                              : "");
+                code == EACCES && port < 1024
+                    ? "use another port, such as 4003: ports below 1024 need special rights"
+                    : "");
     detail::throw_caused(error(error_kind::not_available, what,
                                fmt::format("{}: by {}", std::strerror(code), holder),
                                "choose another port, or end that program"),
@@ -215,10 +216,10 @@ host_and_port parse_host(std::string_view text, const std::string& what)
     const bool is_digits = !port.empty() && port.find_first_not_of("0123456789") == std::string_view::npos;
     if (!at.host.empty() && !number && is_digits)
         throw error(error_kind::bad_input, what, fmt::format("{} is not a port", port),
-                    "ports are 0 to 65535; 0 selects a free one");
+                    "give 0 to 65535; 0 selects a free port");
     if (at.host.empty() || !number)
         throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not an address", all),
-                    "[HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 selects a free one");
+                    "give [HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 selects a free one");
     at.port = *number;
     return at;
 }

@@ -104,13 +104,13 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j)
         return invalid(r.id, R"(its "jsonrpc" is not "2.0")");
     const auto method = j.find("method");
     if (method == j.end() || !method->is_string())
-        return invalid(r.id, R"(its "method" is no text)");
+        return invalid(r.id, R"(its "method" is not a text)");
     r.method = method->get<std::string>();
     const auto params = j.find("params");
     if (params == j.end() || params->empty()) // null is empty, too
         return r;
     if (!params->is_structured())
-        return invalid(r.id, R"(its "params" are no object)");
+        return invalid(r.id, R"(its "params" are not an object)");
     r.params = std::move(*params);
     return r;
 }

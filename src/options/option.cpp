@@ -35,20 +35,21 @@ value choose(const option& o, const value& v)
         return v;
     const std::string_view like = name == nullptr ? "" : detail::nearest_name(*name, known);
     throw refusal(o, shown(v) + " is unknown",
-                  like.empty() ? fmt::format("one of {}", choices_text(o))
-                               : fmt::format("did you mean {}? One of {}", like, choices_text(o)));
+                  like.empty() ? fmt::format("use one of {}", choices_text(o))
+                               : fmt::format("did you mean {}? Use one of {}", like, choices_text(o)));
 }
 
 value check_number(const option& o, const value& v)
 {
     const auto* d = std::get_if<double>(&v);
     if (d == nullptr)
-        throw refusal(o, shown(v) + " is not a number", range_text(o));
+        throw refusal(o, shown(v) + " is not a number", "use " + range_text(o));
     if (!std::isfinite(*d) || !o.allowed.holds(*d))
         throw refusal(o, shown(v) + " is out of range", sign_hint(o.allowed, *d) + range_text(o));
     if (o.what == kind::whole && *d != std::floor(*d))
         throw refusal(o, shown(v) + " is not a whole number",
-                      fmt::format("give one, as {}", plain_number(std::max(o.allowed.low, std::floor(*d)))));
+                      fmt::format("give a whole number, such as {}",
+                                  plain_number(std::max(o.allowed.low, std::floor(*d)))));
     return v;
 }
 
@@ -84,13 +85,16 @@ std::string without_unit(const std::string& text, double v, std::string_view res
     if (rest.front() == ',') {
         std::string point = text;
         point[point.find(',')] = '.';
-        return detail::number_in<double>(point) ? fmt::format("write a decimal point, as {}", point) : "";
+        return detail::number_in<double>(point)
+                   ? fmt::format("write it with a decimal point, such as {}", point)
+                   : "";
     }
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
     const double meant = v * unit_factor(rest, unit);
     if (meant == 0.0 || !b.holds(meant))
         return {};
-    return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));
+    return fmt::format("give {} without a unit, such as {}", unit == "s" ? "seconds" : unit,
+                       plain_number(meant));
 }
 
 const own_word* find_own(std::string_view mark, const spelling& by)
@@ -256,7 +260,7 @@ double parse_number(std::string_view what, const std::string& text, detail::boun
     if (r.ec == std::errc::invalid_argument || r.ptr != end) {
         const std::string meant = r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, b, unit) : "";
         throw detail::bad_field(what, fmt::format("\"{}\" is not a number", text),
-                                meant.empty() ? range : fmt::format("{}; {}", meant, range));
+                                meant.empty() ? "use " + range : fmt::format("{}; use {}", meant, range));
     }
     if (r.ec != std::errc() || !std::isfinite(v) || !b.holds(v))
         throw detail::bad_field(what, fmt::format("{} is out of range", text), sign_hint(b, v) + range);
@@ -267,14 +271,15 @@ double parse_whole(std::string_view what, const std::string& text, detail::bound
 {
     const double v = parse_number(what, text, b, unit);
     if (v != std::floor(v))
-        throw detail::bad_field(what, fmt::format("{} is not a whole number", text),
-                                fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
+        throw detail::bad_field(
+            what, fmt::format("{} is not a whole number", text),
+            fmt::format("give a whole number, such as {}", plain_number(std::max(b.low, std::floor(v)))));
     return v;
 }
 
 std::string sign_hint(detail::bounds b, double v)
 {
-    return v > 0.0 && b.holds(-v) ? fmt::format("did you mean {}? ", plain_number(-v)) : "";
+    return v > 0.0 && b.holds(-v) ? fmt::format("did you mean {}? Use ", plain_number(-v)) : "use ";
 }
 
 std::string spell(std::string_view text, const spelling& by, bool in_file)

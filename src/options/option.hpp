@@ -242,7 +242,8 @@ double parse_number(std::string_view what, const std::string& text, detail::boun
 /// \throws error (bad_input) likewise.
 double parse_whole(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit);
 
-/// Returns "did you mean -12? " for a number that is out of bounds without its minus sign, else nothing.
+/// Returns the start of a hint before a range: "did you mean -12? Use " for a number that is out of bounds
+/// without its minus sign, else "use ".
 std::string sign_hint(detail::bounds b, double v);
 
 /// A front end's own word for a mark, or for a field that is not in the table: {"command:devices",

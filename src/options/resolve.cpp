@@ -133,7 +133,7 @@ void resolve(option_values& w)
     if (w.render.envelope.kind == envelope_kind::tukey)
         for (const char* ramp : {"attack", "release", "ramp"})
             if (w.gives(ramp))
-                throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave one of them out");
+                throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave out one of them");
     const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
     const timing_profile usual; // its longest SOA is the paper's, which is rounded
@@ -153,7 +153,7 @@ void refuse_planning(const option_values& w, const std::string& what)
     for (const option& o : all())
         if ((o.where & planning) != 0 && w.gives(o))
             throw refusal(o, fmt::format("{} is already a plan", what),
-                          "plan the stroke again with it, or leave it out");
+                          "leave this option out, or plan the stroke again with it");
 }
 
 void refuse_for_samples(const option_values& w, const std::string& what)

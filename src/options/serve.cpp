@@ -45,7 +45,7 @@ double read_number(const written_value& d, detail::bounds b, bool whole)
              whole ? "give a whole number" : "give a number");
     if (!b.holds(*v))
         fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
-             fmt::format("allowed: {} to {}", plain_number(b.low), plain_number(b.high)));
+             fmt::format("use {} to {}", plain_number(b.low), plain_number(b.high)));
     return *v;
 }
 
@@ -100,7 +100,8 @@ std::string read_address(const written_value& d)
     std::string text = read_text_value(d);
     if (!is_address(text))
         fail(d, fmt::format("\"{}\" is not an address", text),
-             "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; ports are 0 to 65535, 0 selects "
+             "give [HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; ports are 0 to 65535, 0 "
+             "selects "
              "a free one");
     return text;
 }
@@ -111,7 +112,7 @@ std::string read_prefix(const written_value& d)
     std::string text = read_text_value(d);
     if (!detail::prefix_bits(text))
         fail(d, fmt::format("\"{}\" is neither an address nor a prefix", text),
-             "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
+             "give one such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
     return text;
 }
 

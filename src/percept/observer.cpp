@@ -35,13 +35,14 @@ void check(const char* what, double v, double least, double most)
 {
     if (!(v >= least && v <= most))
         throw bad_field(what, fmt::format("{} is out of range", v),
-                        fmt::format("{} to {}", plain_number(least), plain_number(most)));
+                        fmt::format("give {} to {}", plain_number(least), plain_number(most)));
 }
 
 void check_count(const array& a, const char* what, std::size_t n)
 {
     if (n != 0 && n != a.tactors.size())
-        throw bad_field(what, fmt::format("there are {} for {}", n, counted(a.tactors.size(), "tactor")),
+        throw bad_field(what,
+                        fmt::format("there are {} values for {}", n, counted(a.tactors.size(), "tactor")),
                         "give one for each, or none");
 }
 
@@ -60,8 +61,8 @@ std::vector<double> link_give(const low_speed_observer& o, std::span<const doubl
         if (!std::isfinite(onsets_s[i]) || (i > 0 && onsets_s[i] < onsets_s[i - 1]))
             throw bad_field(
                 "onsets_s",
-                fmt::format("number {}, {} s, is before the previous one or not a time", i + 1, onsets_s[i]),
-                "give them in order");
+                fmt::format("onset {}, {} s, is before the previous one, or not a time", i + 1, onsets_s[i]),
+                "give onsets in ascending order");
         if (i > 0) {
             const double way = o.sigma_v_mm_s * (onsets_s[i] - onsets_s[i - 1]) / o.sigma_mm;
             give.push_back(std::min(way * way, freest));
@@ -132,7 +133,7 @@ std::optional<point> find_centre(const array& a, const burst& b, std::span<const
 
 void refuse_tactor(const array& a, unsigned tactor)
 {
-    throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", tactor),
+    throw error(error_kind::bad_input, "plan", fmt::format("it drives tactor {}", tactor),
                 fmt::format("\"{}\" has {}", a.name, counted(a.tactors.size(), "tactor")));
 }
 
@@ -144,7 +145,7 @@ array felt_array(const array& a, const person& who)
         point& p = felt.tactors[i].position;
         p = p + who.shift[i];
         if (!finite(p))
-            throw bad_field("shift", fmt::format("that of tactor {} is not finite", i));
+            throw bad_field("shift", fmt::format("the shift of tactor {} is not finite", i));
     }
     return felt;
 }
@@ -172,11 +173,11 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
     const std::vector<double> give = detail::link_give(o, onsets_s);
     if (onsets_s.size() != alone.size())
         throw detail::bad_field("onsets_s",
-                                fmt::format("there are {}, and {} places", onsets_s.size(), alone.size()),
+                                fmt::format("there are {}, but {} places", onsets_s.size(), alone.size()),
                                 "give one for each");
     for (const point& p : alone)
         if (!detail::finite(p))
-            throw error(error_kind::bad_input, "place of a tap", "is not finite");
+            throw error(error_kind::bad_input, "place of a tap", "it is not finite");
     return detail::pulled(give, alone);
 }
 

@@ -167,8 +167,8 @@ std::size_t count_percept_samples(double duration_s)
 {
     if (!(duration_s <= longest_percept_s))
         throw error(error_kind::bad_input, "stroke",
-                    fmt::format("lasts {}, too long for a prediction", seconds_text(duration_s)),
-                    fmt::format("at most {} s", longest_percept_s));
+                    fmt::format("it lasts {}, too long for a prediction", seconds_text(duration_s)),
+                    fmt::format("use at most {} s", longest_percept_s));
     return static_cast<std::size_t>((duration_s + same_time_s) / percept_step_s) + 1;
 }
 

@@ -45,10 +45,10 @@ double shortest_duration_s(const timing_profile& p, const std::vector<double>& t
 {
     const double shortest = shortest_duration_s(j.options.profile, tau);
     std::string advice = shortest <= longest_stroke_s
-                             ? fmt::format("the shortest duration that works is {} s", seconds_up(shortest))
-                             : std::string("no duration up to a day works");
+                             ? fmt::format("use a duration of at least {} s", seconds_up(shortest))
+                             : std::string("use a shorter path, because no duration up to a day works");
     if (!j.options.drop_points && tau.size() > 2)
-        advice += "; or {drop_points=true} leaves places out";
+        advice += ", or {drop_points=true} to leave places out";
     throw error(
         error_kind::bad_input, j.name(),
         fmt::format("the Tactile Brush cannot play {} on the grid in {} s: they follow one another too fast",
@@ -239,9 +239,9 @@ virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path,
         v.moved_mm = 0.0;
     } else if (!j.options.snap)
         throw error(error_kind::bad_input, j.name(),
-                    fmt::format("{} at {}, off the lines of the grid; the nearest point on a line is {}",
+                    fmt::format("it {} at {}, off the lines of the grid; the nearest point on a line is {}",
                                 start ? "starts" : "ends", place(p), place(v.place)),
-                    "{snap=true} moves it there");
+                    "use {snap=true} to move it there");
     return v;
 }
 
@@ -301,7 +301,7 @@ void plan_brush(const job& j, plan& out)
     const std::optional<grid_lines> grid = find_grid(j.tactors);
     if (!grid)
         throw error(error_kind::bad_input, fmt::format("array \"{}\"", j.tactors.name),
-                    "is not a rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
+                    "it is not a rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
             .with_field("algorithm");
     std::vector<meeting> points = virtual_tactors(j, *grid);
     if (j.options.drop_points)

@@ -127,9 +127,9 @@ curve sample_model(const job& j)
     const followed f(j);
     if (static_cast<double>(f.size) > most_bursts)
         throw error(error_kind::bad_input, j.name(),
-                    fmt::format("would need {:.3g} samples of phantom model \"{}\"",
+                    fmt::format("it needs {:.3g} samples of phantom model \"{}\"",
                                 static_cast<double>(f.size), j.model->name()),
-                    fmt::format("use at most {:.0f}, one each {} s: make it shorter", most_bursts,
+                    fmt::format("make it shorter: at most {:.0f} samples, one each {} s", most_bursts,
                                 continuous_step_s));
     curve_samples all;
     burst b;

@@ -127,7 +127,7 @@ void check_profile(const std::vector<carrier_part>& profile)
     for (const carrier_part& p : profile) {
         if (!(bounds_of::part.holds(p.part) && p.part > before))
             throw detail::bad_field("carrier_profile",
-                                    fmt::format("the part {} is out of order or range", p.part),
+                                    fmt::format("part {} is out of order or range", p.part),
                                     "give parts of the path from 0 to 1, ascending");
         if (!bounds_of::carrier_hz.holds(p.hz))
             throw detail::bad_field("carrier_profile", fmt::format("{} Hz is not a carrier", p.hz),

@@ -112,9 +112,10 @@ void check_sample(const curve_samples& s, std::size_t i, std::size_t first)
     for (std::size_t k = first; k < s.ends[i]; ++k) {
         const drive& d = s.drives[k];
         if (!std::isfinite(d.amplitude))
-            refuse_sample(i, fmt::format("tactor {} at amplitude {}", d.tactor, d.amplitude));
+            refuse_sample(i, fmt::format("the amplitude of tactor {} is {}", d.tactor, d.amplitude));
         if (k > first && s.drives[k - 1].tactor >= d.tactor)
-            refuse_sample(i, fmt::format("tactor {} after tactor {}", d.tactor, s.drives[k - 1].tactor));
+            refuse_sample(i,
+                          fmt::format("tactor {} comes after tactor {}", d.tactor, s.drives[k - 1].tactor));
     }
 }
 
@@ -122,14 +123,15 @@ std::shared_ptr<const curve::impl> make_samples(double duration_s, curve_samples
 {
     if (!(duration_s > 0.0 && duration_s <= detail::longest_stroke_s))
         throw error(error_kind::bad_input, "curve", fmt::format("it lasts {:g} s", duration_s),
-                    fmt::format("more than 0 and at most {:g} s", detail::longest_stroke_s))
+                    fmt::format("use more than 0 and at most {:g} s", detail::longest_stroke_s))
             .with_field("duration_s");
     const std::uint64_t size = detail::count_samples(duration_s);
     if (s.positions.size() != size || s.intensities.size() != size || s.ends.size() != size)
-        throw error(error_kind::bad_input, "curve",
-                    fmt::format("{} positions, {} intensities and {} ends of drives", s.positions.size(),
-                                s.intensities.size(), s.ends.size()),
-                    fmt::format("{} has {} samples", seconds_text(duration_s), size));
+        throw error(
+            error_kind::bad_input, "curve",
+            fmt::format("there are {} positions, {} intensities and {} ends of drives", s.positions.size(),
+                        s.intensities.size(), s.ends.size()),
+            fmt::format("give {1} of each, because {0} has {1} samples", seconds_text(duration_s), size));
     std::size_t first = 0;
     for (std::size_t i = 0; i < s.ends.size(); ++i) {
         check_sample(s, i, first);

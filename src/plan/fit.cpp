@@ -112,8 +112,7 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
 
 [[noreturn]] void refuse_across(const std::string& what)
 {
-    throw error(error_kind::bad_input, what,
-                "only goes across the line in which all tactors lie, not along it",
+    throw error(error_kind::bad_input, what, "it only goes across the line of tactors, not along it",
                 "turn it, or use an array with two rows");
 }
 
@@ -143,8 +142,8 @@ fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point
     if (drawn.rests())
         return f;
     if (l.points.size() == 1)
-        throw error(error_kind::bad_input, "stroke", "does not fit on a single tactor",
-                    "use an array of two or more");
+        throw error(error_kind::bad_input, "stroke", "it does not fit on a single tactor",
+                    "use an array of two or more tactors");
     const double extent = drawn.extent(along);
     if (!(extent > same_place_mm))
         refuse_across("stroke");

@@ -70,7 +70,7 @@ std::string missed_places::warning(std::string_view what) const
     const std::string line =
         in_line_ == 0 ? "" : fmt::format("; for {} of them the three are in one line", in_line_);
     return fmt::format("{} of {} {} outside the triangle of the three closest tactors, first at {}{}: people "
-                       "feel them elsewhere (faces = delaunay)",
+                       "feel them elsewhere (use faces = delaunay)",
                        missed_, counted(all_, what), missed_ == 1 ? "lies" : "lie", place(first_), line);
 }
 
@@ -83,7 +83,7 @@ void check_burst_count(const job& j, double bursts)
 {
     if (bursts > most_bursts)
         throw error(
-            error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
+            error_kind::bad_input, j.name(), fmt::format("it needs {:.3g} bursts", bursts),
             fmt::format("use at most {:.0f}: make the stroke shorter or the SOA longer", most_bursts));
 }
 
@@ -129,11 +129,11 @@ void follower::refuse(double t_s) const
     const trajectory& motion = job_.motion.motion;
     const std::string& made_for = job_.motion.made_for;
     const std::string hint =
-        (made_for.empty() ? "" : fmt::format("{{array={}| is its array, }}", made_for)) +
-        "{fit=true| scales it to the array, }{outside=clamp} plays the nearest point of the array";
+        "use " + (made_for.empty() ? "" : fmt::format("{{array={}|, its array, or }}", made_for)) +
+        "{fit=true| to scale it to the array, or }{outside=clamp} to play the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(error_kind::bad_input, job_.name(),
-                    fmt::format("starts outside the array, at {}, and goes {} mm outside",
+                    fmt::format("it starts outside the array, at {}, and goes {} mm outside",
                                 place(motion.position(t_s)), plain_number(farthest_outside_mm(t_s), 3)),
                     hint);
     double in = inside_s_;
@@ -142,7 +142,7 @@ void follower::refuse(double t_s) const
     for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
         (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
     throw error(error_kind::bad_input, job_.name(),
-                fmt::format("leaves the array at {} after {}, and goes {} mm outside",
+                fmt::format("it leaves the array at {} after {}, and goes {} mm outside",
                             place(motion.position(in)), seconds_text(in),
                             plain_number(farthest_outside_mm(out), 3)),
                 hint);

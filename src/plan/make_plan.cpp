@@ -121,7 +121,7 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
     if (*middle > widest_face * l.pitch_mm())
         p.warnings.push_back(fmt::format(
             "gaussian spreads by the {:.4g} mm between the nearest tactors, but others are {:.4g} mm apart: "
-            "between those people feel it at the nearer one (phantom = inverse-distance or barycentric)",
+            "between those, people feel it at the nearer one (use phantom = inverse-distance or barycentric)",
             l.pitch_mm(), *middle));
 }
 
@@ -219,7 +219,7 @@ void check_options(const plan_options& o)
     const double longest = detail::law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
         throw error(error_kind::bad_input, "{timing=fit}",
-                    fmt::format("bursts of at least {} are impossible: an SOA of {} gives {}",
+                    fmt::format("bursts of at least {} are impossible: an SOA of {} allows at most {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
                     "lower {min_duration_s}, or use a longer SOA")
             .with_field("min_duration_s");
@@ -289,7 +289,7 @@ double intensity_scale::amplitude(double intensity) const
     if (level_db != 0.0) {
         if (!(std::isfinite(level_db) && level_db < 0.0))
             throw detail::bad_field("level_db", fmt::format("{} is not a level of 0 dB or less", level_db),
-                                    "a stroke may be weaker than the requested level, not stronger");
+                                    "give 0 dB or less, relative to the requested level");
         return intensity_scale{kind, exponent, sl_db}.amplitude(intensity) * std::pow(10.0, level_db / 20.0);
     }
     if (kind == scale_kind::linear)
@@ -347,7 +347,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     check_chosen(o, s);
     if (l.places().size() != a.tactors.size())
         throw error(error_kind::bad_input, "layout",
-                    fmt::format("has {}, but the array has {}", counted(l.places().size(), "tactor"),
+                    fmt::format("it has {}, but the array has {}", counted(l.places().size(), "tactor"),
                                 a.tactors.size()),
                     "build the layout from the same array");
     burst_count bursts;

@@ -32,7 +32,7 @@ double fit_soa(const job& j, double duration_s)
     throw error(
         error_kind::bad_input, "{timing=fit}",
         fmt::format("{} of {} s in {:.0f} equal intervals {}", j.name(), seconds_down(duration_s), n, needs),
-        fmt::format("the nearest durations that work are {} s and {} s", seconds_down((n - 1.0) * o.soa_s),
+        fmt::format("use {} s or {} s, the nearest durations that work", seconds_down((n - 1.0) * o.soa_s),
                     seconds_up(n * shortest)));
 }
 

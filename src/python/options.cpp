@@ -41,7 +41,7 @@ constexpr std::array own_words{options::own_word{"command:devices", "tactor.devi
                                options::own_word{"array=FILE", "Array.from_file(FILE)"},
                                options::own_word{"array", "Array.preset(\"{}\")"},
                                options::own_word{"force=true", "force=True"},
-                               options::own_word{"wider=true", "without channels= it"},
+                               options::own_word{"wider=true", "leave out channels"},
                                options::own_word{"participants", "participants"},
                                options::own_word{"exclude", "exclude"},
                                options::own_word{"pitch_x_mm", "pitch_mm"},
@@ -60,10 +60,11 @@ std::string shown(py::handle v)
 
 double number(const option& o, py::handle v)
 {
-    const double d = py::module_::import("tactor._checks")
-                         .attr("_number")(o.name, v, "hint"_a = options::spell(range_text(o), by_python),
-                                          "finite"_a = false)
-                         .cast<double>();
+    const double d =
+        py::module_::import("tactor._checks")
+            .attr("_number")(o.name, v, "hint"_a = "use " + options::spell(range_text(o), by_python),
+                             "finite"_a = false)
+            .cast<double>();
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
     if (is_rounded || !o.allowed.holds(d))
         throw refusal(o, fmt::format("{} is out of range", shown(v)),
@@ -88,10 +89,10 @@ std::string text(const option& o, py::handle v)
         throw refusal(o,
                       o.choices == nullptr ? fmt::format("{} is not a text", shown(v))
                                            : fmt::format("{} is unknown", shown(v)),
-                      o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
+                      o.choices == nullptr ? "" : fmt::format("use one of {}", choices_text(o)));
     auto spelled = v.cast<std::string>();
     if (spelled.find('\0') != std::string::npos)
-        throw refusal(o, fmt::format("{} has a zero byte in it", shown(v)), "");
+        throw refusal(o, fmt::format("{} has a zero byte", shown(v)), "");
     return spelled;
 }
 

@@ -58,7 +58,7 @@ plot::figure_view view_from(const std::string& name)
         if (name == known)
             return view;
     throw error(error_kind::bad_input, "view", "\"" + name + "\" is unknown",
-                "one of array, timing, wave, both");
+                "use one of array, timing, wave, both");
 }
 
 plot::canvas draw(const array_handle& on, const plans& all, const std::string& name, const score* sound,

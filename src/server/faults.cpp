@@ -46,9 +46,10 @@ void limit_reached(std::string what, std::string why, std::string hint)
 
 void too_many_strokes(std::size_t strokes, std::size_t most)
 {
-    limit_reached("max_strokes",
-                  fmt::format("{} strokes are more than a client may have at once, {}", strokes, most),
-                  "send fewer");
+    limit_reached(
+        "max_strokes",
+        fmt::format("there are {} strokes, but a client may have at most {} at once", strokes, most),
+        "send fewer");
 }
 
 void no_such_stroke(std::uint32_t number, std::string why)
@@ -136,8 +137,8 @@ const json* member(const json& params, const char* name)
 double number(const json& v, const std::string& what, detail::bounds b)
 {
     const std::string range = b.high == std::numeric_limits<double>::max()
-                                  ? fmt::format("{} or more", plain_number(b.low))
-                                  : fmt::format("{} to {}", plain_number(b.low), plain_number(b.high));
+                                  ? fmt::format("use {} or more", plain_number(b.low))
+                                  : fmt::format("use {} to {}", plain_number(b.low), plain_number(b.high));
     if (!v.is_number())
         bad_param(what, "it is not a number", range);
     const auto n = v.get<double>();

@@ -107,7 +107,7 @@ void read_option(const std::string& word, json& into)
 {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0)
-        bad_param("options", fmt::format("\"{}\" is not an option", word), "such as soa=0.07");
+        bad_param("options", fmt::format("\"{}\" is not an option", word), "write it as soa=0.07");
     const std::string name = word.substr(0, equals);
     const std::string value = word.substr(equals + 1);
     if (into.contains(name))
@@ -395,7 +395,7 @@ void osc_clients::move(osc_request r, const endpoint& from)
     const auto found = s == nullptr ? decltype(s->drawn_as.begin()){} : s->drawn_as.find(r.number);
     if (s == nullptr || found == s->drawn_as.end())
         bad_param("number", fmt::format("this sender has no stroke {}", r.number),
-                  "use a number that play or begin had, from the same address and port");
+                  "use a number from play or begin of the same address and port");
     drawn& d = found->second;
     if (const double intensity = r.params.value("intensity", 0.0);
         intensity > d.intensity_max && !std::exchange(d.is_loud, true))

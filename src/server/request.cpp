@@ -57,7 +57,7 @@ const option& known_option(const std::string& name, options_for which)
     }
     if (which == options_for::live && (o->where & options::live) == 0)
         bad_param("options." + name, "a live stroke cannot use it",
-                  "the points of a live stroke have their own times");
+                  "leave it out: live points have their own times");
     return *o;
 }
 
@@ -365,8 +365,8 @@ void check_level(const planning& with, const options::option_values& s, double i
         return;
     const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
     bad_param(over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
-              fmt::format("{} dBFS{} is more than the owner allows, {} dBFS", plain_number(level, 4),
-                          over_db == 0.0 ? "" : fmt::format(" and intensity {}", plain_number(intensity, 4)),
+              fmt::format("{} dBFS{} is above the owner's limit of {} dBFS", plain_number(level, 4),
+                          over_db == 0.0 ? "" : fmt::format(" at intensity {}", plain_number(intensity, 4)),
                           plain_number(with.max_level_dbfs, 4)),
               "use a lower level");
 }
@@ -375,7 +375,7 @@ void check_bursts(double bursts, const char* hint)
 {
     if (bursts > most_bursts)
         limit_reached("bursts",
-                      fmt::format("its {:.0f} bursts are more than the server plans at once, {:.0f}", bursts,
+                      fmt::format("it has {:.0f} bursts, but the server plans at most {:.0f} at once", bursts,
                                   most_bursts),
                       hint);
 }

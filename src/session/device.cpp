@@ -32,8 +32,8 @@ std::string pcm_name(const settings& s, const output_settings& out)
             require_device_name(*out.pcm);
         } catch (const error& x) {
             throw error(x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
-                        "an array file can only name a device, such as hw:CARD=Tactor; use {device=PCM} or "
-                        "your own configuration for more: tactor.toml(5), SECURITY CONSIDERATIONS");
+                        "in an array file, name only a device, such as hw:CARD=Tactor; for more, use "
+                        "{device=PCM} or your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
         }
     }
     return *out.pcm;
@@ -224,8 +224,8 @@ std::string find_fit(alsa_options o, const array& a)
     };
     const unsigned needed = o.channels;
     if (a.channels() < needed)
-        return opens(a.channels()) ? fmt::format("the array {} fits, but not channel {} of a marker or a "
-                                                 "plan: choose a spare channel of the device",
+        return opens(a.channels()) ? fmt::format("the array {} fits, but channel {} of a marker or a plan "
+                                                 "does not: choose a spare channel of the device",
                                                  a.name, needed - 1)
                                    : "";
     std::multimap<unsigned, std::string> by_channels;
@@ -283,8 +283,8 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
 {
     std::vector<device_note> all;
     for (std::string& odd : wiring_warnings(a, s.wiring))
-        all.push_back({std::move(odd), "set the coefficient to 1 in the definition of the PCM (ttable), or "
-                                       "play on the card itself, -D hw:CARD=NAME"});
+        all.push_back({std::move(odd), "set the coefficient to 1 in ttable of the PCM's definition, or "
+                                       "play on the card itself: -D hw:CARD=NAME"});
     const std::string& between = s.wiring.hidden_by;
     if (!between.empty() && read_route(s.name).server.empty())
         all.push_back(

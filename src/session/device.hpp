@@ -57,7 +57,7 @@ std::string prepare_server(const std::string& pcm);
 
 /// Hint for a sound server in the way.
 inline constexpr const char* server_cure =
-    "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
+    "use -D hw:CARD=NAME to play on the card itself; tactor devices lists the cards";
 
 /// Warns on standard error of a sound server in between, if any.
 void warn_of_server(const std::string& server, const char* cure = server_cure);

@@ -166,7 +166,7 @@ void read_array_file(const std::string& name, environment& e)
     check_readable(name);
     const setup file = load_setup(name);
     if (!file.array)
-        throw error(error_kind::bad_input, name, "has no [array]", "see tactor.toml(5)");
+        throw error(error_kind::bad_input, name, "it has no [array]", "add one, see tactor.toml(5)");
     use_array_file(e.config, file);
     e.array_file = name;
 }
@@ -297,7 +297,7 @@ render_options find_render(const settings& s, const environment& e)
         throw error(error_kind::bad_input, code.where,
                     fmt::format("the code's channel is {}, but there {} {}", *code.channel,
                                 r.channels == 1 ? "is" : "are", counted(r.channels, "channel")),
-                    "channels count from 0");
+                    "count channels from 0");
     if (s.channels && *s.channels < needed)
         throw error(error_kind::bad_input, "channels",
                     fmt::format("{} needs {}", e.tactors.name, counted(needed, "channel")),

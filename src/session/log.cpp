@@ -90,15 +90,15 @@ void session_log::open()
     const int code = errno;
     struct stat s {};
     if (!fd_ && code == ELOOP)
-        throw error(error_kind::bad_input, file_, "is a link",
+        throw error(error_kind::bad_input, file_, "it is a link",
                     "name the file itself; {verbose=true} writes to standard error");
     if (!fd_ && code == EISDIR)
-        throw error(error_kind::bad_input, file_, "is a folder", "name a file in it");
+        throw error(error_kind::bad_input, file_, "it is a folder", "name a file in it");
     if (!fd_)
         throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
                     std::strerror(code));
     if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
-        throw error(error_kind::bad_input, file_, "is not a regular file",
+        throw error(error_kind::bad_input, file_, "it is not a regular file",
                     "name a file; {verbose=true} writes to standard error");
     detail::refuse_input(s, file_);
     if (!may_be_appended_to(fd_.get()))

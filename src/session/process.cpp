@@ -127,16 +127,16 @@ void refuse_unreadable(const std::string& file)
     if (::stat(file.c_str(), &s) != 0)
         return;
     if (S_ISDIR(s.st_mode))
-        throw error(error_kind::bad_input, source_place{file}, "is a folder", "name a file in it")
+        throw error(error_kind::bad_input, source_place{file}, "it is a folder", "name a file in it")
             .with_os_code(EISDIR);
     if (S_ISFIFO(s.st_mode) && (detail::is_open_to(STDOUT_FILENO, s) || detail::is_open_to(STDERR_FILENO, s)))
-        throw error(error_kind::bad_input, file, "is the output of this program",
+        throw error(error_kind::bad_input, file, "it is the output of this program",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
         return;
     const detail::owned_fd fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
     if (fd && ::isatty(fd.get()) == 1)
-        throw error(error_kind::bad_input, file, "is a terminal", "name a file to read");
+        throw error(error_kind::bad_input, file, "it is a terminal", "name a file to read");
 }
 
 } // namespace
@@ -207,8 +207,8 @@ void warn_of_rights(bool realtime, bool locked)
     if (realtime && locked)
         return;
     say(stderr,
-        "tactor: warning: {}{}{}: xruns are likelier (run tactor check, which says how: rtprio and memlock "
-        "in limits.d, group audio)\n",
+        "tactor: warning: {}{}{}: xruns are more likely (run tactor check, which says what to do: rtprio "
+        "and memlock in limits.d, group audio)\n",
         realtime ? "" : "no real-time priority", realtime || locked ? "" : ", ",
         locked ? "" : "memory is not locked");
 }
@@ -217,7 +217,8 @@ void check_readable(const std::string& file)
 {
     refuse_unreadable(file);
     if (is_named_pipe(file))
-        say(stderr, "tactor: {}: is a pipe: waiting for a program that writes to it (Ctrl-C ends)\n", file);
+        say(stderr, "tactor: {}: it is a pipe: waiting for a program that writes to it (Ctrl-C ends)\n",
+            file);
 }
 
 bool is_standard_output(const std::string& file)
@@ -244,7 +245,7 @@ void check_standard_input()
 void tell_of_pipe_to_write(const std::string& file)
 {
     if (is_named_pipe(file))
-        say(stderr, "tactor: {}: is a pipe: waiting for a program that reads it (Ctrl-C ends)\n", file);
+        say(stderr, "tactor: {}: it is a pipe: waiting for a program that reads it (Ctrl-C ends)\n", file);
 }
 
 } // namespace tactor::session

@@ -91,7 +91,7 @@ void check(const char* field, const char* what, unsigned value, unsigned lo, uns
 {
     if (value < lo || value > hi)
         throw error(error_kind::bad_input, "paced_sink", fmt::format("{} {} is out of range", value, what),
-                    fmt::format("{} to {}", lo, hi))
+                    fmt::format("give {} to {}", lo, hi))
             .with_field(field);
 }
 

@@ -139,9 +139,9 @@ TEST_CASE("a missing line is refused with the existing ones")
           "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
     CHECK(complaint(pi, by_chip("pinctrl-rp1", 5)) ==
           "GPIO line 5 of pinctrl-rp1: chip \"pinctrl-rp1\" at /dev/gpiochip0 has lines 0 to 4, no line 5 "
-          "(offsets count the lines of the chip from 0)");
+          "(count the lines of the chip from 0)");
     CHECK(complaint(pi, by_chip("empty", 0)) == "GPIO line 0 of empty: chip \"empty\" at /dev/gpiochip11 has "
-                                                "no lines (offsets count the lines of the chip from 0)");
+                                                "no lines (count the lines of the chip from 0)");
     CHECK(complaint(pi, by_name("GPI017")) ==
           "GPIO line \"GPI017\": no line has this name (did you mean \"GPIO17\"?)");
     CHECK(complaint(pi, by_name("AMPLIFIER")) ==
@@ -149,8 +149,8 @@ TEST_CASE("a missing line is refused with the existing ones")
     CHECK(complaint(pi, by_name("FAN", "pinctrl-rp1")) ==
           "GPIO line \"FAN\": no line of pinctrl-rp1 has this name (there are: ID_SD, GPIO1, GPIO17, LED)");
     CHECK(complaint({make_chip(0, "sim", {"", ""})}, by_name("GPIO17")) ==
-          "GPIO line \"GPIO17\": no line has this name (no line of this machine has a name: give chip and "
-          "offset)");
+          "GPIO line \"GPIO17\": no line has this name (give chip and offset: no line of this machine has a "
+          "name)");
     CHECK(complaint({}, by_name("GPIO17")) == "GPIO line \"GPIO17\": there is no GPIO chip on this machine "
                                               "(GPIO chips are /dev/gpiochip*; give them to a container)");
 }

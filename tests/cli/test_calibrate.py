@@ -162,7 +162,7 @@ class Simulated(CalibrateTest):
     def test_a_level_that_does_not_fit_is_warned_of_at_once_and_refused_later(self):
         self.write("weak.toml", PALM + "".join(f"[[tactor]]\ntactor = {i}\nmax_dbfs = -10\n" for i in range(9)))
         said = self.simulated("me.toml", "--array", "weak.toml", spec="threshold=-14,spread=0.5")
-        self.assertRegex(said.stderr, r"tactor 0: 7 dB above its threshold of -1\d\.\d\d dBFS exceed its limit by \d\.\d\d dB")
+        self.assertRegex(said.stderr, r"tactor 0: 7 dB above its threshold of -1\d\.\d\d dBFS is \d\.\d\d dB beyond its limit")
         self.refused(2, "render", "--path", "M 0 0 L 0.001 0", "--array", "me.toml", "--sl", 7, "-o", "x.wav")
 
     def test_no_level_is_above_the_array_s_limit(self):
@@ -177,7 +177,7 @@ class Simulated(CalibrateTest):
         self.write("mixed.toml", PALM + '[[tactor]]\ntactor = 4\nmax_dbfs = -25\n')
         args = ("--array", "mixed.toml", "--tactors", "3-5", *SHORT)
         first = ["tactor: highest level: 0 dBFS at tactors 3, 5; -25 dBFS at tactor 4",
-                 "tactor: warning: no max_dbfs below 0 limits tactors 3, 5: the level may go to full scale (set max_dbfs in [array] or [[tactor]] "
+                 "tactor: warning: no max_dbfs limits tactors 3, 5: the level may reach full scale (set max_dbfs in [array] or [[tactor]] "
                  "of the array file)"]
         told = self.refused(1, "calibrate", "--participant", "P1", "-o", "me.toml", *args, "-D", "null").stderr
         self.assertEqual(told.splitlines()[:2], first)

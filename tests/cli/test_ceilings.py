@@ -112,14 +112,14 @@ class Limits(ToolTest):
         self.write("a.toml", '[array]\npreset = "palm-3x3"\nmax_dbfs = -40\n[[tactor]]\ntactor = 4\nmax_dbfs = -20\n')
         tap = ("--duration", "0.1", "--level-dbfs", "-30", "-o", "x.wav", "--array", "a.toml")
         self.ok("render", "--path", "M 20 20", *tap)
-        self.refused(2, "render", "--path", "M 0 0", *tap, says=["tactor 0 would play at -30 dBFS, above its limit of -40 dBFS"])
+        self.refused(2, "render", "--path", "M 0 0", *tap, says=["tactor 0 would play at -30 dBFS, above its max_dbfs of -40 dBFS"])
         # A file that names another one never lifts its limits.
         self.write("b.toml", '[array]\nfile = "a.toml"\nmax_dbfs = -25\n')
-        self.refused(2, "render", "--path", "M 0 0", *tap[:-1], "b.toml", says=["its limit of -40 dBFS"])
-        self.refused(2, "render", "--path", "M 20 20", "--duration", "0.1", "--level-dbfs", "-22", "-o", "x.wav", "--array", "b.toml", says=["its limit of -25 dBFS"])
+        self.refused(2, "render", "--path", "M 0 0", *tap[:-1], "b.toml", says=["its max_dbfs of -40 dBFS"])
+        self.refused(2, "render", "--path", "M 20 20", "--duration", "0.1", "--level-dbfs", "-22", "-o", "x.wav", "--array", "b.toml", says=["its max_dbfs of -25 dBFS"])
         self.write("c.toml", "[array]\nmax_dbfs = -25\n[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 20\ny_mm = 0\nmax_dbfs = 0\n")
         self.ok("render", "--path", "M 20 0", *tap[:-1], "c.toml")
-        self.refused(2, "render", "--path", "M 0 0", "--duration", "0.1", "--level-dbfs", "-24", "-o", "x.wav", "--array", "c.toml", says=["its limit of -25 dBFS"])
+        self.refused(2, "render", "--path", "M 0 0", "--duration", "0.1", "--level-dbfs", "-24", "-o", "x.wav", "--array", "c.toml", says=["its max_dbfs of -25 dBFS"])
         self.write("d.toml", '[array]\npreset = "palm-3x3"\nmax_dbfs = 3\n')
         self.refused(2, "check", "--array", "d.toml")
 
@@ -138,7 +138,7 @@ class Presets(ToolTest):
             channels, says = self.channels("--config", "mine.toml", *more)
             self.assertEqual((channels[0, 20], channels[40, 20], says), (5, 3, ""))
             self.refused(2, "play", "--path", "M 0 20 H 40", "-D", "null", "--level-dbfs", "-18", "--config", "mine.toml", *more,
-                         says=["tactor 3 would play at -18 dBFS, above its limit of -30 dBFS"])
+                         says=["tactor 3 would play at -18 dBFS, above its max_dbfs of -30 dBFS"])
             self.assertEqual(self.ok("check", "--config", "mine.toml", "--level-dbfs", "-40", *more).stdout.count("9 of 12 channels"), 1)
         # A turned array has the preset's places, with other numbers.
         self.write("turned.toml", '[array]\npreset = "palm-3x3"\nrotate_deg = 180\n')
@@ -164,7 +164,7 @@ class Presets(ToolTest):
         self.write("plain.toml", text)
         for definition in ("named.toml", "plain.toml"):
             self.ok("experiment", definition, "--dry-run")
-            self.refused(2, "experiment", definition, "--dry-run", "--config", "mine.toml", says=["above its limit of -30 dBFS"])
+            self.refused(2, "experiment", definition, "--dry-run", "--config", "mine.toml", says=["above its max_dbfs of -30 dBFS"])
 
     def test_shipped_definitions_leave_the_array_to_the_configuration(self):
         shipped = sorted((ROOT / "examples/experiments").glob("*.toml"))

@@ -230,7 +230,7 @@ class Walk(ToolTest):
         self.walk([0, 1], "--max-dbfs", "-12.5", "--level-dbfs", "-40", "-o", "felt.toml")
         tactors = tomllib.loads((self.dir / "felt.toml").read_text())["tactor"]
         self.assertEqual([t["max_dbfs"] for t in tactors], [-12.5, -30])
-        self.assertIn("above its limit of -41 dBFS", self.walk([0, 1], "--max-dbfs", "-41", "--level-dbfs", "-40", status=2).stderr)
+        self.assertIn("above its max_dbfs of -41 dBFS", self.walk([0, 1], "--max-dbfs", "-41", "--level-dbfs", "-40", status=2).stderr)
         self.refused(2, "check", "--max-dbfs", "-12")
         self.refused(2, "check", "--walk", "--max-dbfs", "1")
         # The guide shows a line for the head of a file that a walk has written.
@@ -241,7 +241,7 @@ class Walk(ToolTest):
             self.assertIn("[array]\n", felt)
             self.write("limited.toml", felt.replace("[array]\n", f"[array]\nmax_dbfs = {limit}\n", 1))
             self.refused(2, "render", "park2016-3", "--array", "limited.toml", "--level-dbfs", limit + 1, "-o", "x.wav",
-                         says=[f"above its limit of {limit} dBFS"])
+                         says=[f"above its max_dbfs of {limit} dBFS"])
         self.walk(range(9), "-D", "null", "--level-dbfs", "-40", "--max-dbfs", "-12", "-o", "all.toml", array=())
         said = tomllib.loads((self.dir / "all.toml").read_text())
         self.assertEqual(said["array"]["max_dbfs"], -12)

@@ -58,7 +58,7 @@ class Devices(DevicesTest):
         self.assertTrue(self.devices("--sample-format", "s32")[1]["sixteen_bits"]["fits"])
         told, pcms = self.devices("--sample-format", "float", "--rate", "44100")
         self.assertEqual((told["wanted"]["rate_hz"], told["wanted"]["format"], pcms["sixteen_bits"]["fits"]), (44100, "float", False))
-        self.assertIn("refused: format", pcms["sixteen_bits"]["misfit"])
+        self.assertIn("unsupported format", pcms["sixteen_bits"]["misfit"])
         self.write("a.toml", '[array]\nname = "mine"\ngrid = { rows = 1, columns = 2, pitch_mm = 40.0 }\n'
                              '[output]\npcm = "eight"\nchannels = 8\nrate = 96000\n')
         told, pcms = self.devices("--array", "a.toml")
@@ -136,14 +136,14 @@ class Channels(DevicesTest):
         self.assertEqual((self.dir / "o.wav").read_bytes()[22:24], (16).to_bytes(2, "little"))
 
     def test_a_card_with_fewer_channels_names_an_array_that_fits_or_the_marker(self):
-        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "it supports channels 8", self.FITS])
+        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "use what it supports: channels: 8", self.FITS])
         self.refused(3, "serve", "--socket", f"{self.dir}/s", "-D", "eight")  # it does not wait for that
         self.assertIn(self.FITS, self.check_device("eight", status=3)["cure"])
         pcms = self.devices()[1]
         self.assertEqual([pcms[n]["fits"] for n in ("sixteen", "ten", "eight")], [True, True, False])
         self.assertIn(self.FITS, pcms["eight"]["misfit"])
         self.write("a.toml", 'array.preset = "palm-2x4"\nsync.channel = 12\n')
-        says = "the array palm-2x4 fits, but not channel 12 of a marker or a plan"
+        says = "the array palm-2x4 fits, but channel 12 of a marker or a plan does not"
         self.refused(3, "play", "--path", "M 0 0 L 60 0", "--array", "a.toml", "-D", "eight", says=[says])
         self.assertIn(says, self.devices("--array", "a.toml")[1]["eight"]["misfit"])
         self.assertIn(says, self.check_device("eight", "--array", "a.toml", status=3)["cure"])
@@ -176,7 +176,7 @@ pcm.kept { type route slave.pcm { type file slave.pcm "null" file "kept.raw" for
         found = self.check_device("tactor8", status=3)
         self.assertEqual((found["level"], found["found"]), ("error", f'PCM "tactor8": {self.LOST}'))
         self.assertIn("-D hw:CARD=NAME", found["cure"])
-        self.assertIn("together with", self.check_device("summed", status=3)["found"])
+        self.assertIn("which the PCM mixes with", self.check_device("summed", status=3)["found"])
         self.assertEqual((self.check_device("straight")["level"], self.check_device("tactor8", "--array", "palm-2x4")["level"]), ("ok", "ok"))
         self.write("kept.raw", "precious")
         self.assertIn("tactor 1 of palm-3x3", self.check_device("kept", status=3)["found"])  # though it is not opened

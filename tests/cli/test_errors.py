@@ -54,7 +54,7 @@ class Help(ErrorsTest):
 
     def test_without_arguments_it_says_what_to_try(self):
         says = self.refused(2).stderr
-        self.assertTrue(says.startswith("tactor: command line: no command (tactor --help lists them)\n"), says)
+        self.assertTrue(says.startswith("tactor: command line: the command is missing (tactor --help lists the commands)\n"), says)
         tries = re.findall(r"^  tactor (.*?)  ", says, re.M)
         self.assertEqual([t.split()[0] for t in tries], ["plan", "plot", "serve"])
         for words in tries[:2]:
@@ -175,7 +175,7 @@ class Files(ErrorsTest):
         r = subprocess.run([TOOL, "plan", "/dev/stdout"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                            env=self.env, timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL)
         self.assertEqual((r.returncode, r.stdout), (2, ""))
-        self.assertIn("/dev/stdout: is the output of this program (name a file", r.stderr)
+        self.assertIn("/dev/stdout: it is the output of this program (name a file", r.stderr)
         os.mkfifo(self.dir / "pipe.toml")
         for name in ("pipe.toml", "/dev/zero"):
             self.write("mine.toml", f'[array]\nfile = "{name}"\n')
@@ -185,12 +185,12 @@ class Files(ErrorsTest):
         for name in ("s.toml", "o.wav", "o.svg"):
             os.mkfifo(self.dir / name)
         threading.Thread(target=lambda: (self.dir / "s.toml").write_text(STROKE, encoding="ascii"), daemon=True).start()
-        self.assertIn("s.toml: is a pipe: waiting for a program that writes to it", self.ok("plan", "s.toml").stderr)
+        self.assertIn("s.toml: it is a pipe: waiting for a program that writes to it", self.ok("plan", "s.toml").stderr)
         for command, name in (("render", "o.wav"), ("plot", "o.svg")):
             got = []
             reader = threading.Thread(target=lambda n=name, got=got: got.append((self.dir / n).read_bytes()), daemon=True)
             reader.start()
-            self.assertIn(f"{name}: is a pipe: waiting for a program that reads it", self.ok(command, "park2016-1", "-o", name).stderr)
+            self.assertIn(f"{name}: it is a pipe: waiting for a program that reads it", self.ok(command, "park2016-1", "-o", name).stderr)
             reader.join()
             self.assertGreater(len(got[0]), 1000)
 

@@ -438,7 +438,7 @@ class Folder(ExperimentTest):
             self.forget_last_run()
 
         begun_by_another_version(lambda other: other["stimuli"][0].update(duration_s=9))
-        self.simulate("01", "--resume", status=2, says=("stimuli", "as it began"))
+        self.simulate("01", "--resume", status=2, says=("stimuli", "continue with the same"))
         begun_by_another_version(lambda other: None)
         self.simulate("01", "--resume")
         self.assertEqual(table.read_bytes(), whole["sub-01/beh/sub-01_task-howgood_beh.tsv"])
@@ -448,7 +448,7 @@ class Folder(ExperimentTest):
     def test_a_session_resumes_only_with_its_options(self):
         self.simulate("01", "--seed", "3")
         for seed, spec, says in (("4", "seed=1,sigma=1", "seed 3"), ("3", "seed=9", "simulation")):
-            self.simulate("01", "--seed", seed, "--resume", spec=spec, status=2, says=(says, "as it began"))
+            self.simulate("01", "--seed", seed, "--resume", spec=spec, status=2, says=(says, "continue with the same"))
         self.small(SMALL + "# a word more\n")
         self.simulate("01", "--seed", "3", "--resume", definition="small.toml", status=2)
 
@@ -494,19 +494,19 @@ class Folder(ExperimentTest):
         self.assertEqual(said.count("labels"), 2)
         self.simulate(definition=self.small(said))
         for old, new, says in (
-                ('["bad", "good"]', '["good", "bad"]', 'run "how good", labels: ["bad", "good"], then ["good", "bad"]'),
+                ('["bad", "good"]', '["good", "bad"]', 'run "how good", labels: ["bad", "good"], not ["good", "bad"]'),
                 ('["the first", "the second"]', '["the second", "the first"]', 'run "which-one", choices'),
-                ("How good?", "How bad?", 'run "how good", question: "How good?", then "How bad?"'),
-                ("scale = 7", "scale = 8", 'run "how good", scale: "1 to 7", then "1 to 8"'),
-                ('"left", "right"', '"right", "left"', 'run "about", item "hand", choices: ["left", "right"], then ["right", "left"]'),
+                ("How good?", "How bad?", 'run "how good", question: "How good?", not "How bad?"'),
+                ("scale = 7", "scale = 8", 'run "how good", scale: "1 to 7", not "1 to 8"'),
+                ('"left", "right"', '"right", "left"', 'run "about", item "hand", choices: ["left", "right"], not ["right", "left"]'),
                 ('["no", "yes"]', '["yes", "no"]', 'run "about", item "tired", labels'),
-                ("scale = 9", 'scale = "vas"', 'run "about", item "tired", scale: "1 to 9", then "0 to 100"'),
-                ("Tired?", "Awake?", 'run "about", item "tired", question: "Tired?", then "Awake?"'),
-                ("[0, 99]", "[1, 99]", 'run "about", item "years", range: "0 to 99", then "1 to 99"'),
-                ('"years"', '"months"', 'run "about", item: ["hand", "years", "tired"], then ["hand", "months", "tired"]'),
+                ("scale = 9", 'scale = "vas"', 'run "about", item "tired", scale: "1 to 9", not "0 to 100"'),
+                ("Tired?", "Awake?", 'run "about", item "tired", question: "Tired?", not "Awake?"'),
+                ("[0, 99]", "[1, 99]", 'run "about", item "years", range: "0 to 99", not "1 to 99"'),
+                ('"years"', '"months"', 'run "about", item: ["hand", "years", "tired"], not ["hand", "months", "tired"]'),
                 ('"before"', '"after"', 'run "about", when'),
-                ('name = "down"', 'name = "up"', 'run "which-one", motions: ["to the right", "down"], then ["to the right", "up"]'),
-                ('name = "what"', 'name = "which"', 'run: ["which-one", "how good", "what"], then ["which-one", "how good", "which"]')):
+                ('name = "down"', 'name = "up"', 'run "which-one", motions: ["to the right", "down"], not ["to the right", "up"]'),
+                ('name = "what"', 'name = "which"', 'run: ["which-one", "how good", "what"], not ["which-one", "how good", "which"]')):
             with self.subTest(old=old):
                 self.assertEqual(said.count(old), 1)
                 changed = self.small(said.replace(old, new))
@@ -750,8 +750,8 @@ class Power(ExperimentTest):
         self.ok(*args, "--part", "1/1", "-o", "whole.json")
         self.assertEqual(self.ok(*args, "--merge", "whole.json").stdout, self.ok(*args).stdout)
         self.refused(2, *args, "--merge", "1.json", "3.json", says=["part 2/3 is missing"])
-        self.refused(2, *args, "--merge", "1.json", "2.json", "1.json", says=["1.json: part: is 1, as in 1.json"])
-        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: is 1, not 3 as in 1.json"])
+        self.refused(2, *args, "--merge", "1.json", "2.json", "1.json", says=["1.json: part: it is 1, as in 1.json"])
+        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: it is 1, not 3 as in 1.json"])
         told = json.loads((self.dir / "2.json").read_text())
         for key, value in (("definition", "0" * 64), ("version", "0.0.1"), ("simulation", "seed=2,sigma=5"), ("stimuli", None), ("seed", 3),
                            ("studies", 11), ("participants", [3]), ("part", 4), ("part", 1.5), ("schema", "tactor-power/1"), ("runs", []),
@@ -766,8 +766,8 @@ class Power(ExperimentTest):
         self.assertFalse((self.dir / "x").exists())
         # A part is written again by itself alone.
         kept = (self.dir / "1.json").read_bytes()
-        for more, says in ((("--part", "1/4"), "1.json: it has part 1 of 3 ("), (("--part", "2/3"), "1.json: it has part 1 of 3 ("),
-                           (("--part", "1/3", "--seed", "9"), "1.json: it has part 1 of 3 of other studies (seed)")):
+        for more, says in ((("--part", "1/4"), "1.json: it holds part 1 of 3 ("), (("--part", "2/3"), "1.json: it holds part 1 of 3 ("),
+                           (("--part", "1/3", "--seed", "9"), "1.json: it holds part 1 of 3 of studies with another seed")):
             self.refused(2, *args, *more, "-o", "1.json", says=[says, "name another file, or remove it"])
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)
         self.ok(*args, "--part", "1/3", "-o", "1.json")

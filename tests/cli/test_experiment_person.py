@@ -177,7 +177,7 @@ class AtTheTerminal(PersonTest):
         t.answer("Any key begins", " ")
         t.answer("Which one\\? ", "q")
         self.assertEqual(t.end(), 130)
-        self.assertIn("tactor: ended by the experimenter (q): the answers are in study, and --resume continues", t.said())
+        self.assertIn("tactor: ended by the experimenter (q): the answers are in study (continue with --resume)", t.said())
         s = self.session("01")
         agreed, asked = (datetime.datetime.fromisoformat(v.replace("Z", "+00:00")) for v in (s["consent"], s["walk"][0]["asked"]))
         self.assertLess(agreed, seen)
@@ -203,7 +203,7 @@ class AtTheTerminal(PersonTest):
             if n:
                 t.answer(("Practice 1/1", "Trial 1/2: ", "A break")[n - 1], "\x03")
             self.assertEqual(t.end(), 130, n)
-            self.assertIn("--resume continues", t.said())
+            self.assertIn("continue with --resume", t.said())
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["1", "2"])
         # The break was over with the interruption, and the stream is another.
         result = self.ok(*self.args("--resume"), stdin="y\ny\n1\n2\n")
@@ -263,7 +263,7 @@ class ByLines(PersonTest):
         def told(status, *says, code="01"):
             self.assertNotIn("agree", self.refused(status, *self.args(code=code), stdin=self.ANSWERS, says=says).stdout)
             self.assertFalse((self.dir / "study/sourcedata").exists())
-        told(2, "File name too long", "a shorter code", code="9" * 235)
+        told(2, "File name too long", "a shorter participant code", code="9" * 235)
         self.assertFalse((self.dir / "study").exists())
         self.write("study/dataset_description.json", "{}")
         self.write("study/sub-01", "a file")
@@ -365,7 +365,7 @@ class ByLines(PersonTest):
         text = SHORT.replace('path = "M0 0H20"', 'path = "M0 0H15"\nmirror = true')
         self.write("left.toml", text)
         self.write("right.toml", text.replace("M0 0H15", "M20 0H5"))
-        self.refused(2, *self.args(definition="left.toml"), says=("--hand", "add --hand left, or --hand right"))
+        self.refused(2, *self.args(definition="left.toml"), says=("--hand", "add --hand left or --hand right"))
         plans = [{(s["motion"], s["method"]): s["sha256"] for s in json.loads(self.ok(
             "experiment", name, "--dry-run", "--format", "json", *more).stdout)["stimuli"]}
             for name, more in (("left.toml", ("--hand", "left")), ("right.toml", ()), ("left.toml", ("--hand", "right")))]

@@ -91,7 +91,7 @@ class Held(SessionTest):
             self.write("many.toml", several(SMALL, n))
             self.refused(2, "experiment", "many.toml", "--dry-run", "--session", "1")
         self.hold("01", 1)
-        self.simulate("02", definition="small.toml", status=2, says=("sub-01_ses-1 had another experiment: sessions: 2, then 1",))
+        self.simulate("02", definition="small.toml", status=2, says=("sub-01_ses-1 had another experiment: sessions: 2, not 1",))
         self.assertIn("study: the folder has no sub-02_ses-1", self.hold("02", 2).stderr)
         self.assertNotIn("not here", self.hold("01", 2).stderr)
 

@@ -48,8 +48,8 @@ class Tables(ExperimentTest):
     def test_unreadable_tables_are_refused_before_the_session_and_left_alone(self):
         _, _, tables = self.broken_off()
         for way, says in ((lambda t: t.replace(b"\t", b";"), ":1: semicolons separate the columns"),
-                          (lambda t: t.decode().encode("utf-16-le"), ": is UTF-16"),
-                          (lambda t: t.replace(b"\n", b"\nx\n", 1), ":2: it has 1 column, not ")):
+                          (lambda t: t.decode().encode("utf-16-le"), ": it is UTF-16"),
+                          (lambda t: t.replace(b"\n", b"\nx\n", 1), ":2: the line has 1 column, not ")):
             for path in tables:
                 good = path.read_bytes()
                 path.write_bytes(way(good))
@@ -97,7 +97,7 @@ class Tables(ExperimentTest):
         text = table.read_bytes()
         table.write_bytes(text[:-100])
         cut = text[:-100].rpartition(b"\n")[2]
-        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is incomplete (use tactor experiment --resume",))
+        self.refused(2, "analyze", "study", says=(f"{table.name}:3: the last line is incomplete (run tactor experiment --resume",))
         said = self.simulate("01", "--resume").stderr
         for path, kept in ((table, cut), (practice, lines[-1][:40])):
             name = path.relative_to(self.dir)
@@ -139,7 +139,7 @@ class Tables(ExperimentTest):
             name.unlink()
         said = self.simulate("01", "--resume").stderr
         for name in (people, scans):
-            self.assertIn(f"tactor: warning: {name.relative_to(self.dir)}: it is missing: a new one begins (put the old one back", said)
+            self.assertIn(f"tactor: warning: {name.relative_to(self.dir)}: it is missing, so a new one begins (restore the old one", said)
         after = contents(self.dir / "study")
         self.assertEqual({n for n in whole if whole[n] != after.get(n)}, {"sub-01/sub-01_scans.tsv"})
         self.assertEqual([s["filename"] for s in read_table(scans)],

@@ -142,7 +142,7 @@ class Tasks(ExperimentTest):
         table = self.dir / "study/sub-01/beh/sub-01_task-felt_beh.tsv"
         text = table.read_text(encoding="utf-8")
         table.write_text(re.sub(r"(?m)^(.*\tnone\t.*\t)n/a(\tfalse)", r"\1-40\2", text, count=1), encoding="utf-8")
-        self.refused(2, "analyze", "study", says=("a trial without a stimulus has a value",))
+        self.refused(2, "analyze", "study", says=("the trial has a value but no stimulus",))
         table.write_text(text.replace("\t-40.000000\t", "\t-39.99999999999999\t"), encoding="utf-8")
         self.assertNotEqual(table.read_text(encoding="utf-8"), text)
         self.ok("analyze", "study")

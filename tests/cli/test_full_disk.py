@@ -104,7 +104,7 @@ class FullDisk(ExperimentTest):
                 for fill in (disk.fill, lambda: disk.fill(1), disk.fill_names):
                     fill()
                     r = self.run_tool(*args)
-                    self.assertEqual((r.returncode, r.stderr), (1, f"tactor: {args[-1]}: cannot be written: {NO_SPACE} ({FREE_SOME}, "
+                    self.assertEqual((r.returncode, r.stderr), (1, f"tactor: {args[-1]}: it cannot be written: {NO_SPACE} ({FREE_SOME}, "
                                                                    "or name a file on another disk; nothing was left behind)\n"))
                     self.assertEqual(disk.files(), kept, args)
                     disk.make_room()
@@ -119,7 +119,7 @@ class FullDisk(ExperimentTest):
             for pages in (0, 1):
                 disk.fill(pages)
                 said = self.redirected(*args)
-                self.assertRegex(said, rf"(standard output|/dev/stdout: cannot be written): {NO_SPACE} \({FREE_SOME}, .* is incomplete\)")
+                self.assertRegex(said, rf"(standard output|/dev/stdout: it cannot be written): {NO_SPACE} \({FREE_SOME}, .* is incomplete\)")
                 disk.make_room()
 
     def test_a_read_only_disk_is_an_error(self):
@@ -182,9 +182,9 @@ class FullDisk(ExperimentTest):
             self.assertTrue(whole["me.tsv"].startswith(log))
             self.assertNotIn("me.toml", disk.files())
             # Before it begins, when a trial is answered, and when all are.
-            begun += "me.json: cannot be written" in r.stderr
+            begun += "me.json: it cannot be written" in r.stderr
             if "me.json" not in r.stderr:
-                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(earlier answers are kept; free some space, and --resume continues\)")
+                self.assertRegex(r.stderr, rf"me\.(tsv|toml): {NO_SPACE} \(earlier answers are kept; free some space, and continue with --resume\)")
                 kept += len(log.splitlines()) > 2
             resume = ["--resume"] if "me.tsv" in disk.files() else []
             self.refused(1, *args, *resume, says=[NO_SPACE])  # there still is no space
@@ -217,7 +217,7 @@ class FullDisk(ExperimentTest):
             self.assertEqual(r.returncode, 1, r.stderr)
             # A first file may be written elsewhere.
             self.assertRegex(r.stderr, rf"{NO_SPACE} \(.*(free some space.*)\)")
-            kept += "the last answer is kept" in r.stderr
+            kept += "earlier answers are kept" in r.stderr
             found = answered()
             for name, data in found.items():
                 self.assertTrue(whole[name].startswith(data) and data.endswith(b"\n"), name)
@@ -272,7 +272,7 @@ class FullDisk(ExperimentTest):
         t.answer("Any key begins", " ")
         t.answer("How even\\? ", "3")  # this takes another table
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, then use --resume\)")
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(earlier answers are kept; free some space, and continue with --resume\)")
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3"]))
         disk.make_room()
         self.resumed(("Any key begins", " "), ("Trial 2/2: How even\\? ", "1"), ("Any key ends", " "))
@@ -283,7 +283,7 @@ class FullDisk(ExperimentTest):
         disk.fill_names()
         t.key("2")
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, then use --resume\)")
+        self.assertRegex(t.said(), rf"{NO_SPACE} \(earlier answers are kept; free some space, and continue with --resume\)")
         self.assertEqual(self.answers("pairs"), ["2"])
 
     def test_a_disk_that_becomes_read_only_while_somebody_answers(self):
@@ -291,7 +291,7 @@ class FullDisk(ExperimentTest):
         disk.read_only()
         t.key("2")
         self.assertEqual(t.end(), 1)
-        self.assertRegex(t.said(), r"Read-only file system \(earlier answers are kept; make the disk writable again, and --resume continues\)")
+        self.assertRegex(t.said(), r"Read-only file system \(earlier answers are kept; make the disk writable again, and continue with --resume\)")
         t = self.person("--resume")
         self.assertEqual(t.end(), 1)
         self.assertIn("Read-only file system", t.said())

@@ -103,7 +103,7 @@ class Options(ToolTest):
                 required = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg")}.get(command, ())
                 stroke = () if command == "check" else ("soft.csv",)
                 said = self.refused(2, command, *stroke, *required, f"--{name}", str(value[name])).stderr
-                self.assertIn(f"--{name}: only a file sets it (put {name} into [defaults] of a file for --array)", said)
+                self.assertIn(f"--{name}: only a file can set it (put {name} into [defaults] of a file for --array)", said)
             # The cure works.
             self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,5,5,0.4\n0.51,35,35,0.4\n")
             self.write("felt.toml", f'[array]\npreset = "palm-3x3"\n[defaults]\n{name} = {value[name]}\n')

@@ -222,7 +222,7 @@ class Inputs(ExperimentTest):
             out.seek(0, os.SEEK_END)
             r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdin=f, stdout=out, stderr=subprocess.PIPE, timeout=PATIENCE_S, check=False, text=True)
         self.assertEqual((r.returncode, (self.dir / file).read_bytes()), (2, before), f"{args}: {r.stderr}")
-        self.assertIn("is the output of this program (write to another file)", r.stderr)
+        self.assertIn("it is the output of this program (write to another file)", r.stderr)
 
     def test_standard_output_goes_over_no_input(self):
         for file, args in self.READ:
@@ -316,11 +316,11 @@ class Large(ToolTest):
     def test_memory_is_bounded_for_any_input(self):
         with open("/dev/zero", "rb") as endless:
             status, said, mb, _ = self.cost("plan", "-", stdin=endless)
-        self.assertEqual((status, said), (2, "tactor: standard input: longer than 512 MB (check that it is the right file)\n"))
+        self.assertEqual((status, said), (2, "tactor: standard input: it is longer than 512 MB (check that it is the right file)\n"))
         self.assertLess(mb, 600)
         self.write_pieces("values.csv", (b"0," * (MB // 2) for _ in range(64)))
         status, said, mb, _ = self.cost("plan", "values.csv")
-        self.assertTrue(status == 2 and "values.csv:1:2001: more than 1000 values in a line" in said, said)
+        self.assertTrue(status == 2 and "values.csv:1:2001: the line has more than 1000 values" in said, said)
         self.assertLess(mb, 128)
         points = (b"%d.%03d,%d,%d.%020d\n" % (i // 1000, i % 1000, i % 40, i % 31, 7) for i in range(1_000_000))
         path = self.write_pieces("long.csv", itertools.chain([b"t_s,x_mm,y_mm\n"], points))
@@ -336,7 +336,7 @@ class Large(ToolTest):
     def test_a_text_for_a_tree_has_a_lower_limit(self):
         for name, first in (("big.svg", b"<svg>"), ("big.toml", b"#")):
             self.write_pieces(name, [first, *[b"#" * MB] * 48])
-            self.refused(2, "plan", name, says=[f"{name}: longer than"])
+            self.refused(2, "plan", name, says=[f"{name}: it is longer than"])
 
     def test_time_grows_with_the_size(self):
         def seconds_for(points):

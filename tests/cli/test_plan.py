@@ -266,7 +266,7 @@ class Strokes(PlanTest):
         for command in (*COMMANDS, ("plan", "--format", "csv")):
             with self.subTest(command=command):
                 which = "park2016: " if command[0] == "compare" else ""
-                self.assertEqual(self.both(*command, "s.csv").count(f"warning: {which}s.csv:4: has the same time as the previous line"), 1)
+                self.assertEqual(self.both(*command, "s.csv").count(f"warning: {which}s.csv:4: it has the same time as the previous line"), 1)
                 said = " ".join(self.both(*command, *short).split())
                 self.assertTrue("break the timing law" in said and "shorter than one cycle of the carrier" in said, said)
         self.assertEqual(len(self.plan(*short)["warnings"]), 2)

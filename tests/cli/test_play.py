@@ -73,30 +73,30 @@ class Play(ToolTest):
         self.refused(2, "render", "nine.wav", "-o", "o.wav", says=[says])
         self.ok("play", "nine.wav", "--level-dbfs", "-6.02", "-D", "null")
         self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\nmax_dbfs = -20\n')
-        self.refused(2, "play", "nine.wav", "--array", "a.toml", "--level-dbfs", "0", says=["13.98 dB above its limit of -20 dBFS"])
+        self.refused(2, "play", "nine.wav", "--array", "a.toml", "--level-dbfs", "0", says=["13.98 dB above its max_dbfs of -20 dBFS"])
         written("slow.wav", 9, 44100)
-        self.refused(2, "play", "slow.wav", "--level-dbfs", "0", says=["44100 Hz, and the stream 48000 Hz (use --rate 44100, or convert it: sox IN -r 48000 OUT)"])
+        self.refused(2, "play", "slow.wav", "--level-dbfs", "0", says=["its rate is 44100 Hz, but the stream's is 48000 Hz (use --rate 44100, or convert it: sox IN -r 48000 OUT)"])
         self.ok("play", "slow.wav", "--level-dbfs", "0", "--rate", "44100", "-D", "null")
         written("two.wav", 2)
-        self.refused(2, "play", "two.wav", "--level-dbfs", "0", says=["2 channels, and the stream 9 (add silent ones: sox IN OUT remix 1 2 0 0 0 0 0 0 0)"])
+        self.refused(2, "play", "two.wav", "--level-dbfs", "0", says=["2 channels, but the stream has 9 (add silent ones: sox IN OUT remix 1 2 0 0 0 0 0 0 0)"])
         written("ten.wav", 10)
-        self.refused(2, "play", "ten.wav", "--level-dbfs", "0", says=["10 channels, and the stream 9 (use --channels 10, or leave some out: sox IN OUT remix 1 2 3 4 5 6 7 8 9)"])
+        self.refused(2, "play", "ten.wav", "--level-dbfs", "0", says=["10 channels, but the stream has 9 (use --channels 10, or leave some out: sox IN OUT remix 1 2 3 4 5 6 7 8 9)"])
         self.ok("play", "ten.wav", "--level-dbfs", "0", "--channels", "10", "-D", "null")
         written("empty.wav", 9, data=b"")
-        self.refused(2, "play", "empty.wav", says=["empty.wav: there are no samples in it"])
+        self.refused(2, "play", "empty.wav", says=["empty.wav: it has no samples"])
         self.write("cut.wav", (self.dir / "nine.wav").read_bytes()[:-1000])
         self.refused(2, "play", "cut.wav", says=["cut.wav: it is cut short"])
         self.write("text.wav", "x y")
         self.refused(2, "play", "text.wav", says=["text.wav: it is not a WAV file"])
         self.refused(2, "play", "missing.wav", says=["missing.wav: No such file"])
-        self.refused(2, "play", "nine.wav", "--sl", "7", says=["nine.wav: it has no carrier"])
+        self.refused(2, "play", "nine.wav", "--sl", "7", says=["nine.wav: a sensation level needs a carrier"])
         for option in (("--soa", "0.1"), ("--carrier", "100"), ("--ramp", "0.01"), ("--speed", "10"), ("--together", "sum")):
             self.refused(2, "play", "nine.wav", *option, says=["has samples, which play as they are (leave it out)"])
         for command in (("plan",), ("plot", "-o", "o.svg"), ("compare",)):
-            self.refused(2, *command, "nine.wav", says=["nine.wav: it has samples, and there is no stroke to plan (tactor play and tactor render take it)"])
+            self.refused(2, *command, "nine.wav", says=["nine.wav: it has samples, but no stroke to plan (use tactor play or tactor render)"])
         with (self.dir / "huge.wav").open("wb") as f:
             f.truncate(3 << 30)
-        self.refused(2, "play", "huge.wav", says=["huge.wav: its 3072 MB are too many: 1024 MB are held in memory at most"])
+        self.refused(2, "play", "huge.wav", says=["huge.wav: it has 3072 MB of samples, but tactor loads at most 1024 MB"])
 
     def test_samples_have_the_limits_and_the_end_of_strokes(self):
         def tone(seconds, peak):

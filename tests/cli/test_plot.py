@@ -49,7 +49,7 @@ class Array(PlotTest):
             self.assertEqual(svg.all(kind), [])
         self.assertEqual(svg.root.findtext(f"{NS}title"), "palm-2x4")
         for more in (["--view", "timing"], ["--view", "wave"], ["--animate"]):
-            self.refused(2, "plot", "--array", "palm-2x4", *more, "-o", "array2.svg", says=["no stroke"])
+            self.refused(2, "plot", "--array", "palm-2x4", *more, "-o", "array2.svg", says=["the stroke is missing"])
 
     def test_tactors_and_the_scale_bar_are_to_scale(self):
         for name in ("palm-3x3", *(ROOT / "examples/arrays").glob("*.toml")):

@@ -46,7 +46,7 @@ class Remote(ServeTest):
         self.assertEqual(record["strokes"][1]["frames"], 9600)
         self.assertEqual((record["schema"], record["device"]["pcm"]), ("tactor-play/1", "null"))
         self.write("nine.wav", "RIFF")
-        self.refused(2, "play", "nine.wav", "--socket", s.where["socket"], says=["nine.wav: it has samples, which a server takes from nobody"])
+        self.refused(2, "play", "nine.wav", "--socket", s.where["socket"], says=["nine.wav: it has samples, which a server does not accept"])
         self.write("meet.toml", "".join(f"[[stroke]]\nstart_s = 0.0\npath = '{path}'\nduration_s = 0.56\n" for path in ("M 0 20 H 40", "M 40 20 H 0")))
         for where in ((), ("--socket", s.where["socket"])):
             ran = self.ok("play", "meet.toml", "--format", "json", *where)
@@ -288,7 +288,7 @@ class Remote(ServeTest):
         (told,) = json.loads(played)["strokes"]
         self.assertEqual((told["rounds"], told["state"]), (None, "finished"))
         self.assertAlmostEqual(told["played_s"], 3 * 0.3, delta=0.21)  # the last pause may be left out
-        self.refused(2, "play", "park2016-1", "park2016-2", *where, "--repeat", "2", says=("--repeat: a server repeats one STROKE",))
+        self.refused(2, "play", "park2016-1", "park2016-2", *where, "--repeat", "2", says=("--repeat: a server repeats only one STROKE",))
 
     def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"

@@ -166,7 +166,7 @@ class Together(RenderTest):
         self.write("loud.toml", STROKE + "level_db = 28\n")
         for command in (("render", "-o", "o.wav"), ("plan",), ("play", "-D", "null")):
             self.refused(2, command[0], "loud.toml", *command[1:], "--level-dbfs", "-40",
-                         says=["loud.toml:4:12: level_db is 28 (allowed: -120 to 0)"])
+                         says=["loud.toml:4:12: level_db is 28 (use -120 to 0)"])
 
 
 class Sound(RenderTest):

@@ -425,10 +425,10 @@ class Refusals(ReportTest):
         good = (self.dir / "study/sourcedata/sub-01/session.json").read_text()
         for change, why in (
                 (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
-                (lambda t: t["array"].update(tactors=7), "array.tactors: is not a list"),
-                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: is not a frequency"),
-                (lambda t: t.update(level=[7]), "level: is not an object"),
-                (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed: is neither true nor false"),
+                (lambda t: t["array"].update(tactors=7), "array.tactors: it is not a list"),
+                (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: it is not a frequency"),
+                (lambda t: t.update(level=[7]), "level: it is not an object"),
+                (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed: it is neither true nor false"),
                 (lambda t: t["stimuli"][0].update(sha256="../../../passwd"), "passwd.json"),
                 (lambda t: t["stimuli"].pop(0), "plan_1 is not a plan of its motion and method")):
             self.change("01", change)

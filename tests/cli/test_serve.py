@@ -251,7 +251,7 @@ class Protocol(ServeTest):
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -20)
         self.write("a.toml", '[array]\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n[[tactor]]\ntactor = 4\nmax_dbfs = -30\n')
         fault = self.serve("--socket", self.dir / "limited.sock", "--array", "a.toml").client().error("play", path="M 0 0 L 40 40")
-        self.assertIn("above its limit of -30 dBFS", fault["message"])
+        self.assertIn("above its max_dbfs of -30 dBFS", fault["message"])
         self.assertNotIn("a.toml", fault["message"])  # the owner's file
         c = self.serve("--socket", self.dir / "b.sock", config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -30)

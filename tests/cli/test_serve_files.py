@@ -51,7 +51,7 @@ class Import(ServeTest):
         self.assertEqual(r["points"], [[[0, 0, 0, 1], [0.5, 40, 0, 1]], [[0, 40, 0, 1], [0.25, 20, 20, 0.5], [1, 0, 40, 1]]])
         r = c.ok("import", name="a.csv", text=CSV)
         self.assertEqual(r["points"], [[[0, 0, 0, 1], [0.5, 20, 20, 0.5], [1, 40, 40, 1]]])
-        self.assertIn("a.csv:4: has the same time", r["warnings"][0])
+        self.assertIn("a.csv:4: it has the same time", r["warnings"][0])
         group = "[[stroke]]\nrepeat = 2\npause_s = 1\n" + SEVERAL.replace("[[stroke]]", "[[stroke.stroke]]")
         r = c.ok("import", text=group)
         self.assertEqual([s["start_s"] for s in r["strokes"]], [0, 0.75, 2.75, 3.5])
@@ -112,7 +112,7 @@ class Import(ServeTest):
                                   ({"name": "a.svg", "text": "<svg>\n<path d='M 0 x'/></svg>"}, "text", "2:"),
                                   ({"name": "a.json", "text": "{\n"}, "text", "2:1: "),
                                   ({"name": "a.json", "text": "{}"}, "text", "it has no plan"),
-                                  ({"name": "a.json", "text": '{"schema": "tactor-plan/1", "array": {"tactors": 7}}'}, "text", "text: algorithm: is missing"),
+                                  ({"name": "a.json", "text": '{"schema": "tactor-plan/1", "array": {"tactors": 7}}'}, "text", "text: algorithm: it is missing"),
                                   ({"text": "hello"}, "text", "1:"), ({"text": ""}, "text", ""),
                                   ({"base64": "aGVsbG8"}, "base64", "not base64"), ({"base64": "a b="}, "base64", "not base64"),
                                   ({"base64": base64.b64encode(b"\x89PNG\r\n\x1a\n").decode()}, "base64", "a PNG picture"),

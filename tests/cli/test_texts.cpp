@@ -60,15 +60,16 @@ std::string said(std::vector<stroke_outcome> strokes)
 TEST_CASE("fields and marks of the library become options and commands of the tool")
 {
     CHECK(spell("lower {level_dbfs}, or gain_db") == "--soa: no (lower --level-dbfs, or gain_db)");
-    CHECK(spell("{timing=fit}; {drop_points=true} leaves places out") ==
-          "--soa: no (--timing fit; --drop-points leaves places out)");
+    CHECK(spell("{timing=fit}, or {drop_points=true} to leave places out") ==
+          "--soa: no (--timing fit, or --drop-points to leave places out)");
     CHECK(spell("{fit=true| scales it, }or {outside=clamp}") ==
           "--soa: no (--fit scales it, or --outside clamp)");
     CHECK(spell("{device=hw:CARD=A}; {command:devices} lists all") ==
           "--soa: no (-D hw:CARD=A; tactor devices lists all)");
-    CHECK(spell("{command:plan} makes one") == "--soa: no (tactor plan STROKE --format json makes one)");
-    CHECK(spell("{force=true}; {wider=true} leaves the others silent") ==
-          "--soa: no (--force; without a number of channels it leaves the others silent)");
+    CHECK(spell("make a plan with {command:plan}") ==
+          "--soa: no (make a plan with tactor plan STROKE --format json)");
+    CHECK(spell("{force=true}; {wider=true}, and the others stay silent") ==
+          "--soa: no (--force; leave out the number of channels, and the others stay silent)");
     CHECK(spell("{array=none}: it has its own") == "--soa: no (leave out --array: it has its own)");
 }
 

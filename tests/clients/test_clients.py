@@ -232,7 +232,7 @@ class CSharp(ServeTest):
         p = self.start_client(self.serve("--tcp", "0"), nowhere)
         out, err = p.communicate(timeout=PATIENCE_S)
         self.assertEqual((p.returncode, out), (1, ""))
-        self.assertTrue(err.startswith(f"serve_client: stroke: no preset '{nowhere}'"), err)
+        self.assertTrue(err.startswith(f"serve_client: stroke: there is no preset '{nowhere}'"), err)
 
     def test_a_token(self):
         s = self.serve("--tcp", "0", config=self.token())

@@ -257,7 +257,7 @@ class Octave(RunnerTest):
         end_process(reader)
         self.assertEqual(watcher.await_end(numbers[0])["state"], "interrupted")
         self.assertEqual(p.stdout.readline(), "tactor: 127.0.0.1:1 cannot be reached (start tactor serve --tcp 1)\n")
-        self.assertIn("tactor: stroke: no preset 'nowhere'", p.stdout.readline())
+        self.assertIn("tactor: stroke: there is no preset 'nowhere'", p.stdout.readline())
         self.assertEqual(p.stdout.readline(), "interrupted\n")
         s.process.send_signal(signal.SIGSTOP)
         self.assertEqual(self.finish(p, "call\n"), "tactor: the service has not answered for 5 s\n")

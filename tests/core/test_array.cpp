@@ -74,15 +74,17 @@ TEST_CASE("make_grid refuses impossible grids, and names the field")
         const char* message;
     };
     const row all[] = {
-        {0, 3, 20.0, 20.0, "rows", "grid: 0 rows x 3 columns (1 to 1024 tactors)"},
-        {3, 1025, 20.0, 20.0, "columns", "grid: 3 rows x 1025 columns (1 to 1024 tactors)"},
-        {33, 32, 20.0, 20.0, "", "grid: 33 rows x 32 columns (1 to 1024 tactors)"}, // both together
-        {3, 1024, 20.0, 20.0, "", "grid: 3 rows x 1024 columns (1 to 1024 tactors)"},
+        {0, 3, 20.0, 20.0, "rows", "grid: it has 0 rows x 3 columns (give 1 to 1024 tactors)"},
+        {3, 1025, 20.0, 20.0, "columns", "grid: it has 3 rows x 1025 columns (give 1 to 1024 tactors)"},
+        {33, 32, 20.0, 20.0, "",
+         "grid: it has 33 rows x 32 columns (give 1 to 1024 tactors)"}, // both together
+        {3, 1024, 20.0, 20.0, "", "grid: it has 3 rows x 1024 columns (give 1 to 1024 tactors)"},
         // 2^32 tactors, which is 0 in 32 bits
-        {65536, 65536, 20.0, 20.0, "rows", "grid: 65536 rows x 65536 columns (1 to 1024 tactors)"},
-        {3, 3, 0.0, 20.0, "pitch_x_mm", "grid: the pitch is 0 mm (it must be more than 0)"},
-        {3, 3, 20.0, not_a_number, "pitch_y_mm", "grid: the pitch is nan mm (it must be more than 0)"},
-        {3, 3, 20.0, -1.0, "pitch_y_mm", "grid: the pitch is -1 mm (it must be more than 0)"},
+        {65536, 65536, 20.0, 20.0, "rows",
+         "grid: it has 65536 rows x 65536 columns (give 1 to 1024 tactors)"},
+        {3, 3, 0.0, 20.0, "pitch_x_mm", "grid: the pitch is 0 mm (give more than 0 mm)"},
+        {3, 3, 20.0, not_a_number, "pitch_y_mm", "grid: the pitch is nan mm (give more than 0 mm)"},
+        {3, 3, 20.0, -1.0, "pitch_y_mm", "grid: the pitch is -1 mm (give more than 0 mm)"},
     };
     for (const row& r : all) {
         const auto make = [&r] { return make_grid("g", r.rows, r.columns, r.pitch_x_mm, r.pitch_y_mm); };
@@ -162,17 +164,17 @@ TEST_CASE("validate takes the presets and grids of the greatest size")
 TEST_CASE("validate names both tactors, with their lines where known")
 {
     array a = at_places({{0, 0}, {20, 0}, {20 + 0.9e-6, 0}});
-    CHECK(caught_message([&] { validate(a); }) == "array 'test': tactor 2 is at (20.0000009, 0) mm, the "
-                                                  "place of tactor 1 (give each tactor its own place)");
+    CHECK(caught_message([&] { validate(a); }) ==
+          "array 'test': tactor 2 is at (20.0000009, 0) mm, like tactor 1 (give each tactor its own place)");
     a.tactors[1].where = {"palm.toml", 5, 1};
     a.tactors[2].where = {"palm.toml", 9, 1};
     CHECK(caught_message([&] { validate(a); }) ==
-          "palm.toml:9:1: tactor 2 is at (20.0000009, 0) mm, the place of tactor 1 (palm.toml:5:1) (give "
+          "palm.toml:9:1: tactor 2 is at (20.0000009, 0) mm, like tactor 1 (palm.toml:5:1) (give "
           "each tactor its own place)");
     a.tactors[2].position.x_mm = 20 + 1.1e-6;
     CHECK_NOTHROW(validate(a));
     a.tactors[2].channel = 1;
-    CHECK(caught_message([&] { validate(a); }) == "palm.toml:9:1: tactor 2 is on channel 1, that of tactor 1 "
+    CHECK(caught_message([&] { validate(a); }) == "palm.toml:9:1: tactor 2 is on channel 1, like tactor 1 "
                                                   "(palm.toml:5:1) (give each tactor its own channel)");
 }
 
@@ -218,7 +220,7 @@ TEST_CASE("validate refuses impossible tactors, and names the field")
         CHECK_NOTHROW(validate(with([db](tactor_spec& t) { t.thresholds = {{100.0, db}}; })));
     }
     CHECK_NOTHROW(validate(with([](tactor_spec& t) { t.rise_s = 1.0; })));
-    CHECK(caught_message([] { validate(array{}); }) == "array '': 0 tactors (an array has 1 to 1024)");
+    CHECK(caught_message([] { validate(array{}); }) == "array '': it has 0 tactors (give 1 to 1024)");
 }
 
 } // namespace array_test

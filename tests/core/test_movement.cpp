@@ -252,7 +252,7 @@ TEST_CASE("impossible movements are refused")
 {
     const double nan_value = std::numeric_limits<double>::quiet_NaN();
     CHECK(refusal({.speed_mm_s = {{0.5, 10.0}, {0.5, 20.0}}}) ==
-          "speed_mm_s: point 2: part 0.5 is not after 0.5 (parts ascend)");
+          "speed_mm_s: point 2: part 0.5 is not after 0.5 (put parts in ascending order)");
     CHECK(refusal({.speed_mm_s = {{0.0, 0.0}}}).find("speed_mm_s: point 1: 0") == 0);
     CHECK(refusal({.speed_mm_s = {{1.1, 1.0}}}).find("speed_mm_s: point 1: part 1.1") == 0);
     CHECK(refusal({.speed_mm_s = {{nan_value, 1.0}}}).find("speed_mm_s: point 1: part nan") == 0);

@@ -214,7 +214,7 @@ TEST_CASE("a path of one place is a tap of the given duration")
     CHECK(tap.with_speed(60.0).duration_s() == 0.4);
     const movement reach{.duration_s = 2.0, .easing = easing_kind::minimum_jerk};
     CHECK(trajectory::along(place, reach).duration_s() == 2.0);
-    const std::string refusal = "path: has no length (duration_s makes it a tap)";
+    const std::string refusal = "path: it has no length (add duration_s to make it a tap)";
     CHECK(caught_message([&] { return trajectory::along(place, 0.0); }) == refusal);
     for (const movement& m : {movement{}, movement{.duration_s = 1.0, .intensity = {{0.0, 0.5}}},
                               movement{.rests = {{0.5, 1.0}}}})
@@ -238,11 +238,11 @@ TEST_CASE("durations and intensities out of range are refused")
 
 TEST_CASE("senseless timed points are refused by their number")
 {
-    CHECK(timed_refusal({}).find("0 of at least 2") != std::string::npos);
-    CHECK(timed_refusal({{0.0, {}}}).find("1 of at least 2") != std::string::npos);
-    CHECK(timed_refusal({{0.5, {}}, {1.0, {}}}) == "point 1: time 0.5 s (make the first time 0)");
+    CHECK(timed_refusal({}).find("a stroke needs at least 2, not 0") != std::string::npos);
+    CHECK(timed_refusal({{0.0, {}}}).find("a stroke needs at least 2, not 1") != std::string::npos);
+    CHECK(timed_refusal({{0.5, {}}, {1.0, {}}}) == "point 1: the first time is 0.5 s (start at 0 s)");
     CHECK(timed_refusal({{0.0, {}}, {1.0, {}}, {1.0, {}}}) ==
-          "point 3: time 1 s is not after 1 s (times ascend)");
+          "point 3: time 1 s is not after 1 s (put times in ascending order)");
     CHECK(timed_refusal({{0.0, {}}, {-1.0, {}}}).find("point 2: ") == 0);
     CHECK(timed_refusal({{0.0, {}}, {nan_value, {}}}).find("point 2: time nan") == 0);
     CHECK(timed_refusal({{nan_value, {}}, {1.0, {}}}).find("point 1: time nan") == 0);

@@ -240,7 +240,7 @@ TEST_CASE("a device that does not start and a missing sink are errors")
     CHECK_THROWS_WITH_AS(player(alsa::adopt(broken.pcm(), nine()), palm()),
                          doctest::Contains("it does not start (the device failed)"), error);
     CHECK(broken.closed());
-    CHECK_THROWS_WITH_AS(player(nullptr, palm()), doctest::Contains("no sink"), error);
+    CHECK_THROWS_WITH_AS(player(nullptr, palm()), doctest::Contains("the sink is missing"), error);
 }
 
 TEST_CASE("a sink of one's own without rate, channels or periods is an error")
@@ -250,7 +250,7 @@ TEST_CASE("a sink of one's own without rate, channels or periods is an error")
         fake_dac dac;
         auto s = std::make_unique<changing_sink>(alsa::adopt(dac.pcm(), nine()));
         s->own.*member = 0;
-        CHECK_THROWS_WITH_AS(player(std::move(s), palm()), doctest::Contains("a sink of"), error);
+        CHECK_THROWS_WITH_AS(player(std::move(s), palm()), doctest::Contains("its sink has"), error);
     }
 }
 

@@ -207,7 +207,7 @@ TEST_CASE("a stream with fewer channels than the array is refused with the tacto
     const array palm = preset_array("palm-3x3");
     CHECK(caught_message([&] { player(open_alsa({.pcm = "null", .channels = 4}), palm); }) ==
           "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels (open it with 9 "
-          "channels; they count from 0)");
+          "channels or more: they count from 0)");
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 9}), palm));
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 16}), palm));
 }
@@ -266,11 +266,11 @@ TEST_CASE("a tactor is lost when its channel reaches nothing, or nothing by itse
     CHECK(lost({}).empty());
     CHECK(lost({{2}, {0}, {1}}).empty());
     CHECK(lost({{0, 3}, {1}, {2, 4}}).empty());
-    CHECK(lost({{0, 1}, {1, 2}, {2, 3}}) == "tactor 1 of line is on channel 1, which reaches the device only "
-                                            "together with channel 0 of tactor 0");
+    CHECK(lost({{0, 1}, {1, 2}, {2, 3}}) ==
+          "tactor 1 of line is on channel 1, which the PCM mixes with channel 0 of tactor 0");
     CHECK(lost({{0}, {}, {2}}) == "tactor 1 of line is on channel 1, which reaches no channel of the device");
-    CHECK(lost({{5}, {1}, {5}}) == "tactor 0 of line is on channel 0, which reaches the device only together "
-                                   "with channel 2 of tactor 2");
+    CHECK(lost({{5}, {1}, {5}}) ==
+          "tactor 0 of line is on channel 0, which the PCM mixes with channel 2 of tactor 2");
     CHECK(lost({{0}, {1}}) == "tactor 2 of line is on channel 2, which reaches no channel of the device");
     // Channels without a tactor may share.
     CHECK(lost({{0}, {1}, {2}, {2}, {}}).empty());
@@ -305,11 +305,12 @@ TEST_CASE("a player refuses an array of which a tactor is lost")
                    .channels = 3,
                    .config_text = "pcm.n { type null }\n"
                                   "pcm.t { type route slave.pcm n ttable { 0.0 1 2.1 1 } }"};
-    CHECK_THROWS_WITH_AS(player(open_alsa(o), line_of_three()),
-                         "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the "
-                         "device (in the definition of the PCM (ttable, bindings) lead each channel to its "
-                         "own channel of the device, at 1, or play on the card itself, hw:CARD=NAME)",
-                         error);
+    CHECK_THROWS_WITH_AS(
+        player(open_alsa(o), line_of_three()),
+        "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the "
+        "device (in the PCM's definition, route each channel to its own channel of the device with "
+        "coefficient 1 (ttable, bindings), or play on the card itself: hw:CARD=NAME)",
+        error);
     array two = line_of_three();
     two.tactors.erase(two.tactors.begin() + 1);
     CHECK_NOTHROW(player(open_alsa(o), two));
@@ -334,7 +335,7 @@ TEST_CASE("wiring that hides the channels' routes is logged, and plays")
 TEST_CASE("a negative frame is an error with a hint")
 {
     CHECK_THROWS_WITH_AS(start_at::frame(-1),
-                         doctest::Contains("start: frame -1 (frames of the stream count from 0"), error);
+                         doctest::Contains("start: frame -1 is before the stream (give 0 or more"), error);
     CHECK_THROWS_AS(start_at::frame(earliest), error);
 }
 

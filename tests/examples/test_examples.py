@@ -237,7 +237,7 @@ class Examples(ToolTest):
         r = python(program)
         self.assertEqual((r.returncode, r.stderr), (0, ""))
         refused, away, same, lost = r.stdout.splitlines()
-        self.assertIn("tactor: stroke: no preset 'nowhere'", refused)
+        self.assertIn("tactor: stroke: there is no preset 'nowhere'", refused)
         self.assertRegex(away, r"^tactor: 127\.0\.0\.1:1: .*Connection refused \(start tactor serve --tcp 1\)$")
         self.assertEqual((same, lost), ("True False", "tactor: the service has not answered for 1 s"))
         # Closed by the device manager, which had not waited for its stroke.

@@ -87,7 +87,7 @@ TEST_CASE("a link is followed, but not in a folder where anybody may put one")
     REQUIRE(::chmod((dir / "shared").c_str(), 01777) == 0);
     fs::create_symlink(dir / "real", dir / "shared/link");
     const std::string why = why_not(dir / "shared/link");
-    CHECK(why.find("link: is a link in a folder that others can write to") != std::string::npos);
+    CHECK(why.find("link: it is a link in a folder that others can write to") != std::string::npos);
     CHECK(dir.bytes("real") == "new");
     put(dir / "shared/plain", "x");
     CHECK(dir.bytes("shared/plain") == "x");

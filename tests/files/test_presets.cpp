@@ -91,11 +91,11 @@ TEST_CASE("an unknown preset is refused with the list, and a slip with its neare
     const auto said = [](const char* name) {
         return caught_message([name] { return tactor::preset_stroke(name); });
     };
-    CHECK(said("circle") == "stroke: no preset 'circle' (" + all);
-    CHECK(said("prak2016-1") == "stroke: no preset 'prak2016-1' (did you mean 'park2016-1'? " + all);
-    CHECK(said("park2016_3") == "stroke: no preset 'park2016_3' (did you mean 'park2016-3'? " + all);
-    CHECK(said("Park2016 4") == "stroke: no preset 'Park2016 4' (did you mean 'park2016-4'? " + all);
-    CHECK(said("round2x4") == "stroke: no preset 'round2x4' (did you mean 'round-2x4'? " + all);
+    CHECK(said("circle") == "stroke: there is no preset 'circle' (" + all);
+    CHECK(said("prak2016-1") == "stroke: there is no preset 'prak2016-1' (did you mean 'park2016-1'? " + all);
+    CHECK(said("park2016_3") == "stroke: there is no preset 'park2016_3' (did you mean 'park2016-3'? " + all);
+    CHECK(said("Park2016 4") == "stroke: there is no preset 'Park2016 4' (did you mean 'park2016-4'? " + all);
+    CHECK(said("round2x4") == "stroke: there is no preset 'round2x4' (did you mean 'round-2x4'? " + all);
 }
 
 namespace fs = std::filesystem;

@@ -129,16 +129,15 @@ TEST_CASE("keys that a file leaves out are left to the program")
 
 TEST_CASE("[output] out of range is refused")
 {
-    CHECK(complaint(with("rate = 48000", "rate = 7999")) ==
-          "t.toml:7:8: rate is 7999 (allowed: 8000 to 768000)");
+    CHECK(complaint(with("rate = 48000", "rate = 7999")) == "t.toml:7:8: rate is 7999 (use 8000 to 768000)");
     CHECK(complaint(with("rate = 48000", "rate = 48000.0")) ==
           "t.toml:7:8: rate is 48000.0 (give a whole number)");
     CHECK(complaint(with("period_frames = 96", "period_frames = 2")) ==
-          "t.toml:9:17: period_frames is 2 (allowed: 3 to 1048576)");
+          "t.toml:9:17: period_frames is 2 (use 3 to 1048576)");
     CHECK(complaint("[output]\nrate = 768000\nperiod_frames = 1\nperiods = 2\n") ==
-          "t.toml:3:17: period_frames is 1 (allowed: 39 to 1048576)");
+          "t.toml:3:17: period_frames is 1 (use 39 to 1048576)");
     CHECK(read("[output]\nrate = 8000\nperiod_frames = 1\n").output.period_frames == 1u);
-    CHECK(complaint(with("periods = 3", "periods = 1")) == "t.toml:10:11: periods is 1 (allowed: 2 to 1024)");
+    CHECK(complaint(with("periods = 3", "periods = 1")) == "t.toml:10:11: periods is 1 (use 2 to 1024)");
     CHECK(complaint(with("\"hw:CARD=Tactor\"", "\"\"")) == "t.toml:6:7: pcm is empty");
     CHECK(complaint(with("\"hw:CARD=Tactor\"", "hw")).starts_with("t.toml:6:"));
     CHECK(complaint(with("period_frames", "period_frame")) ==
@@ -146,23 +145,24 @@ TEST_CASE("[output] out of range is refused")
     CHECK(complaint(with("[output]", "[ouput]")) ==
           "t.toml:5:2: unknown key 'ouput' in the file (did you mean 'output'?)");
     CHECK(complaint(with("channels = 16", "channels = 1025")) ==
-          "t.toml:8:12: channels is 1025 (allowed: 1 to 1024)");
+          "t.toml:8:12: channels is 1025 (use 1 to 1024)");
 }
 
 TEST_CASE("fewer channels than the map or the marker needs are refused")
 {
     CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 8\n") ==
-          "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (the array needs 9 "
-          "channels; they count from 0)");
+          "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (use 9 channels or more: "
+          "they count from 0)");
     CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 9\n").empty());
     CHECK(complaint(with("channels = 16", "channels = 15")) ==
-          "t.toml:19:11: the marker's channel is 15, but there are 15 channels (t.toml:8:12) (channels count "
+          "t.toml:19:11: the marker's channel is 15, but there are 15 channels (t.toml:8:12) (count channels "
           "from 0)");
     CHECK(complaint("[output]\nchannels = 1\n[sync]\nchannel = 1\n") ==
-          "t.toml:4:11: the marker's channel is 1, but there is 1 channel (t.toml:2:12) (channels count from "
+          "t.toml:4:11: the marker's channel is 1, but there is 1 channel (t.toml:2:12) (count channels from "
           "0)");
     CHECK(complaint(with("channel = 15", "channel = 3")) ==
-          "t.toml:19:11: the marker's channel 3 is that of tactor 3 (t.toml:3:8) (give the marker a channel "
+          "t.toml:19:11: the marker's channel, 3, is also that of tactor 3 (t.toml:3:8) (give the marker a "
+          "channel "
           "without a tactor)");
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(code("{ chip = \"a\", offsets = [1, 1] }") ==
           "t.toml:2:8: the line is in use at t.toml:2:8 (give each purpose its own GPIO line)");
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = 256") ==
-          "t.toml:4:12: stimulus is 256 (allowed: 1 to 255)");
+          "t.toml:4:12: stimulus is 256 (use 1 to 255)");
     CHECK(code("{ channel = 3 }\n[sync.codes]\nstimulus = { by = [\"motions\"] }") ==
           "t.toml:4:19: by has 'motions' (some of run, motion, method, value, interval, answer)");
     CHECK(complaint("[sync.codes]\nstimulus = 1\n") ==
@@ -229,8 +229,8 @@ TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
           "t.toml:2:29: line has both chip and name (keep one of them)");
     CHECK(line("{ name = \"a\", offset = 2 }") ==
           "t.toml:2:31: line has both name and offset (keep the name)");
-    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line does not say what it is (add one of: chip, name)");
-    CHECK(line("{ chip = \"a\", offset = -2 }") == "t.toml:2:31: offset is -2 (allowed: 0 to 65535)");
+    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line is incomplete (add one of: chip, name)");
+    CHECK(line("{ chip = \"a\", offset = -2 }") == "t.toml:2:31: offset is -2 (use 0 to 65535)");
     CHECK(line("\"GPIO17\"") ==
           "t.toml:2:8: line is 'GPIO17' (give a table, line = { chip, offset } or { name })");
     CHECK(complaint("[amplifier]\nactive_low = true\n") ==
@@ -243,7 +243,7 @@ TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
     CHECK(complaint(with("\"up\"", "\"sideways\"")) ==
           "t.toml:20:70: pull is 'sideways' (known values: as-is, none, up, down)");
     CHECK(complaint(with("settle_ms = 12.5", "settle_ms = -1")) ==
-          "t.toml:15:13: settle_ms is -1 (allowed: 0 to 10000)");
+          "t.toml:15:13: settle_ms is -1 (use 0 to 10000)");
     CHECK(complaint(with("active_low = true", "active_low = 1")) ==
           "t.toml:14:14: active_low is 1 (give true or false)");
 }

@@ -137,7 +137,7 @@ TEST_CASE("with a grid, entries adjust the tactors that they name")
     CHECK(a.tactors[8].where.line == 2);
     CHECK(complaint(grid + "[[tactor]]\nthreshold_dbfs = -40\n") ==
           "palm.toml:3:1: [[tactor]] has no tactor number (add tactor = INDEX, 0 to 8)");
-    CHECK(complaint(grid + "[[tactor]]\ntactor = 9\n") == "palm.toml:4:10: tactor is 9 (allowed: 0 to 8)");
+    CHECK(complaint(grid + "[[tactor]]\ntactor = 9\n") == "palm.toml:4:10: tactor is 9 (use 0 to 8)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 1\n[[tactor]]\ntactor = 1\n") ==
           "palm.toml:6:10: tactor 1 has another entry (palm.toml:3:1) (join the two entries)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 1\nx_mm = 3\n") ==
@@ -182,29 +182,29 @@ TEST_CASE("wrong types and ranges are reported at the value")
     const std::string one = "[[tactor]]\nx_mm = 0\ny_mm = 0\n";
     CHECK(complaint(one + "channel = 1.0\n") == "palm.toml:4:11: channel is 1.0 (give a whole number)");
     CHECK(complaint(one + "channel = \"1\"\n") == "palm.toml:4:11: channel is '1' (give a whole number)");
-    CHECK(complaint(one + "channel = -1\n") == "palm.toml:4:11: channel is -1 (allowed: 0 to 1023)");
-    CHECK(complaint(one + "channel = 1024\n") == "palm.toml:4:11: channel is 1024 (allowed: 0 to 1023)");
+    CHECK(complaint(one + "channel = -1\n") == "palm.toml:4:11: channel is -1 (use 0 to 1023)");
+    CHECK(complaint(one + "channel = 1024\n") == "palm.toml:4:11: channel is 1024 (use 0 to 1023)");
     CHECK(complaint(one + "channel = 4294967296\n") ==
-          "palm.toml:4:11: channel is 4294967296 (allowed: 0 to 1023)");
-    CHECK(complaint(one + "gain_db = nan\n") == "palm.toml:4:11: gain_db is nan (allowed: -200 to 60)");
-    CHECK(complaint(one + "gain_db = 61\n") == "palm.toml:4:11: gain_db is 61 (allowed: -200 to 60)");
-    CHECK(complaint(one + "max_dbfs = 1\n") == "palm.toml:4:12: max_dbfs is 1 (allowed: -200 to 0)");
+          "palm.toml:4:11: channel is 4294967296 (use 0 to 1023)");
+    CHECK(complaint(one + "gain_db = nan\n") == "palm.toml:4:11: gain_db is nan (use -200 to 60)");
+    CHECK(complaint(one + "gain_db = 61\n") == "palm.toml:4:11: gain_db is 61 (use -200 to 60)");
+    CHECK(complaint(one + "max_dbfs = 1\n") == "palm.toml:4:12: max_dbfs is 1 (use -200 to 0)");
     CHECK(complaint(one + "threshold_dbfs = -inf\n") ==
-          "palm.toml:4:18: threshold_dbfs is -inf (allowed: -200 to 0)");
+          "palm.toml:4:18: threshold_dbfs is -inf (use -200 to 0)");
     CHECK(complaint(one + "polarity = 0\n") ==
-          "palm.toml:4:12: polarity is 0 (1, or -1 if its wires are swapped)");
+          "palm.toml:4:12: polarity is 0 (use 1, or -1 if its wires are swapped)");
     CHECK(complaint(one + "threshold_dbfs = [[1, -200], [384000, 0]]\n").empty());
     CHECK(complaint(one + "threshold_dbfs = [[0.9, -20]]\n") ==
-          "palm.toml:4:20: the frequency is 0.9 (allowed: 1 to 384000)");
+          "palm.toml:4:20: the frequency is 0.9 (use 1 to 384000)");
     CHECK(complaint(one + "threshold_dbfs = [[384001, -20]]\n") ==
-          "palm.toml:4:20: the frequency is 384001 (allowed: 1 to 384000)");
+          "palm.toml:4:20: the frequency is 384001 (use 1 to 384000)");
     CHECK(complaint(one + "threshold_dbfs = [[100, -20], [100, -41]]\n") ==
-          "palm.toml:4:31: the frequency 100 is not after 100 (put thresholds in order of frequency, each "
-          "once)");
+          "palm.toml:4:31: the frequency 100 Hz is not above the previous one, 100 Hz (give each frequency "
+          "once, in ascending order)");
     CHECK(parse_array(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
-    CHECK(complaint(one + "rise_ms = 1001\n").starts_with("palm.toml:4:11: rise_ms is 1001 (allowed: "));
-    CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (allowed: -1 to 1)");
-    CHECK(complaint(one + "polarity = -1.5\n") == "palm.toml:4:12: polarity is -1.5 (allowed: -1 to 1)");
+    CHECK(complaint(one + "rise_ms = 1001\n").starts_with("palm.toml:4:11: rise_ms is 1001 (use "));
+    CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (use -1 to 1)");
+    CHECK(complaint(one + "polarity = -1.5\n") == "palm.toml:4:12: polarity is -1.5 (use -1 to 1)");
     CHECK(complaint(one + "polarity = true\n") == "palm.toml:4:12: polarity is true (give a number)");
     CHECK(complaint(one + "actuator = \"peizo\"\n") ==
           "palm.toml:4:12: actuator is 'peizo' (did you mean 'piezo'?)");
@@ -217,9 +217,9 @@ TEST_CASE("wrong types and ranges are reported at the value")
             CHECK(parse_array(one + line).tactors[0].actuator == k);
     }
     CHECK(complaint("[[tactor]]\nx_mm = inf\ny_mm = 0\n") ==
-          "palm.toml:2:8: x_mm is inf (allowed: -1000000 to 1000000)");
+          "palm.toml:2:8: x_mm is inf (use -1000000 to 1000000)");
     CHECK(complaint("[[tactor]]\nx_mm = 1e7\ny_mm = 0\n") ==
-          "palm.toml:2:8: x_mm is 10000000 (allowed: -1000000 to 1000000)");
+          "palm.toml:2:8: x_mm is 10000000 (use -1000000 to 1000000)");
     CHECK(complaint("[[tactor]]\nx_mm = [1]\ny_mm = 0\n") == "palm.toml:2:8: x_mm is a list (give a number)");
     CHECK(complaint("[[tactor]]\nx_mm = 1979-05-27\ny_mm = 0\n") ==
           "palm.toml:2:8: x_mm is a date or time (give a number)");
@@ -237,7 +237,7 @@ TEST_CASE("an array file keeps the measured displacement, of all tactors or of o
     CHECK(a.tactors[1].displacement_um_at_0dbfs == 20.0);
     CHECK(parse_array(detail::array_text(a)).tactors[1].displacement_um_at_0dbfs == 20.0);
     CHECK(complaint(grid + "displacement_um_at_0dbfs = 0\n") ==
-          "palm.toml:3:28: displacement_um_at_0dbfs is 0 (allowed: more than 0, at most 10000)");
+          "palm.toml:3:28: displacement_um_at_0dbfs is 0 (use more than 0, at most 10000)");
 }
 
 TEST_CASE("an array says where on the body it is, and which way up")
@@ -259,16 +259,16 @@ TEST_CASE("an array says where on the body it is, and which way up")
     }
     CHECK_FALSE(a.place);
     CHECK(complaint(grid + "place = [1]\n") == "palm.toml:3:9: place is a list (give a list of 2 numbers)");
-    CHECK(complaint(grid + "body = 0\n") == "palm.toml:3:8: body is 0 (allowed: 1 to 3000)");
+    CHECK(complaint(grid + "body = 0\n") == "palm.toml:3:8: body is 0 (use 1 to 3000)");
     CHECK(parse_array(grid).site.empty());
     CHECK(detail::array_text(parse_array(grid)).find("site") == std::string::npos);
     CHECK(parse_array("[array]\npreset = \"palm-3x3\"\nsite = \"\u5de6\u624b\"\n").site ==
           "\xe5\xb7\xa6\xe6\x89\x8b");
     CHECK(parse_array(grid + "site = \"" + std::string(40, 'x') + "\"\n").site.size() == 40);
     CHECK(complaint(grid + "site = \"" + std::string(41, 'x') + "\"\n") ==
-          "palm.toml:3:8: site has 41 characters (1 to 40 characters, no control characters)");
+          "palm.toml:3:8: site has 41 characters (use 1 to 40 characters, no control characters)");
     CHECK(complaint(grid + "\n up = \"a\\nb\"\n") ==
-          "palm.toml:4:7: up has control characters (1 to 40 characters, no control characters)");
+          "palm.toml:4:7: up has control characters (use 1 to 40 characters, no control characters)");
     CHECK(complaint(grid + "up = \"\"\n") == "palm.toml:3:6: up is empty");
     CHECK(complaint(grid + "site = 3\n") == "palm.toml:3:8: site is 3 (give a string in quotes)");
     CHECK(complaint(grid + "sites = \"x\"\n") ==
@@ -279,11 +279,11 @@ TEST_CASE("impossible grids are refused")
 {
     const auto of = [](const std::string& g) { return complaint("[array]\ngrid = " + g + "\n"); };
     CHECK(of("{ rows = 3, columns = 3 }") == "palm.toml:2:8: grid has no pitch_mm (add pitch_mm = ...)");
-    CHECK(of("{ rows = 0, columns = 3, pitch_mm = 2 }") == "palm.toml:2:17: rows is 0 (allowed: 1 to 1024)");
+    CHECK(of("{ rows = 0, columns = 3, pitch_mm = 2 }") == "palm.toml:2:17: rows is 0 (use 1 to 1024)");
     CHECK(of("{ rows = 1024, columns = 2, pitch_mm = 2 }") ==
-          "palm.toml:2:8: grid: 1024 rows x 2 columns (1 to 1024 tactors)");
+          "palm.toml:2:8: grid: it has 1024 rows x 2 columns (give 1 to 1024 tactors)");
     CHECK(of("{ rows = 3, columns = 3, pitch_mm = 0 }") ==
-          "palm.toml:2:44: pitch_mm is 0 (allowed: more than 0, at most 1000000)");
+          "palm.toml:2:44: pitch_mm is 0 (use more than 0, at most 1000000)");
     CHECK(
         of("{ rows = 3, columns = 3, pitch_mm = [1, nan] }").starts_with("palm.toml:2:48: pitch_mm is nan"));
     CHECK(of("{ rows = 3, columns = 3, pitch_mm = [1] }") ==
@@ -293,7 +293,7 @@ TEST_CASE("impossible grids are refused")
     CHECK(of("{ rows = 1, columns = 3, pitch_mm = 1e6 }")
               .starts_with("palm.toml:2:8: tactor 2 is at (2000000, 0) mm"));
     // Pitch so small that tactors coincide.
-    has(of("{ rows = 1, columns = 3, pitch_mm = 1e-7 }"), "the place of tactor 0");
+    has(of("{ rows = 1, columns = 3, pitch_mm = 1e-7 }"), "like tactor 0");
     CHECK(of("{ rows = 32, columns = 32, pitch_mm = 1 }").empty());
 }
 
@@ -307,23 +307,22 @@ TEST_CASE("an array comes from one source")
           "palm.toml:3:1: tactors inside [array] (write [[tactor]], at the top level of the file)");
     CHECK(complaint("[array]\nname = \"\"\n").starts_with("palm.toml:1:1"));
     CHECK(complaint("[stroke]\nduration_s = 1\n") ==
-          "palm.toml:1:1: this is a stroke file, not an array or configuration (name it as the STROKE)");
-    CHECK(
-        complaint("t_s,x_mm,y_mm\n0,1,2\n") ==
-        "palm.toml:1:1: is a table (CSV) (arrays and configurations are TOML; points, drawings and plans are "
-        "strokes)");
+          "palm.toml:1:1: this is a stroke file, not an array or configuration (give it as the STROKE)");
+    CHECK(complaint("t_s,x_mm,y_mm\n0,1,2\n") ==
+          "palm.toml:1:1: it is a table (CSV) (use TOML for an array or a configuration; give points, "
+          "drawings and plans as the STROKE)");
 }
 
 TEST_CASE("two tactors on one place or channel are refused with both lines")
 {
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 1\ny_mm = 0\nchannel = 0\n") ==
-          "palm.toml:4:1: tactor 1 is on channel 0, that of tactor 0 (palm.toml:1:1) (give each tactor its "
+          "palm.toml:4:1: tactor 1 is on channel 0, like tactor 0 (palm.toml:1:1) (give each tactor its "
           "own channel)");
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 5e-7\ny_mm = 0\n") ==
-          "palm.toml:4:1: tactor 1 is at (5e-07, 0) mm, the place of tactor 0 (palm.toml:1:1) (give each "
+          "palm.toml:4:1: tactor 1 is at (5e-07, 0) mm, like tactor 0 (palm.toml:1:1) (give each "
           "tactor its own place)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 4\nchannel = 0\n") ==
-          "palm.toml:3:1: tactor 4 is on channel 0, that of tactor 0 (palm.toml:2:8) (give each tactor its "
+          "palm.toml:3:1: tactor 4 is on channel 0, like tactor 0 (palm.toml:2:8) (give each tactor its "
           "own channel)");
 }
 
@@ -334,7 +333,7 @@ TEST_CASE("1024 tactors in a list are read, one more is refused")
         text += fmt::format("[[tactor]]\nx_mm = {}\ny_mm = {}\n", i % 128, i / 128);
     CHECK(parse_array(text).tactors.size() == 1024);
     CHECK(complaint(text + "[[tactor]]\nx_mm = -1\ny_mm = 0\n") ==
-          "palm.toml:3073:1: more than 1024 tactors");
+          "palm.toml:3073:1: the array has more than 1024 tactors");
 }
 
 TEST_CASE("an unreadable file is named with the reason")
@@ -342,7 +341,7 @@ TEST_CASE("an unreadable file is named with the reason")
     const folder f;
     const std::string missing = (f / "none.toml").string();
     CHECK(file_complaint(missing) == missing + ": No such file or directory (check the name)");
-    CHECK(file_complaint(f / "") == (f / "").string() + ": is a folder (name a file in it)");
+    CHECK(file_complaint(f / "") == (f / "").string() + ": it is a folder (name a file in it)");
     CHECK(file_complaint(f.write("file", "") / "below").find("Not a directory") != std::string::npos);
 }
 
@@ -375,8 +374,10 @@ TEST_CASE("a file of more than 16 MB is refused, an endless one too")
     if (test::whole())
         CHECK(file_complaint(f.write("full.toml", full)).empty());
     const fs::path more = f.write("more.toml", "#" + std::string(std::size_t{16} << 20, ' '));
-    CHECK(file_complaint(more) == more.string() + ": longer than 16 MB (check that it is the right file)");
-    CHECK(file_complaint("/dev/zero") == "/dev/zero: longer than 16 MB (check that it is the right file)");
+    CHECK(file_complaint(more) ==
+          more.string() + ": it is longer than 16 MB (check that it is the right file)");
+    CHECK(file_complaint("/dev/zero") ==
+          "/dev/zero: it is longer than 16 MB (check that it is the right file)");
 }
 
 TEST_CASE("an array from another file, relative to the file that names it")
@@ -425,10 +426,9 @@ TEST_CASE("the channel count of one file is checked against the map of another")
     const folder f;
     f.write("arm.toml", arm);
     const fs::path c = f.write("c.toml", "[array]\nfile = \"arm.toml\"\n[output]\nchannels = 3\n");
-    CHECK(file_complaint(c) ==
-          fmt::format("{}:4:12: channels is 3, but tactor 3 ({}:3:8) is on channel 3 (the "
-                      "array needs 4 channels; they count from 0)",
-                      c.string(), (f / "arm.toml").string()));
+    CHECK(file_complaint(c) == fmt::format("{}:4:12: channels is 3, but tactor 3 ({}:3:8) is on channel 3 "
+                                           "(use 4 channels or more: they count from 0)",
+                                           c.string(), (f / "arm.toml").string()));
 }
 
 TEST_CASE("included files that are missing, wrong or without an array are refused")
@@ -452,7 +452,7 @@ TEST_CASE("a chain of files has a limit")
     f.write("100.toml", arm);
     CHECK(file_complaint(f / "0.toml") ==
           (f / "15.toml").string() +
-              ":2:8: a chain of too many files (use at most 16, and no file that names itself)");
+              ":2:8: the chain of files is too long (use at most 16, and no file that names itself)");
     CHECK(file_complaint(f / "85.toml").empty());
     has(file_complaint(f.write("own.toml", "[array]\nfile = \"own.toml\"\n")), "no file that names itself");
 }

@@ -109,14 +109,14 @@ TEST_CASE("the last of lines with equal times counts, and the stroke has a note"
     CHECK(s.motion.position(0.5) == point{2.0, 1.0});
     CHECK(s.motion.intensity(1.0) == 0.0);
     REQUIRE(s.warnings.size() == 1);
-    CHECK(s.warnings[0] == "dir/finger.csv:3: has the same time as the previous line, and so do 3 lines in "
-                           "all; the last of equal times counts");
+    CHECK(s.warnings[0] == "dir/finger.csv:3: it has the same time as the previous line, and so do 3 lines "
+                           "in all; only the last of equal times counts");
 
     const stroke last = recorded(head + "0,0,0,1\n1,4,4,1\n1,8,0,1\n");
     CHECK(last.motion.position(1.0) == point{8.0, 0.0});
     REQUIRE(last.warnings.size() == 1);
     CHECK(last.warnings[0] ==
-          "dir/finger.csv:4: has the same time as the previous line, which does not count");
+          "dir/finger.csv:4: it has the same time as the previous line; only the last counts");
 
     CHECK(recorded(head + "0,0,0,1\n1,1,1,1\n").warnings.empty());
 }
@@ -124,10 +124,10 @@ TEST_CASE("the last of lines with equal times counts, and the stroke has a note"
 TEST_CASE("faults of a CSV file are named by line and column")
 {
     const refused_text samples[] = {
-        {"", "f.csv: is empty"},
-        {"# only this\n\n", "f.csv:2: is empty"},
-        {"t_s,x_mm,y_mm\n", "f.csv:1: 0 of at least 2 points"},
-        {"t_s,x_mm,y_mm\n0,0,0\n", "f.csv:2: 1 of at least 2 points"},
+        {"", "f.csv: it is empty"},
+        {"# only this\n\n", "f.csv:2: it is empty"},
+        {"t_s,x_mm,y_mm\n", "f.csv:1: a stroke needs at least 2 points, not 0"},
+        {"t_s,x_mm,y_mm\n0,0,0\n", "f.csv:2: a stroke needs at least 2 points, not 1"},
         {"t_s,x_mm,z_mm\n", "f.csv:1:10: unknown column 'z_mm' (did you mean '"},
         {"t_s,x_mm,y_mm,intensty\n", "f.csv:1:15: unknown column 'intensty' (did you mean 'intensity'?)"},
         {"t_s,x_mm,y_mm,pupil\n0,0,0\n", "f.csv:2:5: 3 values, but the header names 4 columns"},
@@ -150,30 +150,33 @@ TEST_CASE("faults of a CSV file are named by line and column")
         {"t_s,x_mm,y_mm\n0,0,0\n0,5,1,1\n", "f.csv:3:5: 4 values, but the header names 3 columns"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,,1\n", "f.csv:3:3: x_mm is missing (give a number, or nan for none)"},
         {"t_s,x_mm,y_mm\n0,0,0\n1, 1a,1\n", "f.csv:3:4: x_mm is not a number: '1a'"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3: 1 of at least 2 points"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3: a stroke needs at least 2 points, not 1"},
         {"t_s,x_mm,y_mm\n0,0,0\nnan,1,1\n", "f.csv:3:1: t_s is not a number: 'nan'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,inf\n", "f.csv:3:5: y_mm is not a number: 'inf'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -inf"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (give -1e+06 to 1e+06)"},
         {"t_s,x_mm,y_mm\n0,0,0\n86401,1,0\n",
-         "f.csv:3:1: time 86401 s is 86401 s after the first line (a stroke lasts at most 86400 s)"},
+         "f.csv:3:1: time 86401 s is 86401 s after the first line (use at most 86400 s)"},
         {"t_s,x_mm,y_mm\n1000000,0,0\n1086400.5,1,0\n",
          "f.csv:3:1: time 1086400.5 s is 86400.5 s after the first line"},
         {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 100000000000 (give -1e+10 to 1e+10)"},
-        {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is before -1 s"},
+        {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is before that of the previous line, -1 s"},
         {"t_s,x_mm,y_mm\n1e10,0,0\n10000000000.0000001,1,0\n",
-         "f.csv:3: 1 of at least 2 points with different times"},
+         "f.csv:3: a stroke needs at least 2 points with different times, not 1"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,0\n# x\n0.5,2,0\n",
-         "f.csv:5:1: time 0.5 s is before 1 s of the previous line (times ascend)"},
-        {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,2,0\n2,1.5,0\n", "f.csv:5:3: time 1.5 s is before 2 s"},
-        {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n", "f.csv:4: 1 of at least 2 points with different times"},
-        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n", "f.csv:3:7: intensity -0.5 (give 0 or more)"},
+         "f.csv:5:1: time 0.5 s is before that of the previous line, 1 s (put times in ascending order)"},
+        {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,2,0\n2,1.5,0\n",
+         "f.csv:5:3: time 1.5 s is before that of the previous line, 2 s"},
+        {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n",
+         "f.csv:4: a stroke needs at least 2 points with different times, not 1"},
+        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n",
+         "f.csv:3:7: intensity -0.5 is below 0 (give 0 or more)"},
         {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,255\n",
-         "f.csv:3:7: intensity 255 is above 1, which means the requested level (set the value that means 1: "
+         "f.csv:3:7: intensity 255 is above 1, the requested level (name the value that means 1: "
          "intensity_max = 100 for per cent, intensity_max = 127 for MIDI, intensity_max = 255 for 8 bits)"},
         {"t_ms,x_mm,y_mm\n", "f.csv:1:1: unknown column 't_ms' ('t_s' is in s, not ms: divide by 1000)"},
         {"t_s,x_cm,y_mm\n", "f.csv:1:5: unknown column 'x_cm' ('x_mm' is in mm, not cm: multiply by 10)"},
-        {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote does not end"},
+        {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote is not closed"},
         {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: there is text after a quote"},
     };
     check_messages(samples, refusal);
@@ -336,7 +339,7 @@ intensity = 0.5
 TEST_CASE("a stroke has one geometry and one time")
 {
     CHECK(complaint("duration_s = 1") ==
-          "w.toml:1:1: [stroke] does not say what it is (add one of: path, points, timed, arc, preset)");
+          "w.toml:1:1: [stroke] is incomplete (add one of: path, points, timed, arc, preset)");
     CHECK(complaint("path = \"M 0 0 H 1\"\npreset = \"park2016-1\"") ==
           "w.toml:3:10: [stroke] has both path and preset (keep one of them)");
     CHECK(complaint("path = \"M 0 0 H 1\"\nduration_s = 1\nspeed_mm_s = 1") ==
@@ -350,21 +353,21 @@ TEST_CASE("values out of range are reported at the value")
 {
     const std::string path = "path = \"M 0 0 H 1\"\n";
     CHECK(complaint(path + "duration_s = 0") ==
-          "w.toml:3:14: duration_s is 0 (allowed: more than 0, at most 86400)");
+          "w.toml:3:14: duration_s is 0 (use more than 0, at most 86400)");
     CHECK(complaint(path + "duration_s = nan").starts_with("w.toml:3:14: duration_s is nan"));
     CHECK(complaint(path + "speed_mm_s = -5").starts_with("w.toml:3:14: speed_mm_s is -5"));
     // A speed at which the stroke would take years.
     CHECK(complaint(path + "speed_mm_s = 1e-9").starts_with("w.toml:3:14: "));
-    CHECK(complaint(path + "intensity = 1.5") == "w.toml:3:13: intensity is 1.5 (allowed: 0 to 1)");
-    CHECK(complaint(path + "start_s = -1") == "w.toml:3:11: start_s is -1 (allowed: 0 to 86400)");
+    CHECK(complaint(path + "intensity = 1.5") == "w.toml:3:13: intensity is 1.5 (use 0 to 1)");
+    CHECK(complaint(path + "start_s = -1") == "w.toml:3:11: start_s is -1 (use 0 to 86400)");
     CHECK(complaint(path + "carrier_hz = 0").starts_with("w.toml:3:14: carrier_hz is 0"));
     CHECK(complaint(path + "texture = \"weave\"") ==
           "w.toml:3:11: texture is 'weave' (known values: cycle, time, length)");
-    CHECK(complaint(path + "texture_mm = 20") == "w.toml:3:14: [stroke] has texture_mm, which nothing uses "
+    CHECK(complaint(path + "texture_mm = 20") == "w.toml:3:14: [stroke] has texture_mm, but nothing uses it "
                                                  "(add waveform = \"FILE.wav\" and texture = \"length\")");
     for (const texture_kind k : all_values<texture_kind>())
         CHECK(complaint(path + fmt::format("texture = \"{}\"", to_string(k))) ==
-              "w.toml:3:11: [stroke] has texture, which nothing uses (add waveform = \"FILE.wav\")");
+              "w.toml:3:11: [stroke] has texture, but nothing uses it (add waveform = \"FILE.wav\")");
     CHECK(complaint(path + "name = 3") == "w.toml:3:8: name is 3 (give a string in quotes)");
     CHECK(complaint("path = 3") == "w.toml:2:8: path is 3 (give a string in quotes)");
 }
@@ -379,10 +382,10 @@ TEST_CASE("refusals of geometry have their line")
     CHECK(complaint("points = [[1, 1],\n[1, 2, 3]]") ==
           "w.toml:3:1: a point is a list (give a list of 2 numbers)");
     CHECK(complaint("points = [[1, 1],\n [1, inf]]") ==
-          "w.toml:3:6: a point is inf (allowed: -1000000 to 1000000)");
+          "w.toml:3:6: a point is inf (use -1000000 to 1000000)");
     CHECK(complaint("points = \"1 1\"") == "w.toml:2:10: points is '1 1' (give a list of [x, y])");
     CHECK(complaint("arc = { centre = [0, 0], radius_mm = 0, from_deg = 0, sweep_deg = 90 }") ==
-          "w.toml:2:38: radius_mm is 0 (allowed: more than 0, at most 1000000)");
+          "w.toml:2:38: radius_mm is 0 (use more than 0, at most 1000000)");
     CHECK(complaint("arc = { center = [0, 0], radius_mm = 1, from_deg = 0, sweep_deg = 90 }") ==
           "w.toml:2:9: unknown key 'center' in arc (did you mean 'centre'?)");
     CHECK(complaint("arc = { centre = [0, 0], radius_mm = 1, from_deg = 0 }") ==
@@ -403,17 +406,18 @@ TEST_CASE("timed points are a recording, as lines of a CSV file are")
     REQUIRE(s.warnings.size() == 2);
     CHECK(s.warnings[0] == "dir/wave.toml:4:1: no place (nan) in this point: the finger is lifted there");
     CHECK(s.warnings[1] ==
-          "dir/wave.toml:3:16: has the same time as the previous point, which does not count");
+          "dir/wave.toml:3:16: it has the same time as the previous point; only the last counts");
     CHECK(one("timed = [[0, 0, 0], [1, 1, 1]]\nintensity = 0.5", 255.0).motion.intensity(0.5) == 0.5);
 }
 
 TEST_CASE("timed points out of order are refused with the line of the point")
 {
     CHECK(complaint("timed = [\n[0, 0, 0],\n[1, 1, 1],\n[0.5, 2, 2]]") ==
-          "w.toml:5:2: time 0.5 s is before 1 s of the previous point (times ascend)");
+          "w.toml:5:2: time 0.5 s is before that of the previous point, 1 s (put times in ascending order)");
     CHECK(complaint("timed = [\n[0, 0]]") ==
           "w.toml:3:1: a timed point is a list (give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity])");
-    CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]").starts_with("w.toml:2:20: intensity -1 ("));
+    CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]")
+              .starts_with("w.toml:2:20: intensity -1 is below 0 ("));
     CHECK(complaint("timed = [[0, 0, 0, 1.5], [1, 1, 1]]")
               .starts_with("w.toml:2:20: intensity 1.5 is above 1"));
     CHECK(complaint("timed = [[0, 0, 0], [nan, 1, 1]]").starts_with("w.toml:2:22: t_s nan"));

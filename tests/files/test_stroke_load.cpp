@@ -145,13 +145,12 @@ TEST_CASE("what is no stroke file is named for what it is")
                            "ftypheic\0\0\0\0",
                            16);
     for (const char* name : {"a.csv", "a.svg", "a.toml", "a"})
-        CHECK(said(name, heic).find(": is a HEIC or AVIF picture, not text (strokes are TOML, CSV or SVG") ==
-              0);
-    CHECK(said("b.csv", std::string("\1\2\0\3\4,5", 7)).find(":1:1: is binary, not text (") == 0);
-    CHECK(said("c.svg", " \n").find(": is empty (") == 0);
-    CHECK(said("d.csv", svg).find(":1:1: is SVG, or other XML (") == 0);
-    CHECK(said("e.toml", csv).find(":1:1: is a table (CSV) (") == 0);
-    CHECK(said("f", "{\"plans\": []}").find(":1:1: is JSON (") == 0);
+        CHECK(said(name, heic).find(": it is a HEIC or AVIF picture, not text (use TOML, CSV or SVG") == 0);
+    CHECK(said("b.csv", std::string("\1\2\0\3\4,5", 7)).find(":1:1: it is binary, not text (") == 0);
+    CHECK(said("c.svg", " \n").find(": it is empty (") == 0);
+    CHECK(said("d.csv", svg).find(":1:1: it is SVG, or other XML (") == 0);
+    CHECK(said("e.toml", csv).find(":1:1: it is a table (CSV) (") == 0);
+    CHECK(said("f", "{\"plans\": []}").find(":1:1: it is JSON (") == 0);
 }
 
 TEST_CASE("numbers with units and decimal commas are named in TOML")
@@ -172,7 +171,7 @@ TEST_CASE("unreadable files are named")
 {
     const folder f;
     has(refusal(f.path() / "none.csv"), "none.csv: No such file or directory (check the name)");
-    CHECK(refusal(f.path()).find(f.path().string() + ": is a folder") == 0);
+    CHECK(refusal(f.path()).find(f.path().string() + ": it is a folder") == 0);
     if (::geteuid() != 0) {
         const auto secret = f.write("secret.csv", csv);
         std::filesystem::permissions(secret, std::filesystem::perms::none);
@@ -185,10 +184,10 @@ TEST_CASE("text of gigabytes is refused before it is read")
     const std::string_view long_text(csv.data(), std::size_t{1} << 32);
     CHECK(caught_message([&] {
               return tactor::parse_strokes_csv(long_text, "x");
-          }).find("x: longer than 512 MB") == 0);
+          }).find("x: it is longer than 512 MB") == 0);
     CHECK(caught_message([&] {
               return tactor::parse_strokes_svg(long_text, "x");
-          }).find("x: longer than 48 MB") == 0);
+          }).find("x: it is longer than 48 MB") == 0);
 }
 
 TEST_CASE("keys place a stroke in order: mirror, scale, turn, move")

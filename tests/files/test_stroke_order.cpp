@@ -242,7 +242,7 @@ TEST_CASE("their faults have their place")
     std::string deep = "points = [[0, 0], [1, 0]]";
     for (int i = 0; i < 9; ++i)
         deep = "stroke = [{ " + deep + " }]";
-    has(complaint(one + deep), "groups in groups too deep");
+    has(complaint(one + deep), "groups are nested too deep");
 }
 
 } // namespace stroke_order_test

@@ -281,8 +281,8 @@ TEST_CASE("rules and styles that do not end, end")
 TEST_CASE("faults of an SVG file are named by line and column")
 {
     const refused_text samples[] = {
-        {"", "a.svg: is empty (strokes are TOML, CSV or SVG"},
-        {"t_s,x_mm,y_mm\n0,1,2\n", "a.svg:1:1: is a table (CSV)"},
+        {"", "a.svg: it is empty (use TOML, CSV or SVG"},
+        {"t_s,x_mm,y_mm\n0,1,2\n", "a.svg:1:1: it is a table (CSV)"},
         {"<svg>", "a.svg:1:5: Start-end tags mismatch"},
         {"<svg>\n <g></svg>", "a.svg:2:"},
         {"<html/>", "a.svg:1:2: <html> is not <svg>"},
@@ -294,23 +294,24 @@ TEST_CASE("faults of an SVG file are named by line and column")
          "a.svg:1:7: <g> 'layer' is hidden, and "},
         {"<svg style='display:none'><line x2='3'/></svg>", "a.svg:1:2: <svg> is hidden, and "},
         {"<svg>\n<path id='p' d='M 0 0\n L 1 x'/></svg>",
-         "a.svg:3:6: d of <path> 'p': 'x' instead of a number for L"},
-        {"<svg>\n<path d='L 1 1'/></svg>", "a.svg:2:10: d of <path>: 'L' at the start of a path"},
+         "a.svg:3:6: d of <path> 'p': a number of L is missing before 'x'"},
+        {"<svg>\n<path d='L 1 1'/></svg>", "a.svg:2:10: d of <path>: 'L' cannot start a path"},
         {"<svg>\n<path id='dot' d='M 1 1 L 1 1'/></svg>",
-         "a.svg:2:2: <path> 'dot': has no length (data-duration-s makes it a tap)"},
+         "a.svg:2:2: <path> 'dot': it has no length (add data-duration-s to make it a tap)"},
         {"<svg>\n<line x2='3zz'/></svg>", "a.svg:2:12: x2 of <line>: unit 'zz' is unknown"},
         {"<svg><line x2='nan'/></svg>", "a.svg:1:16: x2 of <line>: 'nan' is not a number"},
         {"<svg><line x2=''/></svg>", "a.svg:1:"},
         {"<svg><line x2='1e300'/></svg>", "a.svg:1:16: x2 of <line>: 1e+300 is beyond 1e+09"},
-        {"<svg><line x2='2e6'/></svg>", "a.svg:1:7: <line>: goes to 2e+06 mm"},
-        {"<svg><polyline points='0 0 1'/></svg>", "a.svg:1:29: points of <polyline>: an x without a y"},
-        {"<svg><polyline points='0 0,1 1,'/></svg>", "a.svg:1:32: points of <polyline>: ends with a comma"},
+        {"<svg><line x2='2e6'/></svg>", "a.svg:1:7: <line>: it goes to 2e+06 mm"},
+        {"<svg><polyline points='0 0 1'/></svg>", "a.svg:1:29: points of <polyline>: an x has no y"},
+        {"<svg><polyline points='0 0,1 1,'/></svg>",
+         "a.svg:1:32: points of <polyline>: it ends with a comma"},
         {"<svg><rect width='-1' height='2'/></svg>", "a.svg:1:7: width of <rect>: -1 is less than 0"},
         {"<svg><circle r='-1'/></svg>", "a.svg:1:7: r of <circle>: -1 is less than 0"},
         {"<svg><line x2='1' transform='scale(0)'/></svg>", "a.svg:1:7: <line> is flattened by its transform"},
         {"<svg><line x2='1' transform='matrix(1 1 1 1 0 0)'/></svg>", "a.svg:1:7: <line> is flattened"},
-        {"<svg viewBox='0 0 1'><line x2='1'/></svg>", "a.svg:1:15: viewBox of <svg>: 3 of 4 numbers"},
-        {"<svg viewBox='0 0 0 1'><line x2='1'/></svg>", "a.svg:1:15: viewBox of <svg>: has no size"},
+        {"<svg viewBox='0 0 1'><line x2='1'/></svg>", "a.svg:1:15: viewBox of <svg>: it has 3 of 4 numbers"},
+        {"<svg viewBox='0 0 0 1'><line x2='1'/></svg>", "a.svg:1:15: viewBox of <svg>: it has no size"},
         {"<svg width='0mm' viewBox='0 0 1 1'><line x2='1'/></svg>", "a.svg:1:2: <svg> has no size"},
         {"<svg><line x2='1' data-duration-s='0'/></svg>", "a.svg:1:36: data-duration-s of <line>: 0 ("},
         {"<svg><line x2='1' data-duration-s='1' data-speed-mm-s='1'/></svg>",
@@ -350,7 +351,7 @@ TEST_CASE("entities are not expanded, and nothing outside is read")
 {
     const std::string doctype =
         "<!DOCTYPE svg [<!ENTITY d 'M 0 0 H 5'><!ENTITY f SYSTEM 'file:///etc/hostname'>]>";
-    CHECK(refusal(doctype + "<svg><path d='&d;'/></svg>").find("'&' at the start of a path") !=
+    CHECK(refusal(doctype + "<svg><path d='&d;'/></svg>").find("'&' cannot start a path") !=
           std::string::npos);
     CHECK(refusal(doctype + "<svg><text>&f;</text></svg>").find("no shape") != std::string::npos);
 }

@@ -8,8 +8,8 @@ const fault = (what, why, hint = "", more = {}) => ({message: `${what}: ${why}`,
 
 test("a fault names options as the page does, and no parameter of the protocol", () => {
   for (const [e, text] of [
-    [fault("options.level_dbfs", "-12 dBFS are more than the owner allows, -20 dBFS", "use a lower level"),
-      "Level: -12 dBFS are more than the owner allows, -20 dBFS (use a lower level)."],
+    [fault("options.level_dbfs", "-12 dBFS is above the owner's limit of -20 dBFS", "use a lower level"),
+      "Level: -12 dBFS is above the owner's limit of -20 dBFS (use a lower level)."],
     [fault("options.soa", "it is too short", "options.burst 0.05, or options.timing fit"), "Interval, onset to onset (SOA): it is too short (“Burst” 0.05, or “Interval” fit)."],
     [fault("toml", "the strokes are too strong together"), "The strokes are too strong together."],
     [fault("max_stroke_s", "it lasts 700 s, but a stroke may last at most 600 s", "draw less, or faster"), "It lasts 700 s, but a stroke may last at most 600 s (draw less, or faster)."],

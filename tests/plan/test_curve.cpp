@@ -380,7 +380,7 @@ TEST_CASE("a carrier profile ascends along the path and holds carriers")
 {
     stroke s = moving(eased);
     s.sound.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
-    has(refusal(palm, s, {}), "carrier_profile: the part 0.5 is out of order or range");
+    has(refusal(palm, s, {}), "carrier_profile: part 0.5 is out of order or range");
     s.sound.carrier_profile = {{0.5, 0.5}};
     has(refusal(palm, s, {}), "not a carrier");
 }

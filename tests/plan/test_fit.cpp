@@ -158,7 +158,8 @@ TEST_CASE("strokes without extent, or with one only, are fitted")
     CHECK(distance_mm(r.strokes[0].motion.position(0.5), {30, 10}) < 1e-9);
     const layout one(make_array({{3, 4}}));
     CHECK(distance_mm(fit_strokes({resting}, one).strokes[0].motion.position(0.5), {3, 4}) < 1e-9);
-    CHECK(complaint({along("M 0 0 L 1 1", 1.0)}, one).starts_with("stroke: does not fit on a single tactor"));
+    CHECK(complaint({along("M 0 0 L 1 1", 1.0)}, one)
+              .starts_with("stroke: it does not fit on a single tactor"));
     CHECK(complaint({resting}, one, 1.0).starts_with("margin_mm: 1 mm on each side"));
 
     CHECK(fit_strokes({along("M 5 5 H 6", 1.0)}, low).placed.scale == doctest::Approx(60.0));
@@ -182,12 +183,12 @@ TEST_CASE("an array in one row takes strokes along it")
     CHECK(refusal(row, r.strokes[0], {}).empty());
     CHECK(refusal(row, r.strokes[0], strictly(algorithm_kind::continuous)).empty());
     CHECK(complaint({along("M 0 0 V 9", 1.0)}, l)
-              .starts_with("stroke: only goes across the line in which all"));
+              .starts_with("stroke: it only goes across the line of tactors"));
     stroke across = along("M 3 0 V 9", 1.0);
-    CHECK(complaint({circle, across}, l).starts_with("stroke 1: only goes across the line in which all"));
+    CHECK(complaint({circle, across}, l).starts_with("stroke 1: it only goes across the line of tactors"));
     across.name = "left";
     CHECK(complaint({circle, across}, l)
-              .starts_with("stroke \"left\": only goes across the line in which all"));
+              .starts_with("stroke \"left\": it only goes across the line of tactors"));
     CHECK(complaint({circle, along("M 3 0 L 3.1 9", 1.0)}, l).empty());
     CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(use less than 60 mm)") != std::string::npos);
 
@@ -233,7 +234,7 @@ TEST_CASE("any fitted picture is accepted with outside = error, and no larger on
             drawn.push_back(along(drawing(g), 1.4));
         CAPTURE(k);
         if (a.tactors.size() == 1) {
-            CHECK(complaint(drawn, l).starts_with("stroke: does not fit on a single tactor"));
+            CHECK(complaint(drawn, l).starts_with("stroke: it does not fit on a single tactor"));
             continue;
         }
         const fitted_strokes r = fit_strokes(drawn, l);

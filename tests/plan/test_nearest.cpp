@@ -195,7 +195,7 @@ TEST_CASE("on a 20 x 40 mm grid the three closest are in one line in 44 % of pla
     CHECK(
         has(p.warnings[0], "of 15 bursts lie outside the triangle of the three closest tactors, first at ("));
     has(p.warnings[0], "for " + std::to_string(lines) + " of them the three are in one line");
-    has(p.warnings[0], "(faces = delaunay)");
+    has(p.warnings[0], "(use faces = delaunay)");
 
     o.algorithm = algorithm_kind::continuous;
     const plan c = make_plan(a, l, s, o);

@@ -183,7 +183,7 @@ def test_a_service_that_ends_wakes_waiting_calls(tmp_path, endless):
         stroke = c.play(endless, algorithm="continuous")
         c.status().wait(LONG)
         server.kill()
-        with pytest.raises(tactor.StreamError, match="has gone"):
+        with pytest.raises(tactor.StreamError, match="has ended"):
             stroke.wait(LONG)
     refused(lambda: c.play(endless), tactor.StreamError)
     assert c.closed and "closed" in repr(c)

@@ -64,9 +64,9 @@ def test_they_are_pickled(kind):
 
 
 @pytest.mark.parametrize("call,hint", [
-    (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1)), 'fit=True scales it to the array, outside="clamp" plays'),
-    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'Array.preset("palm-2x4") is its array, fit=True'),
-    (lambda a, out: tactor.plan(a, tactor.Stroke.along(tactor.Path.svg("M 5 7 H 20"), duration=1), algorithm="tactile-brush"), "snap=True moves it there"),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1)), 'use fit=True to scale it to the array, or outside="clamp" to play'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'use Array.preset("palm-2x4"), its array, or fit=True'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(tactor.Path.svg("M 5 7 H 20"), duration=1), algorithm="tactile-brush"), "use snap=True to move it there"),
     (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1), faces="nearest", phantom="log"), 'use faces="delaunay" or phantom="inverse-distance"'),
 ])
 def test_hints_name_keyword_arguments(palm, call, hint):
@@ -105,7 +105,7 @@ def test_no_words_of_the_tool_appear(palm, stroke):
     assert "name a file" not in refused(lambda: tactor.Array.preset("palm")).hint
     assert refused(lambda: tactor.Player("null", palm, config=os.devnull, sample_format="x")).what == "sample_format"
     assert refused(lambda: tactor.Score(palm, tactor.plan(palm, stroke)).write("x.wav", "x")).what == "sample_format"
-    with pytest.raises(TypeError, match="an Array is wanted"):
+    with pytest.raises(TypeError, match="it must be an Array"):
         tactor.plan(stroke, stroke)
 
 

@@ -81,7 +81,7 @@ def test_a_file_that_somebody_wrote_or_changed_is_replaced_by_force_only(tmp_pat
             write_other(file)
             write(file)
         else:
-            assert "another content" in refused(lambda: write_other(file)).why
+            assert "other content" in refused(lambda: write_other(file)).why
         for changed in (b"x" + ours, ours + b"\n", b"a year of work"):
             file.write_bytes(changed)
             assert "force=True" in refused(lambda: write(file)).hint

@@ -83,7 +83,7 @@ def test_a_player_takes_an_array(palm, tmp_path):
         assert player.play(x).state == "finished"
         assert player.play(tactor.Score.from_samples(palm, x, level_dbfs=-6)).frames == 4800
         assert "9 channels" not in str(refused(lambda: player.submit(x[:, :8])))
-        assert "it has 8 channels, and the stream 9" in str(refused(lambda: player.submit(x[:, :8])))
+        assert "it has 8 channels, but the stream has 9" in str(refused(lambda: player.submit(x[:, :8])))
         assert "dB above the level of -12 dBFS" in str(refused(lambda: player.submit(x.astype("float32"))))
         assert "44100 Hz" in str(refused(lambda: player.submit(tactor.Score.from_samples(palm, x, 44100))))
         refused(lambda: player.submit([[0.0] * 9]), TypeError)

@@ -406,7 +406,7 @@ def test_a_card_of_fixed_channels_takes_the_array_or_names_one_that_fits(tmp_pat
     code, said, _ = run(FIXED, ALSA_CONFIG_PATH=str(tmp_path / "asound.conf"))
     out = said.splitlines()
     assert code == 0 and out[:2] == ["9 16 finished", "16 16 finished"]
-    assert out[2].startswith('DeviceError PCM "sixteen" cannot play 9 channels')
+    assert out[2].startswith('DeviceError PCM "sixteen" it cannot play 9 channels')
     assert out[3] == "InputError channels palm-3x3 needs 9 channels"
     assert "the array palm-2x4 fits" in out[4]
 

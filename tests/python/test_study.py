@@ -87,7 +87,7 @@ def test_what_is_refused_says_where_in_words_of_python(call, study):
     for codes in ({"participants": "99"}, {"exclude": ["99"]}, {"participants": []}):
         e = refused(lambda: call(study, **codes))
         assert [e.what] == [e.field] == list(codes) and "--" not in str(e)
-    with pytest.raises(TypeError, match="participants: a str is wanted, not int"):
+    with pytest.raises(TypeError, match="participants: it must be a str, not int"):
         call(study, participants=[7])
     session = study / "sourcedata/sub-02/session.json"
     told = session.read_text()

@@ -255,7 +255,8 @@ TEST_CASE("faults are reported with the address and the number")
     rig.say(me, "/tactor/play", {3_i, "circel"s});
     CHECK(has(rig.next(me), "/tactor/error /tactor/play stroke 3: stroke: "));
     rig.say(me, "/tactor/play", {drawing, "level_dbfs=0"s});
-    CHECK(has(rig.next(me), "/tactor/error /tactor/play options.level_dbfs: 0 dBFS is more than"));
+    CHECK(has(rig.next(me),
+              "/tactor/error /tactor/play options.level_dbfs: 0 dBFS is above the owner's limit of"));
     rig.say(me, "/tactor/begin", {3_i, "algorithm=brush"s});
     CHECK(has(rig.next(me), "/tactor/error /tactor/begin stroke 3: options.algorithm: "));
     rig.say(me, "/tactor/drive", {9_i, 1.0});

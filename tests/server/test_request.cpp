@@ -214,7 +214,7 @@ TEST_CASE("parameters of a view that are refused name themselves")
     CHECK(fault({{"observer", "centroid"}}).what == "observer");
     CHECK(fault({{"view", "bursts"}, {"observer", "centroid"}}).what == "observer");
     CHECK(fault({{"view", "percept"}, {"observer", "me"}}).what == "observer");
-    CHECK(fault({{"view", "percept"}, {"observer", "me"}}).hint == "one of centroid, low-speed");
+    CHECK(fault({{"view", "percept"}, {"observer", "me"}}).hint == "use one of centroid, low-speed");
     CHECK(fault({{"view", "percept"}, {"options", {{"sigma_mm", 3}}}}).what == "options.sigma_mm");
     CHECK(fault({{"options", {{"sigma_mm", 9}}}}).what == "options.sigma_mm"); // which nothing uses
 }
@@ -265,8 +265,8 @@ TEST_CASE("a hint names what a request can say")
           "give it as an array or a configuration of the server");
     const json outside{{"path", "M 0 0 L 400 0"}, {"options", {{"algorithm", "continuous"}}}};
     CHECK(plan_fault(outside).hint.find("options.outside") != std::string::npos);
-    CHECK(plan_fault({{"stroke", "wave-2x4"}}).hint == "palm-2x4 is its array, options.outside clamp plays "
-                                                       "the nearest point of the array");
+    CHECK(plan_fault({{"stroke", "wave-2x4"}}).hint ==
+          "use palm-2x4, its array, or options.outside clamp to play the nearest point of the array");
 }
 
 TEST_CASE("faces are those that are asked for, and go with inverse-distance alone")

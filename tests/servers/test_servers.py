@@ -216,7 +216,7 @@ class ThroughPipeWire(ServerTest):
     def test_check_reports_it(self):
         out = " ".join(self.ok("check", "-D", "pipewire").stdout.split())
         self.assertRegex(out, r"warning device pipewire: 9 channels.*PipeWire is between player and device: it may mix, resample and hide xruns "
-                              r"-> -D hw:CARD=NAME plays on the card itself")
+                              r"-> use -D hw:CARD=NAME to play on the card itself")
 
 
 class ThroughJack(ServerTest):

@@ -14,7 +14,7 @@ using tactor::session::wrapped;
 TEST_CASE("a paragraph breaks at words and keeps them all")
 {
     const std::string text =
-        "tactor: warning: no real-time priority: xruns are likelier (join the group audio)\n";
+        "tactor: warning: no real-time priority: xruns are more likely (join the group audio)\n";
     for (std::size_t width = 10; width < 100; ++width) {
         const std::string lines = wrap_lines(text, width);
         std::istringstream words(lines);

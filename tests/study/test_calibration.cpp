@@ -142,7 +142,7 @@ TEST_CASE("without answers a session begins anew, even with other options")
     has(again.tables, "carrier_hz = 100\n");
     has(f.bytes("a.json"), "\"carrier_hz\": 100.0");
     f.write("b.json", "{\"mine\": 1}");
-    has(refusal(f / "b.tsv", false), "b.json: it does not say how");
+    has(refusal(f / "b.tsv", false), "b.json: it lacks the settings");
     CHECK(f.bytes("b.json") == "{\"mine\": 1}");
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("a log of another session is refused with the line")
     other.carrier_hz = 200.0;
     has(refusal(f / "a.tsv", true, other), "began with carrier_hz 250.0, but now it is 200.0");
     f.write("a.json", "[]");
-    has(refusal(f / "a.tsv", true), "does not say how");
+    has(refusal(f / "a.tsv", true), "it lacks the settings");
     fs::remove(f / "a.json");
     has(refusal(f / "a.tsv", true), "a.json: it is missing");
     fs::create_directory(f / "d.tsv");

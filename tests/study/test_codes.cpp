@@ -345,27 +345,25 @@ TEST_CASE("nothing but a terminal is opened as a serial port")
     };
     for (const std::string& path :
          {std::string("/dev/null"), std::string("/dev/zero"), fifo, file, std::string("/dev")})
-        CHECK(why(path) ==
-              "a.toml:3: serial: " + path +
-                  ": it is not a serial port (list the ports by ls /dev/serial/by-id /dev/ttyS*)");
+        CHECK(why(path) == "a.toml:3: serial: " + path +
+                               ": it is not a serial port (list the ports: ls /dev/serial/by-id /dev/ttyS*)");
     CHECK(files.bytes("file") == "as it was");
-    CHECK(why("/dev/ttyNONE") ==
-          "another kind: a.toml:3: serial: /dev/ttyNONE: No such file or directory (list the "
-          "ports by ls /dev/serial/by-id /dev/ttyS*)");
+    CHECK(why("/dev/ttyNONE") == "another kind: a.toml:3: serial: /dev/ttyNONE: No such file or directory "
+                                 "(list the ports: ls /dev/serial/by-id /dev/ttyS*)");
 }
 
 TEST_CASE("codes that cannot be sent are refused by name before the session")
 {
     CHECK(refusal("stimulus = 41", "stimulus = 255") ==
-          "array.toml:6:8: code: there are 7 events, up to number 261 (void), but 255 is the largest "
+          "array.toml:6:8: code: 7 events need numbers up to 261 (void), but 255 is the largest "
           "(combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5]") ==
-          "array.toml:6:8: code: there are 7 events, up to number 47 (void), but 31 is the largest (use more "
+          "array.toml:6:8: code: 7 events need numbers up to 47 (void), but 31 is the largest (use more "
           "lines, or combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(
         refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5, 6], pulse_ms = 250") ==
-        "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after the stimulus "
-        "of motion \"east\" with method \"a\" begins (use a shorter pulse_ms, or longer stimuli)");
+        "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after a stimulus "
+        "begins: motion \"east\" with method \"a\" (use a shorter pulse_ms, or longer stimuli)");
     CHECK(refusal("channel = 8, bit_ms = 1.5", "serial = \"/dev/ttyS0\", pulse_ms = 250")
               .starts_with(
                   "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after"));
@@ -395,7 +393,8 @@ TEST_CASE("a session goes on with the stimuli that its table names, the second o
         study::trial_row other = row;
         std::swap((other.*plan).front(), (other.*plan).back());
         REQUIRE(other.*plan != row.*plan);
-        CHECK(caught_message([&] { study::replay(c.p, run, {other}); }).find("run r: line 2: trial 1") == 0);
+        CHECK(caught_message([&] { study::replay(c.p, run, {other}); }).find("run \"r\": line 2: trial 1") ==
+              0);
     }
 }
 

@@ -304,7 +304,8 @@ TEST_CASE("faults have their line")
              bad_method{"intensity_max = 2", "e.toml:8:", "[[method]] has no file"},
          })
         says(head + motion + "[[method]]\nname = \"a\"\n" + m.keys + "\n" + run, m.where, m.what);
-    says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml", "r has one method to choose from");
+    says(head + motion + "[[method]]\nname = \"a\"\n" + run, "e.toml",
+         "run \"r\" has one method to choose from");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"guess\"\ntrials = 4\n",
          "e.toml:14:", "guess");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
@@ -337,12 +338,12 @@ TEST_CASE("faults have their line")
     says(head + "order = \"latn\"\n" + motion + methods + run, "e.toml:3:", "did you mean 'latin'");
     says(head + motion + methods + run + "blocks = \"motion\"\n", "e.toml:17:", "did you mean 'motions'");
     says(head + motion + methods + run + "blocks = \"methods\"\n",
-         "e.toml:17:", "r has two methods in each trial");
+         "e.toml:17:", "run \"r\" has two methods in each trial");
     const std::string with_group = head + motion + methods + run + group;
-    says(with_group + "runs = [\"s\"]\n", "e.toml:19:", "runs has an undefined name (one of r)");
+    says(with_group + "runs = [\"s\"]\n", "e.toml:19:", "runs has an undefined name (use one of r)");
     says(with_group + "method = [\"a\"]\n", "e.toml:19:", "did you mean 'methods'");
     says(with_group + "methods = [\"a\"]\n",
-         "e.toml:17:", "r has one method to choose from (name two or more in methods)");
+         "e.toml:17:", "run \"r\" has one method to choose from (name two or more in methods)");
     says(head + motion + "[[motion]]\nname = \"n\"\npreset = \"park2016-2\"\n" + methods + run +
              "motions = [\"m\"]\n" + group + "motions = [\"n\"]\n",
          "e.toml:21:", "r has no motion or no method (leave it out of runs, or name more)");
@@ -351,7 +352,7 @@ TEST_CASE("faults have their line")
 
 TEST_CASE("a missing experiment lists the existing ones")
 {
-    has(caught_message([] { load_definition("park2017"); }), "park2016, or a file");
+    has(caught_message([] { load_definition("park2017"); }), "park2016, or name a file");
     has(caught_message([] { load_definition("./none.toml"); }), "none.toml");
 }
 
@@ -401,10 +402,11 @@ TEST_CASE("faults have their line")
     };
     CHECK(with("task = \"rate\"\n").find("[[run]] has no name") != std::string::npos);
     CHECK(with("name = \"-\"\ntask = \"rate\"\n").find("no letter or digit") != std::string::npos);
-    has(with("name = \"r\"\ntask = \"choose\"\nmethods = [\"new\"]\n"), "r has one method to choose from");
+    has(with("name = \"r\"\ntask = \"choose\"\nmethods = [\"new\"]\n"),
+        "run \"r\" has one method to choose from");
     CHECK(with("name = \"r\"\ntask = \"choose\"\n").empty()); // of three
     has(with("name = \"r\"\ntask = \"rate\"\nmotions = [\"c\"]\n"),
-        "motions has an undefined name (one of a, b)");
+        "motions has an undefined name (use one of a, b)");
     for (const char* beyond :
          {"scale = 1", "scale = 102", "scale = 7.5", "scale = \"line\"", "trials = 0", "trials = 10001"})
         CHECK(with(std::string("name = \"r\"\ntask = \"rate\"\n") + beyond + "\n").find("e.toml:16:") == 0);

@@ -79,14 +79,14 @@ TEST_CASE("a wrong value is reported with its place")
     CHECK(f["none"].list().empty());
     const json_value first = f["array"]["tactors"].list().at(0);
     CHECK(has(caught_message([&] { static_cast<void>(first["x_mm"].number()); }),
-              "s.json: array.tactors[0].x_mm: is not a number"));
+              "s.json: array.tactors[0].x_mm: it is not a number"));
     CHECK(has(caught_message([&] { static_cast<void>(first["y_mm"].need_number()); }),
-              "array.tactors[0].y_mm: is missing"));
-    CHECK(has(caught_message([&] { static_cast<void>(f["date"].text()); }), "date: is not a text"));
-    CHECK(has(caught_message([&] { static_cast<void>(f["date"]["deeper"]); }), "date: is not an object"));
-    CHECK(has(caught_message([&] { static_cast<void>(f["date"].list()); }), "date: is not a list"));
+              "array.tactors[0].y_mm: it is missing"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].text()); }), "date: it is not a text"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"]["deeper"]); }), "date: it is not an object"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].list()); }), "date: it is not a list"));
     CHECK(has(caught_message([&] { static_cast<void>(f["date"].truth()); }),
-              "date: is neither true nor false"));
+              "date: it is neither true nor false"));
 }
 
 TEST_CASE("any value has words")

@@ -154,16 +154,16 @@ TEST_CASE("bad numbers are refused")
 TEST_CASE("an incomplete table is refused with the place")
 {
     CHECK(refusal("").find("t.tsv: it is empty") == 0);
-    CHECK(refusal("a\tb\n1\t2\n3\n").find("t.tsv:3: it has 1 column, not 2") == 0);
-    CHECK(refusal("a\tb\n0\t2\t3\n").find("t.tsv:2: it has 3 columns, not 2") == 0);
+    CHECK(refusal("a\tb\n1\t2\n3\n").find("t.tsv:3: the line has 1 column, not 2") == 0);
+    CHECK(refusal("a\tb\n0\t2\t3\n").find("t.tsv:2: the line has 3 columns, not 2") == 0);
     CHECK(refusal("a\ta\n1\t2\n").find("t.tsv:1: the column a occurs twice") == 0);
-    CHECK(refusal("a\tb\n1").find("t.tsv:2: it has 1 column, not 2") == 0);
-    CHECK(refusal(std::string("a\n\0\n", 4)).find("t.tsv:2: it is not UTF-8") == 0);
-    CHECK(refusal("a\n\xe4\n").find("t.tsv:2: it is not UTF-8") == 0);
+    CHECK(refusal("a\tb\n1").find("t.tsv:2: the line has 1 column, not 2") == 0);
+    CHECK(refusal(std::string("a\n\0\n", 4)).find("t.tsv:2: the line is not UTF-8") == 0);
+    CHECK(refusal("a\n\xe4\n").find("t.tsv:2: the line is not UTF-8") == 0);
     // A character of four bytes, one with a byte too few, one with a byte too many.
     CHECK(refusal("a\n\xf0\x9f\x91\x8b\n").empty());
-    CHECK(refusal("a\n\xf0\x9f\x91\n").find("t.tsv:2: it is not UTF-8") == 0);
-    CHECK(refusal("a\n\xf0\x9f\x91\x8b\x8b\n").find("t.tsv:2: it is not UTF-8") == 0);
+    CHECK(refusal("a\n\xf0\x9f\x91\n").find("t.tsv:2: the line is not UTF-8") == 0);
+    CHECK(refusal("a\n\xf0\x9f\x91\x8b\x8b\n").find("t.tsv:2: the line is not UTF-8") == 0);
     CHECK(refusal("a\tb\n1\t2\n").empty());
 }
 
@@ -176,12 +176,13 @@ TEST_CASE("unreadable tables of other programs are named")
     CHECK(refusal(std::string("\xff\xfe"
                               "a\0\t\0b\0\n\0",
                               10))
-              .find("t.tsv: is UTF-16, not UTF-8 (save it as UTF-8") == 0);
-    CHECK(refusal(std::string("a\0\t\0b\0\n\0", 8)).find("t.tsv: is UTF-16") == 0);
+              .find("t.tsv: it is UTF-16, not UTF-8 (save it as UTF-8") == 0);
+    CHECK(refusal(std::string("a\0\t\0b\0\n\0", 8)).find("t.tsv: it is UTF-16") == 0);
     CHECK(refusal("PK\x03\x04...")
-              .find("t.tsv: is a ZIP archive or office document, not text (save it as text with tabs") == 0);
+              .find("t.tsv: it is a ZIP archive or office document, not text (save it as text with tabs") ==
+          0);
     CHECK(refusal("\ta\n0\t5\n").find("t.tsv:1: a column has no name (leave out the numbers of rows") == 0);
-    CHECK(refusal("\"a\"\t\"b\"\n\"1\"\t2\t3\n").find("t.tsv:2: it begins with a row number") == 0);
+    CHECK(refusal("\"a\"\t\"b\"\n\"1\"\t2\t3\n").find("t.tsv:2: the line begins with a row number") == 0);
 }
 
 // Reads a table of the columns a and b, and returns its cells.
@@ -230,7 +231,7 @@ TEST_CASE("truths in any case, whole numbers with a point")
 
 TEST_CASE("lines are counted like in an editor")
 {
-    CHECK(refusal("a\tb\r\n\r\n\"x\r\ny\"\t2\r\n3\r\n").find("t.tsv:5: it has 1 column, not 2") == 0);
+    CHECK(refusal("a\tb\r\n\r\n\"x\r\ny\"\t2\r\n3\r\n").find("t.tsv:5: the line has 1 column, not 2") == 0);
     CHECK(refusal("a\tb\r\r1\t2\r3").find("t.tsv:4: ") == 0);
 }
 
@@ -288,7 +289,7 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
     CHECK_FALSE(cut("3\t"));
     CHECK(caught_message([&] {
               text_table("t.tsv", text + "3\n", last_line::may_be_cut);
-          }).find("t.tsv:3: it has 1 column") == 0);
+          }).find("t.tsv:3: the line has 1 column") == 0);
     text_table t("t.tsv", text + "3\tx", last_line::may_be_cut);
     CHECK(t.is_open());
     t.leave_out_last();
@@ -346,8 +347,8 @@ TEST_CASE("anything other than a file is refused at once")
 {
     const folder f;
     REQUIRE(::mkfifo((f / "pipe").c_str(), 0600) == 0);
-    has(caught_message([&] { read_file(f / "pipe"); }), "it is not a file");
-    has(caught_message([&] { read_file(f.path()); }), "it is not a file");
+    has(caught_message([&] { read_file(f / "pipe"); }), "it is not a regular file");
+    has(caught_message([&] { read_file(f.path()); }), "it is not a regular file");
     has(caught_message([&] { read_file(f / "none"); }), "No such file");
     f.write("some", "text");
     CHECK(read_file(f / "some") == "text");

@@ -132,7 +132,7 @@ TEST_CASE("a tactor's limit is compared with the score's level for it")
     // 0.8 at -12 dBFS is -13.94 dBFS.
     const std::string text = refusal(a, {{one, {}}}, {});
     has(text, "palm.toml:9:1: tactor 1 would play at -13.94 dBFS");
-    has(text, "limit of -14 dBFS");
+    has(text, "max_dbfs of -14 dBFS");
     has(text, "by 0.07 dB or more");
     a.tactors[1].max_dbfs = -13.93;
     CHECK(refusal(a, {{one, {}}}, {}).empty());
@@ -149,7 +149,7 @@ TEST_CASE("a sensation level that is too high names the threshold at the stroke'
     plan slow = make_plan({make_burst(0.0, 0.07, {{0, 1.0}, {1, 1.0}})});
     slow.carrier_hz = 100.0;
     has(refusal(a, {{one, {}}, {slow, {}}}, {.sl_db = 7.0}),
-        "would play at 5.4 dBFS, above full scale (0 dBFS): its threshold of -1.6 dBFS is 5.40 dB");
+        "would play at 5.4 dBFS, above full scale: its threshold of -1.6 dBFS is 5.40 dB");
 }
 
 TEST_CASE("only tactors that are driven need a threshold")
@@ -162,7 +162,7 @@ TEST_CASE("only tactors that are driven need a threshold")
     const score s(a, {{middle, {}}}, o);
     CHECK(peak(s, 1) == doctest::Approx(std::pow(10.0, -33.0 / 20.0)));
     CHECK(peak(s, 0) == 0.0);
-    has(refusal(a, {{middle, {}}, {one, {}}}, o), "tactor 0: has no threshold_dbfs");
+    has(refusal(a, {{middle, {}}, {one, {}}}, o), "tactor 0: it has no threshold_dbfs");
     // A continuous stroke drives the tactors on its way.
     a.tactors[2].threshold_dbfs = -40.0;
     const auto along = [&](double x_mm) {
@@ -172,7 +172,7 @@ TEST_CASE("only tactors that are driven need a threshold")
             {.algorithm = algorithm_kind::continuous, .outside = outside_kind::clamp});
     };
     CHECK(refusal(a, {{along(40.0), {}}}, o).empty());
-    has(refusal(a, {{along(10.0), {}}}, o), "tactor 0: has no threshold_dbfs");
+    has(refusal(a, {{along(10.0), {}}}, o), "tactor 0: it has no threshold_dbfs");
 }
 
 TEST_CASE("strokes that add up beyond full scale are refused, one at full scale is not")
@@ -199,16 +199,16 @@ TEST_CASE("a burst of one frame counts, and so does one frame in which two sound
     };
     CHECK(refusal(a, {{one_at(0.0, frame_s), 0.0}}, o).empty());
     has(refusal(a, {{make_plan({make_burst(0.0, frame_s, {{0, 1000.0}}, 1000.0)}), 0.0}}, o),
-        "tactor 0: would play at 48 dBFS");
+        "tactor 0: it would play at 48 dBFS");
     CHECK(refusal(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), 4 * frame_s}}, o).empty());
     // The first sample of a stroke is 0: rounding may put it into the end of the one before.
     CHECK(refusal(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, 2 * frame_s), 3 * frame_s}}, o).empty());
     for (const double start_s : {frame_s, 2 * frame_s, 3 * frame_s}) {
         CAPTURE(start_s);
         has(refusal(a, {{one_at(0.0, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), start_s}}, o),
-            "tactor 0: would play at -5.979 dBFS");
+            "tactor 0: it would play at -5.979 dBFS");
         has(refusal(a, {{make_continuous(1, 4 * frame_s), 0.0}, {one_at(0.0, frame_s), start_s}}, o),
-            "tactor 0: would play at -5.979 dBFS");
+            "tactor 0: it would play at -5.979 dBFS");
     }
     // A ramp begins with a frame of zero: an overlap of one frame by rounding is not heard together.
     o.ramp_s = 0.001;
@@ -268,7 +268,7 @@ TEST_CASE("a carrier that passes a threshold on its way is held to the limit the
     render_options o{.sl_db = 19.0};
     CHECK(refusal(a, {{p, {}}}, o).empty());
     o.sl_db = 25.0;
-    has(refusal(a, {{p, {}}}, o), "tactor 0: would play at 5 dBFS");
+    has(refusal(a, {{p, {}}}, o), "tactor 0: it would play at 5 dBFS");
     p.course = {{0.0, 400.0}, {1.0, 250.0}};
     CHECK(refusal(a, {{p, {}}}, o).empty());
 }

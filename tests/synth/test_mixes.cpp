@@ -397,13 +397,13 @@ TEST_CASE("a spike of 8 ms is found in strokes of ten seconds to an hour, and ac
             CAPTURE(duration);
             CAPTURE(at);
             const plan p = continuous(with_spike(duration, at, 1.0), 60.0);
-            has(refusal({{p, {}}}, -40.0), "dBFS, above full scale (0 dBFS)");
+            has(refusal({{p, {}}}, -40.0), "dBFS, above full scale");
             CHECK(refusal({{p, {}}}, -60.0).empty());
         }
     }
     // On a tactor that one gets the whole amplitude, and the message has the value.
     const plan p = continuous(with_spike(3600.0, 1800.0, 1.0), 60.0);
-    has(refusal({{p, {}}}, -40.0), "tactor 4: would play at 20 dBFS, above full scale");
+    has(refusal({{p, {}}}, -40.0), "tactor 4: it would play at 20 dBFS, above full scale");
 }
 
 TEST_CASE("a plan is left unseen only where its intensity is above no limit: as if every point was looked at")
@@ -478,7 +478,7 @@ TEST_CASE("every control point of a program's plan is evaluated")
     for (const double at : {0.0, 0.001, 1048.577, 1499.999, 1500.0}) {
         CAPTURE(at);
         spike_s = at;
-        has(refusal({{p, {}}}, -40.0), "tactor 3: would play at 20 dBFS");
+        has(refusal({{p, {}}}, -40.0), "tactor 3: it would play at 20 dBFS");
     }
 }
 
@@ -497,7 +497,7 @@ TEST_CASE("strokes that are harmless alone are added up where they overlap, even
             return refusal({{late, 0.0}, {p, at}}, 0.0);
         };
         CHECK(with(0.29, rest).empty());
-        has(with(0.31, rest), "tactor 4: would play at 0.08");
+        has(with(0.31, rest), "tactor 4: it would play at 0.08");
         CHECK(has(with(0.31, 0.1), "tactor 4")); // both last on at once: taken together
         CHECK(with(0.99, rest + 1.0).empty());
     }

@@ -197,12 +197,12 @@ TEST_CASE("weakened strokes are held to a tactor's limit by what they reach, sum
     const std::vector<placed_plan> both{{tent(1.0, 1.0), 0.0, {}}, {tent(1.0, 1.0), 0.5, {}}};
     CHECK(score(a, both).weakened().weakened_db == 0.0);
     a.tactors[0].max_dbfs = -12.1;
-    has(caught_message([&] { score(a, both); }), "tactor 0: would play at -12 dBFS");
+    has(caught_message([&] { score(a, both); }), "tactor 0: it would play at -12 dBFS");
     const std::vector<placed_plan> crest{{steady(0.2), 0.0, {}}, {steady(0.2), 0.0, {}}};
     a.tactors[0].max_dbfs = -12.0;
     CHECK(caught_message([&] { score(a, crest); }).empty());
     has(caught_message([&] { score(a, crest, {.together = together_kind::sum}); }),
-        "tactor 0: would play at -5.979 dBFS");
+        "tactor 0: it would play at -5.979 dBFS");
     // Strokes that are within the limit by their intensity may exceed it where they meet.
     const std::vector<placed_plan> halves{{steady(0.2, 0.5), 0.0, {}}, {steady(0.2, 0.5), 0.1, {}}};
     a.tactors[0].max_dbfs = -10.0;

@@ -439,7 +439,7 @@ TEST_CASE("waves that cannot be rendered are refused with a hint")
     CHECK(refused(noise(50, std::nan("")), {}, "noise from 50"));
     CHECK(refused(noise(50, 30000), {}, "half the rate"));
     CHECK(refused(noise(50, 3990), {200.0, 1.0}, "half the rate", 8000));
-    CHECK(refused(shape(waveform_kind::sine), {-1.0, 1.0}, "cannot modulate"));
+    CHECK(refused(shape(waveform_kind::sine), {-1.0, 1.0}, "is not a modulation frequency"));
     CHECK(refused(shape(waveform_kind::sine), {30.0, 1.5}, "not a depth"));
     CHECK(refused(shape(waveform_kind::sine), {3900.0, 1.0}, "half the rate", 8000));
     CHECK(refused(shape(waveform_kind::recording), {}, "no samples"));

@@ -33,7 +33,7 @@ std::vector<std::string> parse_codes(const char* option, std::string_view text)
     for (const std::string_view code : detail::split(text, ',')) {
         if (code.empty())
             throw error(error_kind::bad_input, option, "a code is empty",
-                        "separate codes by commas, as 01,02");
+                        "separate codes by commas, such as 01,02");
         codes.emplace_back(code);
     }
     return codes;

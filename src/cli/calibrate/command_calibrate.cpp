@@ -149,7 +149,8 @@ unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
 {
     const auto i = detail::number_in<std::uint64_t>(text);
     if (!i)
-        refuse_option("--tactors", fmt::format("\"{}\" is not a list of tactors", all), "as 0,3-5");
+        refuse_option("--tactors", fmt::format("\"{}\" is not a list of tactors", all),
+                      "give numbers and ranges, such as 0,3-5");
     if (*i >= n)
         refuse_option("--tactors", fmt::format("there is no tactor {}", text),
                       n == 1 ? std::string("the array has only tactor 0")
@@ -166,7 +167,7 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
         const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
         if (last < first)
             refuse_option("--tactors", fmt::format("\"{}\" runs backwards", part),
-                          fmt::format("as {}-{}", last, first));
+                          fmt::format("write {}-{}", last, first));
         for (unsigned i = first; i <= last; ++i) {
             if (std::find(all.begin(), all.end(), i) != all.end())
                 refuse_option("--tactors", fmt::format("tactor {} is named twice", i),
@@ -191,10 +192,10 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
         (steady && c.interval_s > leak * study::interval_gap_s + rounding_s))
         refuse_option("--interval",
                       fmt::format("{} of {} s, with pauses of {} s, would drive a tactor for longer than "
-                                  "[limits] allow (max_drive_s, {:.4g} s in {:.4g} s)",
+                                  "max_drive_s allows, {:.4g} s in {:.4g} s",
                                   steady ? "steady pulses" : "intervals", c.interval_s, study::interval_gap_s,
                                   l.max_drive_s, l.window_s),
-                      "use a shorter interval, or another max_drive_s");
+                      "use a shorter interval, or raise max_drive_s in [limits]");
 }
 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
@@ -249,11 +250,12 @@ void settle_names(calibrate_options& o)
     namespace fs = std::filesystem;
     if (fs::path(o.output).extension() != ".toml")
         refuse_option("-o", fmt::format("\"{}\" does not end in .toml", o.output),
-                      "it is an array file: name it like me.toml");
+                      "end the name in .toml, such as me.toml");
     if (o.log.empty())
         o.log = fs::path(o.output).replace_extension(".tsv").string();
     else if (fs::path(o.log).extension() != ".tsv")
-        refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log), "name it like me.tsv");
+        refuse_option("--log", fmt::format("\"{}\" does not end in .tsv", o.log),
+                      "end the name in .tsv, such as me.tsv");
 }
 
 // Refuses an option of other methods.
@@ -276,21 +278,21 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
     if (c.staircase.reversals < c.staircase.discard + 2)
         refuse_option(
             "--discard",
-            fmt::format("of {} reversals, {} are discarded", c.staircase.reversals, c.staircase.discard),
-            "at least two must remain");
+            fmt::format("{} of {} reversals are discarded", c.staircase.discard, c.staircase.reversals),
+            "keep two or more");
     if (const double most = study::greatest_noise_dbfs(o.masking.color); o.masking.level_dbfs > most)
         refuse_option("--masker-dbfs",
                       fmt::format("{} dBFS is too high: the peaks of this noise reach full scale at {} dBFS",
                                   o.masking.level_dbfs, most),
-                      "lower it here, and turn up the amplifier of the headphones");
+                      "lower it, and turn up the headphone amplifier");
     check_page_options(o.page, o.simulate.has_value());
     if (o.words && !o.page.shown())
-        refuse_option("--page-words", "without a page there are no page words",
+        refuse_option("--page-words", "only the participant's page uses it",
                       "add --display page, or leave it out");
     if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
         refuse_option(asked, "a simulated session plays nothing", "leave it out, or leave out --simulate");
     if (o.simulate && !o.keypads.empty())
-        refuse_option("--keypad", "a simulated session has no participant at a display",
+        refuse_option("--keypad", "a simulated session has no participant",
                       "leave it out, or leave out --simulate");
 }
 
@@ -324,11 +326,11 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
         if (o.has_start && c.start_dbfs() > ceiling)
             refuse_option(
                 "--start-dbfs",
-                fmt::format("tactor {} may have at most {:.4g} dBFS ({}), and the start level is {:.4g} dBFS",
-                            t, ceiling,
-                            ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
-                            c.start_dbfs()),
-                "start lower");
+                fmt::format(
+                    "the start level, {3:.4g} dBFS, is above the limit of tactor {0}: {1:.4g} dBFS from {2}",
+                    t, ceiling, ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
+                    c.start_dbfs()),
+                "use a lower start level");
         c.ceilings_dbfs.push_back(ceiling);
     }
     c.simulate = o.simulate.value_or("");
@@ -355,7 +357,7 @@ void print_ceilings(const study::calibration_settings& c)
     say(stderr, "tactor: highest level: {}\n", all);
     if (const auto unlimited = tactors.find(0.0); unlimited != tactors.end())
         say(stderr,
-            "tactor: warning: no max_dbfs below 0 limits {}: the level may go to full scale (set max_dbfs in "
+            "tactor: warning: no max_dbfs limits {}: the level may reach full scale (set max_dbfs in "
             "[array] or [[tactor]] of the array file)\n",
             name_tactors(unlimited->second));
 }
@@ -395,8 +397,8 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
     const double missing = *t.threshold_dbfs + paper_sl_db - ceiling_dbfs;
     if (missing > 0.0)
         say(stderr,
-            "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS exceed its limit by {:.2f} "
-            "dB\n",
+            "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS is {:.2f} dB beyond "
+            "its limit\n",
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 
@@ -536,7 +538,7 @@ int calibrate(settings& s, calibrate_options& o)
         if (c.next().number == 1)
             say(stderr, "tactor: ended before trial 1, without an answer\n");
         else
-            say(stderr, "tactor: ended before trial {}: the answers are in {}, and --resume continues\n",
+            say(stderr, "tactor: ended before trial {}: the answers are in {} (continue with --resume)\n",
                 c.next().number, o.log);
         return session::interrupt::status(signal);
     }

@@ -92,9 +92,11 @@ std::string findings_text(const std::vector<finding>& all)
 
 finding refuse_lost_tactor(const alsa_options& device, const std::string& lost)
 {
-    return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
-                              "in the definition of the PCM (ttable, bindings) lead each channel to its own "
-                              "channel of the device, at 1, or play on the card itself: -D hw:CARD=NAME"});
+    return failure(
+        "device",
+        {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
+         "in the PCM's definition, route each channel to its own channel of the "
+         "device with coefficient 1 (ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
 std::string note_text(const std::vector<session::device_note>& notes)
@@ -294,7 +296,8 @@ void check_usage(const settings& s, const check_options& o)
     if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
         refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing plays", "add --walk");
     if (o.no_questions && !o.output.empty())
-        refuse_option("--output", "without answers there is no map", "leave out --auto or --output");
+        refuse_option("--output", "--auto asks no questions, so there is no map to write",
+                      "leave out --auto or --output");
     if (!o.output.empty())
         study::check_new_output(o.output);
 }

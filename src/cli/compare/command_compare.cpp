@@ -48,8 +48,8 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
     for (const std::string_view name : detail::split(text, ',')) {
         const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
         if (v == known.end())
-            refuse_option(option, fmt::format("\"{}\" is not known", name),
-                          "one or more of " + join_names<Enum>());
+            refuse_option(option, fmt::format("\"{}\" is unknown", name),
+                          "use one or more of " + join_names<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())
             refuse_option(option, fmt::format("\"{}\" occurs twice", name), "name each once");
         list.push_back(*v);
@@ -298,11 +298,12 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     const std::string argument = stroke_arguments(s).front();
     if (e.plans.contains(argument))
         throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
-                    "give the stroke: compare plans it itself");
+                    "give the stroke: tactor compare plans it");
     refuse_samples(argument);
     const piece p = open_piece(s, e, faces, argument);
     if (!asked.picture.file.empty() && p.strokes.size() > 1)
-        refuse_option("-o", fmt::format("there are {} strokes", p.strokes.size()), "a picture shows one");
+        refuse_option("-o", fmt::format("a picture shows one stroke, not {}", p.strokes.size()),
+                      "give one stroke");
     if (!asked.picture.file.empty())
         plot::check_output(asked.picture.file, asked.picture.force);
     const std::vector<comparison> all = compare_all(p, e, faces, s.plan, std::move(choice));

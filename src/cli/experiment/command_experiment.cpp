@@ -39,7 +39,7 @@ void check_keys(const study::prepared_experiment& p)
         if (const auto answers = study::find_answers(p.definition, r);
             answers.shows_motions && answers.labels.size() > study::most_keys)
             throw error(error_kind::bad_input, r.where,
-                        fmt::format("run \"{}\" has {} answers, and the terminal's keys are 1 to {}",
+                        fmt::format("run \"{}\" has {} answers, but the terminal has only the keys 1 to {}",
                                     r.outline.name, answers.labels.size(), study::most_keys),
                         "name fewer in motions = [...]");
 }
@@ -56,7 +56,7 @@ void check_noise(const study::prepared_experiment& p, const experiment_options& 
 }
 
 constexpr const char* masker_cure =
-    "--masker hw:CARD=NAME plays on the card itself; tactor devices lists them";
+    "use --masker hw:CARD=NAME to play on the card itself; tactor devices lists the cards";
 
 // The server between the program and a card, where it may be there.
 std::string check_server(const std::string& pcm, const char* cure, const experiment_options& o)
@@ -64,7 +64,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     std::string server = session::prepare_server(pcm);
     if (!server.empty() && !o.allow_sound_server)
         throw error(error_kind::bad_input, pcm, session::server_note(server),
-                    fmt::format("{}; --allow-sound-server allows and records it", cure));
+                    fmt::format("{}; or use --allow-sound-server: the data record it", cure));
     session::warn_of_server(server, cure);
     return server;
 }
@@ -231,8 +231,8 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
     if (study::find_codes(p.where) == nullptr && folder.has_codes())
         say(stderr,
-            "tactor: warning: {}: other sessions sent codes, this one does not ([sync] code of the array "
-            "file)\n",
+            "tactor: warning: {}: other sessions sent codes, but this one does not (set [sync] code in "
+            "the array file)\n",
             o.folder);
     study::runs_in_order runs;
     for (const study::run_sequence& r : p.runs)
@@ -265,7 +265,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
                 "written\n",
                 why.by);
         else
-            say(stderr, "tactor: ended by {}: the answers are in {}, and --resume continues\n", why.by,
+            say(stderr, "tactor: ended by {}: the answers are in {} (continue with --resume)\n", why.by,
                 o.folder);
         return session::interrupt::status(why.signal);
     }

@@ -91,15 +91,16 @@ void check_experiment_options(const settings& s, const experiment_options& o)
         refuse_option(asked, "a simulated session plays nothing", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (power && !o.folder.empty() && o.parts == 0)
-        refuse_option("-o", "--power prints its result", "add --part K/N, or leave it out");
+        refuse_option("-o", "--power prints its result, and writes no file",
+                      "leave out -o, or add --part K/N");
     if (o.print || o.dry_run || o.check_noise || power)
         return;
     if (o.simulate && !o.keypads.empty())
-        refuse_option("--keypad", "a simulated session has no participant at a display",
-                      "leave one of them out");
+        refuse_option("--keypad", "a simulated session has no participant",
+                      "leave it out, or leave out --simulate");
     if (o.session.participant.empty())
         refuse_option("--participant", "the participant is missing",
-                      "give a code of letters and digits, as P07");
+                      "give a code of letters and digits, such as P07");
     if (o.folder.empty())
         refuse_option("-o", "the folder for the data is missing", "give the folder of the study");
 }

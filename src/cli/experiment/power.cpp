@@ -180,7 +180,7 @@ std::size_t need_count(const files::json_value& v)
 {
     const double n = v.need_number();
     if (n < 0.0 || n > allowed_studies.high || n != std::floor(n))
-        v.refuse("is not a count");
+        v.refuse("it is not a count");
     return static_cast<std::size_t>(n);
 }
 
@@ -232,11 +232,12 @@ void check_other_part(const std::string& file, const json& common, const study::
     own["parts"] = asked.parts;
     for (const auto& [key, value] : own.items())
         if (there.value(key, json()) != value)
-            throw error(error_kind::bad_input, file,
-                        fmt::format("it has part {} of {}{}", there.value("part", json()).dump(),
-                                    there.value("parts", json()).dump(),
-                                    common.contains(key) ? fmt::format(" of other studies ({})", key) : ""),
-                        "name another file, or remove it");
+            throw error(
+                error_kind::bad_input, file,
+                fmt::format("it holds part {} of {}{}", there.value("part", json()).dump(),
+                            there.value("parts", json()).dump(),
+                            common.contains(key) ? fmt::format(" of studies with another {}", key) : ""),
+                "name another file, or remove it");
 }
 
 // Adds the counts of a part to those of the others, which are of no more than so many studies.
@@ -244,11 +245,11 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
 {
     const std::vector<files::json_value> theirs = runs.need_list();
     if (theirs.size() != all.size())
-        runs.refuse("has another number of runs");
+        runs.refuse("it has another number of runs");
     for (std::size_t run = 0; run < all.size(); ++run) {
         const std::vector<files::json_value> counts = theirs[run].need_list();
         if (counts.size() != all[run].at.size())
-            theirs[run].refuse("has another number of sample sizes");
+            theirs[run].refuse("it has another number of sample sizes");
         for (std::size_t i = 0; i < counts.size(); ++i) {
             study::power_at& at = all[run].at[i];
             for (const auto& [key, sum] : {std::pair("significant", &at.significant),
@@ -256,7 +257,7 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
                                            {"untested", &at.untested}}) {
                 *sum += need_count(counts[i][key]);
                 if (*sum > studies)
-                    counts[i][key].refuse("exceeds the number of studies");
+                    counts[i][key].refuse("it exceeds the number of studies");
             }
         }
     }
@@ -275,16 +276,17 @@ void merge_parts(std::vector<study::run_power>& all, const json& common,
         part.need_members();
         for (const auto& [key, value] : common.items())
             if (const std::string its = own.value(key, json()).dump(); its != value.dump())
-                part[key].refuse(fmt::format("is {}unlike this run's", its.size() < 60 ? its + ", " : ""));
+                part[key].refuse(
+                    fmt::format("it is {}different from this run's", its.size() < 60 ? its + ", " : ""));
         const std::size_t number = need_count(part["part"]);
         const std::size_t of = need_count(part["parts"]);
         if (parts != 0 && of != parts)
-            part["parts"].refuse(fmt::format("is {}, not {} as in {}", of, parts, names.front()));
+            part["parts"].refuse(fmt::format("it is {}, not {} as in {}", of, parts, names.front()));
         parts = of;
         if (number < 1 || number > parts)
-            part["part"].refuse(fmt::format("is {} of {}", number, parts));
+            part["part"].refuse(fmt::format("it is {} of {}", number, parts));
         if (const auto [at, is_new] = seen.emplace(number, name); !is_new)
-            part["part"].refuse(fmt::format("is {}, as in {}", number, at->second));
+            part["part"].refuse(fmt::format("it is {}, as in {}", number, at->second));
         add_counts(all, part["runs"], common.at("studies").get<std::size_t>());
     }
     for (std::size_t k = 1; k <= parts; ++k)
@@ -315,7 +317,7 @@ std::pair<std::size_t, std::size_t> part_in(std::string_view text)
         slash < text.size() ? detail::number_in<std::size_t>(text.substr(slash + 1)).value_or(0) : 0;
     if (part < 1 || part > parts)
         refuse_option("--part", fmt::format("\"{}\" is not a part", text),
-                      "give K/N with K from 1 to N, as 3/100");
+                      "give K/N with K from 1 to N, such as 3/100");
     return {part, parts};
 }
 
@@ -354,9 +356,10 @@ void add_power_options(CLI::App& command, experiment_options& o)
 int print_power(const study::prepared_experiment& e, const experiment_options& o)
 {
     if (o.parts > o.studies)
-        refuse_option("--part",
-                      fmt::format("{} parts of {}", o.parts, counted(o.studies, "study", "studies")),
-                      "give each part at least one study");
+        refuse_option(
+            "--part",
+            fmt::format("{} parts are too many for {}", o.parts, counted(o.studies, "study", "studies")),
+            "give each part at least one study");
     study::power_request asked{*o.simulate,    o.power, o.studies,
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
     const json common = describe_parts(e, o);

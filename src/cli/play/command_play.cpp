@@ -164,7 +164,8 @@ std::uint64_t read_rounds(const std::string& text)
         return 0;
     const double n = options::parse_number("--repeat", text, {1.0, most_rounds}, "", range);
     if (n != std::floor(n))
-        refuse_option("--repeat", fmt::format("{} is not a whole number", text), range);
+        refuse_option("--repeat", fmt::format("{} is not a whole number", text),
+                      fmt::format("use {}", range));
     return static_cast<std::uint64_t>(n);
 }
 
@@ -174,11 +175,12 @@ void check_rounds(const settings& s, const play_options& o)
         refuse_option("--pause", "only rounds have a pause between them",
                       "add --repeat N or --repeat forever");
     if (s.stream.arm && o.pause_s > 0.0)
-        refuse_option("--pause", "with --arm each round waits for its own edge", "leave one of them out");
+        refuse_option("--pause", "with --arm each round waits for its own edge",
+                      "leave out --pause or --arm");
     if (o.rounds != 1 && s.stream.live)
         refuse_option("--repeat", "a live stroke cannot be repeated", "leave it out");
     if (o.rounds != 1 && o.socket && s.strokes.size() > 1)
-        refuse_option("--repeat", "a server repeats one STROKE",
+        refuse_option("--repeat", "a server repeats only one STROKE",
                       "give one STROKE, or a file that has several");
 }
 
@@ -238,7 +240,7 @@ void check_live(const settings& s)
         if ((o.where & (options::planning | options::by_client)) != 0 && (o.where & options::live) == 0 &&
             s.gives(o))
             refuse_option(option_name(o), "a live stroke cannot use it",
-                          "the points of a live stroke have their own times");
+                          "leave it out: live points have their own times");
     if (s.stream.arm)
         refuse_option("--arm", "a live stroke starts with its first point", "leave it out");
     detail::note_input("/dev/fd/0");
@@ -332,7 +334,7 @@ std::optional<timed_point> live_lines::next()
         }
         if (buffer_.size() > longest_line)
             throw error(error_kind::bad_input, line_place(line_ + 1),
-                        fmt::format("a line of more than {} bytes", longest_line),
+                        fmt::format("the line has more than {} bytes", longest_line),
                         "give x y [intensity], in mm");
     } while (fill());
     return std::nullopt;
@@ -345,15 +347,16 @@ std::optional<timed_point> live_lines::parse(std::string_view line)
         return std::nullopt;
     const auto refuse = [&](const std::string& why) {
         throw error(error_kind::bad_input, line_place(line_), why,
-                    "give x y [intensity]: two places in mm and a factor from 0 to 1, such as 20 12.5 0.8");
+                    "give x y [intensity] with blanks between, such as 20 12.5 0.8: places in mm, and a "
+                    "factor from 0 to 1");
     };
     double v[3] = {};
     bool lost = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i].find(',') != std::string_view::npos)
-            refuse(fmt::format("\"{}\" has a comma that could be a decimal one", words[i]));
+            refuse(fmt::format("\"{}\" has a comma", words[i]));
         if (i == std::size(v))
-            refuse(counted(words.size(), "word"));
+            refuse(fmt::format("the line has {}, not 2 or 3", counted(words.size(), "word")));
         const auto number = read_number(words[i]);
         if (!number || std::isinf(*number))
             refuse(fmt::format("\"{}\" is not a number", words[i]));
@@ -367,7 +370,7 @@ std::optional<timed_point> live_lines::parse(std::string_view line)
     if (lost)
         return std::nullopt;
     if (words.size() < 2)
-        refuse(counted(words.size(), "word"));
+        refuse(fmt::format("the line has {}, not 2 or 3", counted(words.size(), "word")));
     last_ = point{v[0], v[1]};
     return timed_point{.position = *last_, .intensity = words.size() == 3 ? v[2] / intensity_max_ : 1.0};
 }

@@ -80,9 +80,9 @@ session::ceiling settle_ceiling(const environment& e, std::optional<double> aske
     const bool is_said = e.serve.max_level_dbfs || said.from.starts_with("level-dbfs");
     if (is_said && *asked_dbfs > said.dbfs)
         refuse_option("--max-level-dbfs",
-                      fmt::format("{} dBFS is above the owner's {} ({})", plain_number(*asked_dbfs, 4),
-                                  plain_number(said.dbfs, 4), said.from),
-                      "give that or less, or change the file");
+                      fmt::format("{} dBFS is above the limit of {} dBFS from {}",
+                                  plain_number(*asked_dbfs, 4), plain_number(said.dbfs, 4), said.from),
+                      "use that or less, or change the file");
     return {*asked_dbfs, "--max-level-dbfs"};
 }
 
@@ -93,9 +93,9 @@ void check_limits(const session::stream_options& asked, const environment& e)
     const auto refuse = [](const char* option, double value, double limit, const char* unit,
                            const char* how) {
         refuse_option(option,
-                      fmt::format("{} {} exceeds the limit of {} {} under [limits]", plain_number(value, 4),
-                                  unit, plain_number(limit, 4), unit),
-                      fmt::format("give that or {}, or change the file", how));
+                      fmt::format("{} {} is less strict than the limit of {} {} under [limits]",
+                                  plain_number(value, 4), unit, plain_number(limit, 4), unit),
+                      fmt::format("use that or {}, or change the file", how));
     };
     if (said.power_dbfs && asked.power_dbfs.value_or(*said.power_dbfs) > *said.power_dbfs)
         refuse("--power-dbfs", *asked.power_dbfs, *said.power_dbfs, "dB", "less");

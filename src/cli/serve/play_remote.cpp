@@ -65,8 +65,7 @@ net::json make_params(const std::string& argument)
 {
     constexpr std::size_t most_bytes = 48U << 20;
     if (names_samples(argument))
-        throw error(error_kind::bad_input, argument,
-                    "it has samples, which a server takes from nobody: the files it plays are its owner's",
+        throw error(error_kind::bad_input, argument, "it has samples, which a server does not accept",
                     "play it without --socket, when the device is free");
     if (const auto preset = find_preset(argument))
         return {{"stroke", preset->name}};

@@ -110,7 +110,7 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
                     "give --socket the path that tactor serve prints; other programs use addresses, see "
                     "tactor-protocol(7)");
     throw error(error_kind::not_available, fmt::format("server at {}", fmt::join(places, ", ")),
-                code == ENOENT ? "there is none" : std::strerror(code),
+                code == ENOENT ? "no server listens there" : std::strerror(code),
                 "start one with tactor serve, or name its socket with --socket PATH");
 }
 

@@ -37,7 +37,7 @@ CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::
 {
     return add_text(command, "--masker", "PCM", help, [&into](const std::string& t) {
         if (t.empty())
-            refuse_option("--masker", "no device is named", "name one, as hw:CARD=Phones");
+            refuse_option("--masker", "no device is named", "name one, such as hw:CARD=Phones");
         into = t;
     });
 }
@@ -45,10 +45,11 @@ CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::
 void check_page_options(const page_options& o, bool simulated)
 {
     if (o.at && !o.on_page.value_or(true))
-        refuse_option("--page", "the participant uses the terminal", "leave out --display, or --page");
+        refuse_option("--page", "the participant uses the terminal, not a page",
+                      "leave out --display or --page");
     if (simulated && o.shown())
         refuse_option(o.at ? "--page" : "--display", "a simulated session has no page",
-                      "leave one of them out");
+                      "leave it out, or leave out --simulate");
 }
 
 net::owned_fd open_page(const page_options& o)
@@ -61,7 +62,7 @@ net::owned_fd open_page(const page_options& o)
         refuse_option(
             "--page",
             fmt::format("other machines can reach {}: anybody on the network could answer", at.host),
-            "use [127.0.0.1:]PORT, and ssh -L PORT:127.0.0.1:PORT from the participant's machine");
+            "use [127.0.0.1:]PORT, and run ssh -L PORT:127.0.0.1:PORT on the participant's machine");
     say(stderr, "tactor: the participant's page is at http://{}/\n", net::local_address(fd.get()));
     return fd;
 }

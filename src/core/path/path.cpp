@@ -187,9 +187,9 @@ namespace {
 [[noreturn]] void refuse_absurd(std::string_view what, double value)
 {
     throw error(error_kind::bad_input, what,
-                std::isfinite(value) ? fmt::format("goes to {:.6g} mm, beyond {:g} mm", value, max_mm)
-                                     : "has a coordinate that is not finite",
-                "coordinates are in millimetres");
+                std::isfinite(value) ? fmt::format("it goes to {:.6g} mm, beyond {:g} mm", value, max_mm)
+                                     : "it has a coordinate that is not finite",
+                "give coordinates in millimetres");
 }
 
 std::optional<double> absurd(point p)
@@ -331,7 +331,7 @@ inline namespace v0 {
 path path::polyline(std::span<const point> points)
 {
     if (points.empty())
-        throw error(error_kind::bad_input, "polyline", "has no point", "give its start and its end")
+        throw error(error_kind::bad_input, "polyline", "it has no point", "give its start and its end")
             .with_field("points");
     detail::outline o;
     o.vertices.reserve(points.size());
@@ -344,15 +344,17 @@ path path::polyline(std::span<const point> points)
 path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg)
 {
     if (!(radius_mm > 0.0 && radius_mm <= detail::max_mm))
-        throw error(error_kind::bad_input, "arc", fmt::format("radius {} mm", radius_mm),
+        throw error(error_kind::bad_input, "arc", fmt::format("a radius of {} mm is out of range", radius_mm),
                     fmt::format("give more than 0 and at most {:g} mm", detail::max_mm))
             .with_field("radius_mm");
     if (!(std::abs(from_deg) <= 1e6))
-        throw error(error_kind::bad_input, "arc", fmt::format("first angle {} degrees", from_deg),
+        throw error(error_kind::bad_input, "arc",
+                    fmt::format("a first angle of {} degrees is out of range", from_deg),
                     "use -360 to 360 degrees")
             .with_field("from_deg");
     if (!(std::abs(sweep_deg) <= 360.0 && sweep_deg != 0.0))
-        throw error(error_kind::bad_input, "arc", fmt::format("sweep of {} degrees", sweep_deg),
+        throw error(error_kind::bad_input, "arc",
+                    fmt::format("a sweep of {} degrees is out of range", sweep_deg),
                     "give -360 to 360 degrees, not 0")
             .with_field("sweep_deg");
     constexpr double radian = 3.14159265358979323846 / 180.0;

@@ -210,9 +210,9 @@ public:
     {
         skip_blanks(data_, at_);
         if (at_ == data_.size())
-            fail("is empty", starts);
+            fail("it is empty", starts);
         if (upper(data_[at_]) != 'M')
-            fail(fmt::format("{} at the start of a path", found()), starts);
+            fail(fmt::format("{} cannot start a path", found()), starts);
         while (at_ < data_.size()) {
             command();
             skip_blanks(data_, at_);
@@ -232,7 +232,7 @@ private:
                                                [kind](const auto& k) { return k.first == kind; });
         if (known == std::end(commands))
             fail(fmt::format("{} is not a path command", found()),
-                 "the commands are M L H V C S Q T A Z and the same in lower case");
+                 "use M L H V C S Q T A Z, or the same in lower case");
         if (one_ && begun_ && (kind == 'M' || (closed_ && kind != 'Z')))
             fail("a second subpath begins", "give one stroke for each");
         begun_ = true;
@@ -252,7 +252,8 @@ private:
             const bool comma = separator();
             if (at_ == data_.size() || !begins_number(data_[at_])) {
                 if (comma)
-                    fail(fmt::format("{} instead of a number", found()), "a number follows each comma");
+                    fail(fmt::format("a number is missing before {}", found()),
+                         "write a number after each comma");
                 return;
             }
         }
@@ -272,7 +273,7 @@ private:
     double flag(char c)
     {
         if (at_ == data_.size() || (data_[at_] != '0' && data_[at_] != '1'))
-            fail(fmt::format("{} instead of a flag for {}", found(), c), "flags are 0 or 1");
+            fail(fmt::format("a flag of {1} is missing before {0}", found(), c), "use 0 or 1");
         return data_[at_++] == '1' ? 1.0 : 0.0;
     }
 
@@ -281,8 +282,8 @@ private:
         const std::size_t begin = at_;
         const auto value = scan_number(data_, at_);
         if (!value)
-            fail(fmt::format("{} instead of a number for {}", found(), c),
-                 fmt::format("{} takes {}", c, counted(count, "number")));
+            fail(fmt::format("a number of {1} is missing before {0}", found(), c),
+                 fmt::format("give {} {}", c, counted(count, "number")));
         if (!(std::abs(*value) <= limit_)) {
             at_ = begin;
             fail(fmt::format("{:g} is beyond {:g}", *value, limit_), "check the unit");

@@ -25,8 +25,8 @@ recorded_points::recorded_points(double intensity_max, find_place where, std::st
     : intensity_max_(intensity_max), where_(std::move(where)), unit_(unit)
 {
     if (!bounds_of::intensity_max.holds(intensity_max))
-        throw bad_field("intensity_max", fmt::format("{:g} cannot mean intensity 1", intensity_max),
-                        fmt::format("{:.9g} to {:.9g}, such as 255", bounds_of::intensity_max.low,
+        throw bad_field("intensity_max", fmt::format("{:g} is out of range for intensity 1", intensity_max),
+                        fmt::format("give {:.9g} to {:.9g}, such as 255", bounds_of::intensity_max.low,
                                     bounds_of::intensity_max.high));
 }
 
@@ -58,12 +58,11 @@ void recorded_points::check(const timed_point& p) const
     within(recorded::x_mm, "x_mm", p.position.x_mm, max_mm);
     within(recorded::y_mm, "y_mm", p.position.y_mm, max_mm);
     if (!(p.intensity >= 0.0))
-        refuse(recorded::intensity, fmt::format("intensity {}", p.intensity), "give 0 or more");
+        refuse(recorded::intensity, fmt::format("intensity {} is below 0", p.intensity), "give 0 or more");
     if (p.intensity > intensity_max_)
         refuse(recorded::intensity,
-               fmt::format("intensity {} is above {:g}, which means the requested level", p.intensity,
-                           intensity_max_),
-               "set the value that means 1: {intensity_max=100} for per cent, {intensity_max=127} for MIDI, "
+               fmt::format("intensity {} is above {:g}, the requested level", p.intensity, intensity_max_),
+               "name the value that means 1: {intensity_max=100} for per cent, {intensity_max=127} for MIDI, "
                "{intensity_max=255} for 8 bits");
 }
 
@@ -75,11 +74,11 @@ double recorded_points::since_first(double t_s)
     // Two times far from zero may have the same difference.
     if (!points_.empty() && t < points_.back().t_s)
         refuse(recorded::t_s,
-               fmt::format("time {} s is before {} s of the previous {}", t_s, last_time_s_, unit_),
-               "times ascend");
+               fmt::format("time {} s is before that of the previous {}, {} s", t_s, unit_, last_time_s_),
+               "put times in ascending order");
     if (t > longest_stroke_s)
         refuse(recorded::t_s, fmt::format("time {} s is {} s after the first {}", t_s, t, unit_),
-               fmt::format("a stroke lasts at most {:g} s", longest_stroke_s));
+               fmt::format("use at most {:g} s", longest_stroke_s));
     last_time_s_ = t_s;
     return t;
 }
@@ -117,7 +116,7 @@ void recorded_points::append(const timed_point& p)
         return;
     }
     if (points_.size() == most_points)
-        refuse(recorded::row, fmt::format("more than {} points", most_points),
+        refuse(recorded::row, fmt::format("there are more than {} points", most_points),
                "leave some out, or split the recording");
     points_.push_back(p);
 }
@@ -130,19 +129,20 @@ void recorded_points::warn()
                                             ? fmt::format("this {}", unit_)
                                             : fmt::format("{} from here on", counted(gaps_.count, unit_))));
     if (repeated_.count == 1)
-        warnings_.push_back(fmt::format("{}: has the same time as the previous {}, which does not count",
+        warnings_.push_back(fmt::format("{}: it has the same time as the previous {}; only the last counts",
                                         repeated_.first, unit_));
     if (repeated_.count > 1)
-        warnings_.push_back(fmt::format("{}: has the same time as the previous {}, and so do {} {}s in all; "
-                                        "the last of equal times counts",
-                                        repeated_.first, unit_, repeated_.count, unit_));
+        warnings_.push_back(
+            fmt::format("{}: it has the same time as the previous {}, and so do {} {}s in all; "
+                        "only the last of equal times counts",
+                        repeated_.first, unit_, repeated_.count, unit_));
 }
 
 std::vector<timed_point> recorded_points::take()
 {
     if (points_.size() < 2)
         refuse(recorded::row,
-               fmt::format("{} of at least 2 points{}", points_.size(),
+               fmt::format("a stroke needs at least 2 points{1}, not {0}", points_.size(),
                            repeated_.count != 0 ? " with different times" : ""),
                "give the start and the end of the stroke");
     warn();

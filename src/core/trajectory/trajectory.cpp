@@ -53,14 +53,14 @@ outline with_straight_pieces(const outline& o, point line)
 void check_duration(double duration_s)
 {
     if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
-        throw bad_field("duration_s", fmt::format("{:g} s", duration_s),
+        throw bad_field("duration_s", fmt::format("{:g} s is out of range", duration_s),
                         fmt::format("give more than 0 and at most {:g} s", longest_stroke_s));
 }
 
 void check_intensity(std::string_view what, double intensity)
 {
     if (!(intensity >= 0.0 && intensity <= max_intensity))
-        throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
+        throw error(error_kind::bad_input, what, fmt::format("intensity {:g} is out of range", intensity),
                     fmt::format("give a factor from 0 to {:g}", max_intensity))
             .with_field("intensity");
 }
@@ -120,7 +120,7 @@ using detail::timed_points;
 /// Throws error (bad_input) that requests a duration, because the path is a single place.
 [[noreturn]] void refuse_one_place()
 {
-    throw error(error_kind::bad_input, "path", "has no length", "{duration_s} makes it a tap")
+    throw error(error_kind::bad_input, "path", "it has no length", "add {duration_s} to make it a tap")
         .with_field("duration_s");
 }
 
@@ -131,16 +131,18 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
         throw error(error_kind::bad_input, fmt::format("point {}", i + 1), why, hint);
     };
     if (!(std::abs(p.t_s) <= detail::longest_stroke_s))
-        refuse(fmt::format("time {:g} s", p.t_s),
-               fmt::format("a stroke lasts at most {:g} s", detail::longest_stroke_s));
+        refuse(fmt::format("time {:g} s is out of range", p.t_s),
+               fmt::format("use at most {:g} s", detail::longest_stroke_s));
     for (const double v : {p.position.x_mm, p.position.y_mm})
         if (!(std::abs(v) <= detail::max_mm))
-            refuse(fmt::format("coordinate {:g} mm", v), fmt::format("give at most {:g} mm", detail::max_mm));
+            refuse(fmt::format("coordinate {:g} mm is out of range", v),
+                   fmt::format("give at most {:g} mm", detail::max_mm));
     check_intensity(fmt::format("point {}", i + 1), p.intensity);
     if (i == 0 && p.t_s != 0.0)
-        refuse(fmt::format("time {} s", p.t_s), "make the first time 0");
+        refuse(fmt::format("the first time is {} s", p.t_s), "start at 0 s");
     if (i > 0 && !(p.t_s > points[i - 1].t_s))
-        refuse(fmt::format("time {} s is not after {} s", p.t_s, points[i - 1].t_s), "times ascend");
+        refuse(fmt::format("time {} s is not after {} s", p.t_s, points[i - 1].t_s),
+               "put times in ascending order");
 }
 
 double greatest_intensity(const trajectory::impl& i)
@@ -203,9 +205,8 @@ double moving_time_s(const movement& m, double length_mm)
     if (!(rests < *m.duration_s))
         throw detail::bad_field(
             "pauses",
-            fmt::format("{:g} s in all leave no time for moving in the {:g} s of the stroke", rests,
-                        *m.duration_s),
-            "the duration includes the pauses");
+            fmt::format("{:g} s in all leave no time for moving in a stroke of {:g} s", rests, *m.duration_s),
+            "use shorter pauses, or a longer duration, which includes them");
     return *m.duration_s - rests;
 }
 
@@ -333,7 +334,8 @@ trajectory trajectory::along(path p, const movement& m, double intensity)
 trajectory trajectory::timed(std::vector<timed_point> points)
 {
     if (points.size() < 2)
-        throw error(error_kind::bad_input, "timed points", fmt::format("{} of at least 2", points.size()),
+        throw error(error_kind::bad_input, "timed points",
+                    fmt::format("a stroke needs at least 2, not {}", points.size()),
                     "give its start and its end")
             .with_field("points");
     double length = 0.0;
@@ -357,7 +359,8 @@ trajectory trajectory::with_speed(double speed_mm_s) const
 {
     const double length = length_mm();
     if (!(speed_mm_s > 0.0 && std::isfinite(speed_mm_s)))
-        throw detail::bad_field("speed_mm_s", fmt::format("{:g} mm/s", speed_mm_s), "give more than 0");
+        throw detail::bad_field("speed_mm_s", fmt::format("{:g} mm/s is out of range", speed_mm_s),
+                                "give more than 0 mm/s");
     if (!(length > 0.0))
         return *this;
     const double moving = length / speed_mm_s;

@@ -124,7 +124,7 @@ player_lines checked(player_lines l, unsigned rate)
 float to_gain(double level_db)
 {
     if (!(level_db >= player::least_level_db && level_db <= 0.0))
-        throw error(error_kind::bad_input, "level_db", fmt::format("it is {}", level_db),
+        throw error(error_kind::bad_input, "level_db", fmt::format("{} dB is out of range", level_db),
                     fmt::format("give {} to 0 dB", player::least_level_db));
     return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
@@ -162,12 +162,12 @@ void check_start(const engine::audio_thread& audio, const std::string& stream, c
 std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
-        throw error(error_kind::bad_input, "player", "no sink", "open one with open_alsa()");
+        throw error(error_kind::bad_input, "player", "the sink is missing", "open one with open_alsa()");
     const stream_setup& setup = s->setup();
     if (setup.rate == 0 || setup.channels == 0 || setup.period_frames == 0 ||
         setup.buffer_frames < setup.period_frames)
         throw error(error_kind::bad_input, "player",
-                    fmt::format("a sink of {} at {} Hz with {} a period and {} in its buffer",
+                    fmt::format("its sink has {} at {} Hz, {} a period and {} in its buffer",
                                 counted(setup.channels, "channel"), setup.rate,
                                 counted(setup.period_frames, "frame"), setup.buffer_frames),
                     "let setup() give numbers above 0, and a buffer of one period or more");
@@ -202,14 +202,15 @@ const array& checked(const array& a, const stream_setup& s)
 {
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
         if (a.tactors[i].channel >= s.channels)
-            throw error(error_kind::bad_input, "player",
-                        fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
-                                    a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
-                        fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
+            throw error(
+                error_kind::bad_input, "player",
+                fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i, a.name,
+                            a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
+                fmt::format("open it with {} or more: they count from 0", counted(a.channels(), "channel")));
     if (const std::string lost = lost_tactor(a, s.wiring); !lost.empty())
         throw error(error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
-                    "in the definition of the PCM (ttable, bindings) lead each channel to its own channel of "
-                    "the device, at 1, or play on the card itself, hw:CARD=NAME");
+                    "in the PCM's definition, route each channel to its own channel of the device with "
+                    "coefficient 1 (ttable, bindings), or play on the card itself: hw:CARD=NAME");
     return a;
 }
 
@@ -221,7 +222,7 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
 {
     if (s.rate() != stream.rate || s.channels() != stream.channels)
         throw error(error_kind::bad_input, "stroke",
-                    fmt::format("made for {} at {} Hz, the stream has {} at {} Hz",
+                    fmt::format("it was made for {} at {} Hz, but the stream has {} at {} Hz",
                                 counted(s.channels(), "channel"), s.rate(), stream.channels, stream.rate),
                     "render it with the stream's rate and channels, or open the stream with the score's")
             .with_field(s.channels() == stream.channels ? "rate"
@@ -241,10 +242,12 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
     for (std::size_t i = 0; has_own && i < made.list.items.size(); ++i) {
         const synth::item& it = made.list.items[i];
         if (it.kind == synth::item_kind::own && made.limits[it.tactor] == 0.0 && limits[it.tactor] > 0.0)
-            throw error(error_kind::bad_input, "samples",
-                        fmt::format("channel {} has a tactor of the player's array, which their own has not",
-                                    it.tactor),
-                        "make the score for the array that the player was opened with");
+            throw error(
+                error_kind::bad_input, "samples",
+                fmt::format(
+                    "channel {} drives a tactor in the player's array, but none in the samples' array",
+                    it.tactor),
+                "make the score for the array that the player was opened with");
     }
 }
 
@@ -252,8 +255,8 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
 
 void start_at::refuse_frame(long long stream_frame)
 {
-    throw error(error_kind::bad_input, "start", fmt::format("frame {}", stream_frame),
-                "frames of the stream count from 0; start_at::now() is as soon as possible")
+    throw error(error_kind::bad_input, "start", fmt::format("frame {} is before the stream", stream_frame),
+                "give 0 or more, or use start_at::now()")
         .with_field("start");
 }
 
@@ -498,7 +501,7 @@ void player::impl::start(const player_options& o)
         made = out->setup();
         detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
                     counted(made.channels, "channel"), made.rate, made.buffer_frames / made.period_frames,
-                    made.period_frames, made.has_clock ? "" : ", timed by us");
+                    made.period_frames, made.has_clock ? "" : ", timed by tactor");
         for (const std::string& odd : wiring_warnings(tactors, made.wiring))
             detail::log(log.function(), log_kind::warning, "{}: {}", stream, odd);
         if (const std::string doubt = book.doubt(); !doubt.empty())

@@ -418,8 +418,8 @@ std::string lost_tactor(const array& a, const stream_wiring& w)
         if (mine.empty())
             return tactor_text + ", which reaches no channel of the device";
         const std::size_t other = partner(a, w, i, mine.front());
-        return fmt::format("{}, which reaches the device only together with channel {} of tactor {}",
-                           tactor_text, a.tactors[other].channel, other);
+        return fmt::format("{}, which the PCM mixes with channel {} of tactor {}", tactor_text,
+                           a.tactors[other].channel, other);
     }
     return {};
 }

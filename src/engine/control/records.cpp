@@ -571,11 +571,12 @@ void stream_log::look_at_stream(const stream_status& s)
         add(log_kind::warning, "the audio thread, or the whole process, stood still: the amplifier goes off");
     if (const std::uint32_t mutes = a.mutes.load(std::memory_order_acquire);
         std::exchange(mutes_, mutes) != mutes)
-        add(log_kind::warning, "the amplifier was muted: what played was not felt");
+        add(log_kind::warning, "the amplifier was muted: nobody felt what played");
     if (grown(link_.count.off_failures, off_failures_) != 0)
-        add(log_kind::error, "the amplifier's line refuses to switch off: trying again");
+        add(log_kind::error, "the amplifier's line does not switch off: tactor tries again");
     if (rose(a.stuck.load(std::memory_order_seq_cst), stuck_))
-        add(log_kind::error, "the amplifier may be on: its line still refuses, and no further try follows");
+        add(log_kind::error,
+            "the amplifier may be on: its line still does not switch off, and tactor has stopped trying");
     if (rose(a.ready.load(std::memory_order_acquire) && s.running, ready_))
         add(log_kind::info, "strokes may sound");
 }

@@ -24,7 +24,7 @@ std::string range_text(const detail::bounds& range)
     const std::string low =
         std::isfinite(range.low) ? fmt::format("{} {}", range.above_low ? "above" : "from", range.low) : "";
     if (!std::isfinite(range.high))
-        return low + (range.above_low ? "" : " on");
+        return range.above_low ? low : fmt::format("{} or more", range.low);
     if (low.empty() || range.above_low)
         return fmt::format("{}{}at most {}", low, low.empty() ? "" : " and ", range.high);
     return fmt::format("{} to {}", low, range.high);
@@ -48,7 +48,7 @@ ordered_json read_object(const std::string& text, const std::string& file)
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
     const auto line = static_cast<unsigned>(1 + std::count(text.begin(), end, '\n'));
     throw error(error_kind::bad_input, source_place{file, line}, why,
-                "write it again: it was changed, or its end is missing");
+                "restore it: it was changed, or its end is missing");
 }
 
 void json_value::refuse(std::string_view why, std::string_view hint) const
@@ -66,7 +66,7 @@ json_value json_value::operator[](const std::string& key) const
     if (!exists())
         return {nullptr, *file_, hint_, std::move(place)};
     if (!value_->is_object())
-        refuse("is not an object");
+        refuse("it is not an object");
     const auto at = value_->find(key);
     return {at == value_->end() ? nullptr : &*at, *file_, hint_, std::move(place)};
 }
@@ -74,7 +74,7 @@ json_value json_value::operator[](const std::string& key) const
 const json_value& json_value::need_member() const
 {
     if (value_ == nullptr)
-        refuse("is missing");
+        refuse("it is missing");
     return *this;
 }
 
@@ -84,7 +84,7 @@ std::vector<json_value> json_value::list() const
     if (!exists())
         return all;
     if (!value_->is_array())
-        refuse("is not a list");
+        refuse("it is not a list");
     for (const ordered_json& one : *value_)
         all.push_back({&one, *file_, hint_, fmt::format("{}[{}]", place_, all.size())});
     return all;
@@ -102,23 +102,23 @@ std::optional<T> json_value::get(bool (ordered_json::*is_one)() const noexcept, 
 
 std::optional<double> json_value::number() const
 {
-    return get<double>(&ordered_json::is_number, "is not a number");
+    return get<double>(&ordered_json::is_number, "it is not a number");
 }
 
 std::optional<std::string> json_value::text() const
 {
-    return get<std::string>(&ordered_json::is_string, "is not a text");
+    return get<std::string>(&ordered_json::is_string, "it is not a text");
 }
 
 std::optional<bool> json_value::truth() const
 {
-    return get<bool>(&ordered_json::is_boolean, "is neither true nor false");
+    return get<bool>(&ordered_json::is_boolean, "it is neither true nor false");
 }
 
 std::vector<json_value> json_value::need_list() const
 {
     if (!need_member().exists())
-        refuse("is null");
+        refuse("it is null");
     return list();
 }
 
@@ -134,9 +134,9 @@ std::vector<std::string> json_value::keys() const
 void json_value::need_members() const
 {
     if (!need_member().exists())
-        refuse("is null");
+        refuse("it is null");
     if (!value_->is_object())
-        refuse("is not an object");
+        refuse("it is not an object");
 }
 
 std::vector<double> json_value::need_numbers() const
@@ -173,7 +173,7 @@ void json_reader::finish() const
     for (const std::string& key : object_.keys())
         if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
             const std::string_view near = detail::nearest_name(key, known_);
-            object_[key].refuse("is an unknown field", near.empty() ? "" : detail::meant_name(key, near));
+            object_[key].refuse("it is an unknown field", near.empty() ? "" : detail::meant_name(key, near));
         }
 }
 
@@ -181,7 +181,7 @@ double json_reader::number(const json_value& from, const detail::bounds& range)
 {
     const double v = from.need_number();
     if (!range.holds(v))
-        from.refuse(fmt::format("is {}, not {}", v, range_text(range)));
+        from.refuse(fmt::format("it is {}, not {}", v, range_text(range)));
     return v;
 }
 
@@ -192,7 +192,7 @@ double json_reader::whole(const json_value& from, const detail::bounds& range, b
     const double high = std::min(range.high, most);
     const double v = from.need_number();
     if (!(v >= low && v <= high) || v != std::floor(v))
-        from.refuse(fmt::format("is not a whole number from {} to {}", low, high));
+        from.refuse(fmt::format("it is not a whole number from {} to {}", low, high));
     return v;
 }
 

@@ -68,7 +68,7 @@ public:
         const std::string name = need_text();
         const std::optional<Kind> k = detail::find_kind<Kind>(name);
         if (!k)
-            refuse("is \"" + name + "\", which is unknown");
+            refuse("it is \"" + name + "\", which is unknown");
         return *k;
     }
     std::vector<json_value> need_list() const;
@@ -96,7 +96,7 @@ private:
     T need(std::optional<T> v) const
     {
         if (!v)
-            need_member().refuse("is null");
+            need_member().refuse("it is null");
         return *std::move(v);
     }
 
@@ -130,7 +130,7 @@ public:
     void constant(const char* name, std::string_view text)
     {
         if (const json_value at = member(name); at.need_text() != text)
-            at.refuse("is not a \"" + std::string(text) + '"');
+            at.refuse("it is not a \"" + std::string(text) + '"');
     }
     template <class Make>
     void fact(const char* name, const Make&, const detail::about& what)
@@ -172,7 +172,7 @@ public:
     void exactly_one(const char* a, const char* b) const
     {
         if (object_[a].exists() == object_[b].exists())
-            object_.refuse(std::string("must have exactly one of ") + a + " and " + b);
+            object_.refuse(std::string("it must have exactly one of ") + a + " and " + b);
     }
     void new_line() const noexcept {}
 
@@ -240,7 +240,7 @@ private:
     {
         const std::vector<json_value> items = from.need_list();
         if (items.size() != Size)
-            from.refuse("is not a list of " + std::to_string(Size) + " numbers");
+            from.refuse("it is not a list of " + std::to_string(Size) + " numbers");
         for (std::size_t i = 0; i < Size; ++i)
             take(items[i], all[i], what);
     }

@@ -29,7 +29,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* hint = "see tactor-json(5)";
-constexpr const char* how_to_make = "{command:plan} makes one";
+constexpr const char* how_to_make = "make a plan with {command:plan}";
 
 constexpr std::uint64_t most_way_points = 10000;
 
@@ -61,7 +61,7 @@ waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings
 {
     if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
         stroke["waveform"].refuse(
-            fmt::format("is the file {}, but this is a text without a place", *s.waveform));
+            fmt::format("it is the file {}, but a text has no folder in which to find it", *s.waveform));
     const auto found = find_beside(stroke.file(), s);
     try {
         return found ? *found : parse_waveform(*s.waveform);
@@ -80,18 +80,18 @@ void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recording
     if (p.wave.recorded && s.recording && !is_same(*s.recording, *p.wave.recorded))
         throw error(error_kind::bad_input, source_place{p.wave.recorded->file},
                     "the recording has changed since the plan was made",
-                    "plan the stroke again, or bring the old file back");
+                    "plan the stroke again, or restore the old file");
     p.wave.seed = s.noise_seed.value_or(p.wave.seed);
     p.wave.texture = s.texture.value_or(p.wave.texture);
     p.wave.texture_mm = s.texture_mm.value_or(p.wave.texture_mm);
     if (s.am_hz.has_value() != s.am_depth.has_value())
-        stroke["am_hz"].refuse("needs am_depth");
+        stroke["am_hz"].refuse("it needs am_depth");
     if (s.am_hz)
         p.am = {*s.am_hz, *s.am_depth};
     p.course = s.course.value_or(p.course);
     for (std::size_t i = 1; i < p.course.size(); ++i)
         if (p.course[i].t_s < p.course[i - 1].t_s)
-            stroke["course"].refuse("has a point out of order");
+            stroke["course"].refuse("it has a point out of order");
 }
 
 // Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
@@ -103,8 +103,8 @@ void check_amplitudes(const json_value& f, const std::string& name, const plan& 
         return;
     for (const drive& d : drives)
         if (d.amplitude > intensity * (1.0 + rounding))
-            f[name].refuse(fmt::format("drives tactor {} at {}, above its intensity of {}", d.tactor,
-                                       d.amplitude, intensity));
+            f[name].refuse(fmt::format("it drives tactor {} at amplitude {}, above its intensity of {}",
+                                       d.tactor, d.amplitude, intensity));
 }
 
 // Checks that drives and their order are such as planners make.
@@ -115,11 +115,12 @@ void check_bursts(const json_value& f, const array& a, const plan& p, const std:
         const burst& b = bursts[i];
         const auto refuse = [&](const std::string& why) { f[fmt::format("bursts[{}]", i)].refuse(why); };
         if (b.onset_s < latest)
-            refuse("begins before the previous one");
+            refuse("it begins before the previous one");
         latest = b.onset_s;
         for (std::size_t k = 0; k < b.drives.size(); ++k) {
             if (b.drives[k].tactor >= a.tactors.size())
-                refuse(fmt::format("drives tactor {} of {}", b.drives[k].tactor, a.tactors.size()));
+                refuse(fmt::format("it drives tactor {}, but the array has {}", b.drives[k].tactor,
+                                   counted(a.tactors.size(), "tactor")));
             if (k > 0 && b.drives[k].tactor <= b.drives[k - 1].tactor)
                 refuse("its drives are not in order of tactor");
         }
@@ -136,7 +137,8 @@ void check_samples(const json_value& f, const array& a, const plan& p, const cur
     }
     for (const drive& d : samples.drives)
         if (d.tactor >= a.tactors.size())
-            f["points"].refuse(fmt::format("drive tactor {} of {}", d.tactor, a.tactors.size()));
+            f["points"].refuse(fmt::format("they drive tactor {}, but the array has {}", d.tactor,
+                                           counted(a.tactors.size(), "tactor")));
 }
 
 // Checks a plan's claims about its bursts or points, and puts them into it.
@@ -147,12 +149,12 @@ void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> burst
     p.bursts = std::move(bursts);
     for (const conflict& c : p.conflicts)
         if (c.tactor >= parts.tactors.tactors.size())
-            f["conflicts"].refuse(
-                fmt::format("have tactor {} of {}", c.tactor, parts.tactors.tactors.size()));
+            f["conflicts"].refuse(fmt::format("they name tactor {}, but the array has {}", c.tactor,
+                                              counted(parts.tactors.tactors.size(), "tactor")));
     if (!parts.is_sampled)
         return;
     if (parts.step_s != continuous_step_s)
-        f["continuous"]["step_s"].refuse(fmt::format("must be {} s", continuous_step_s));
+        f["continuous"]["step_s"].refuse(fmt::format("it must be {} s", continuous_step_s));
     check_samples(f, parts.tactors, p, samples);
     try {
         p.curve = curve(p.stroke_duration_s, std::move(samples));
@@ -276,7 +278,7 @@ private:
         if (parts.moved)
             read_.made.moved.push_back(*std::move(parts.moved));
         if (!read_.made.moved.empty() && read_.made.moved.size() != read_.made.plans.size())
-            all["compensation"].refuse("is set in some plans and not in all");
+            all["compensation"].refuse("it is set in some plans, but not in all");
         return false;
     }
 
@@ -334,7 +336,7 @@ plan_file load_plans(const std::string& file)
     const int code = errno;
     if (in.bad() || !in.is_open())
         throw error(error_kind::bad_input, source_place{file}, std::generic_category().message(code),
-                    "check the name and its rights")
+                    "check the name and its permissions")
             .with_os_code(code);
     detail::note_input(file);
     return read_from(in, file, recordings_kind::read, [&file] {

@@ -149,7 +149,7 @@ public:
     std::vector<stroke> read()
     {
         if (!next_line())
-            fail({}, "is empty", header_hint);
+            fail({}, "it is empty", header_hint);
         header();
         // Reserves the exact number: a vector that grows briefly needs three times as much.
         points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_lines));
@@ -164,7 +164,7 @@ private:
     static constexpr std::size_t most_lines = 10'000'000;
     static constexpr std::size_t most_named = 5; ///< most columns that a message names
     static constexpr std::string_view header_hint =
-        "the first line names the columns: t_s,x_mm,y_mm,intensity";
+        "name the columns in the first line: t_s,x_mm,y_mm,intensity";
 
     // Reads the next non-empty line into line_. Lines of commas are a spreadsheet's empty rows.
     bool next_line()
@@ -188,7 +188,7 @@ private:
         fields_.clear();
         for (std::size_t at = 0;; ++at) {
             if (fields_.size() == most_fields)
-                fail(at + 1, fmt::format("more than {} values in a line", most_fields), header_hint);
+                fail(at + 1, fmt::format("the line has more than {} values", most_fields), header_hint);
             detail::skip_blanks(line_, at);
             fields_.push_back(at < line_.size() && line_[at] == '"' ? quoted_field(at) : plain_field(at));
             if (at == line_.size())
@@ -208,7 +208,7 @@ private:
         const std::size_t begin = at + 1;
         const std::size_t end = line_.find('"', begin);
         if (end == std::string_view::npos)
-            fail(at + 1, "a quote does not end", "leave out the quotes");
+            fail(at + 1, "a quote is not closed", "leave out the quotes");
         at = end + 1;
         detail::skip_blanks(line_, at);
         if (at < line_.size() && line_[at] != ',')

@@ -67,7 +67,7 @@ auto with_place(const toml_table& t, std::string_view key, F make)
 void refuse_unused(const toml_table& t, const char* key, bool used, const char* hint)
 {
     if (t.has(key) && !used)
-        t.fail(key, fmt::format("{} has {}, which nothing uses", t.title(), key), hint);
+        t.fail(key, fmt::format("{} has {}, but nothing uses it", t.title(), key), hint);
 }
 
 std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem::path* folder)
@@ -78,7 +78,8 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
     const auto texture_mm = t.number("texture_mm", bounds_of::texture_mm);
     waveform w;
     if (text && folder == nullptr && waveform_names_file(*text))
-        t.fail("waveform", fmt::format("waveform is the file {}, but this is a text without a place", *text),
+        t.fail("waveform",
+               fmt::format("waveform is the file {}, but a text has no folder in which to find it", *text),
                "give the stroke as a file");
     if (text)
         w = with_place(t, "waveform", [&] { return parse_waveform(*text, folder ? *folder : ""); });
@@ -122,8 +123,8 @@ void for_each_part(const toml_table& t, std::string_view key, std::string_view s
                     fmt::format("give {}", shape));
         const double part = t.to_number((*entry)[0], "the part of the path", bounds_of::part);
         if (!(part > before))
-            fail_at(t.where(node), fmt::format("the part {} of {} is not after {}", part, key, before),
-                    "parts ascend from 0, the path's start, to 1, its end");
+            fail_at(t.where(node), fmt::format("part {} of {} is not after {}", part, key, before),
+                    "put parts in ascending order, from 0, the path's start, to 1, its end");
         before = part;
         take(part, *entry);
     }
@@ -364,7 +365,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
     if (kind == "timed") {
         if (!keys.uneven.empty())
             t.fail(keys.uneven,
-                   fmt::format("timed points have their own times and intensities, and {} is for a path",
+                   fmt::format("{} is only for a path: timed points have their own times and intensities",
                                keys.uneven),
                    "leave it out, or give the path as points");
         s.motion = read_timed(t, keys, intensity_max, s.warnings);
@@ -419,7 +420,8 @@ void follow(stroke& s, double wait_s, std::size_t back)
 void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
 {
     if (strokes > most_strokes)
-        t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("use at most {}", most_strokes));
+        t.fail(key, fmt::format("there are {} strokes in all", strokes),
+               fmt::format("use at most {}", most_strokes));
 }
 
 /// Strokes in the order of the keys start_s and start_from of their tables.
@@ -528,10 +530,10 @@ file_entry read_group(const toml_table& t, const std::string& name, const stroke
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
-        t.fail("stroke", "groups in groups too deep", fmt::format("use at most {}", deepest_group));
+        t.fail("stroke", "groups are nested too deep", fmt::format("use at most {}", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");
     if (inside.empty())
-        t.fail("stroke", "a group without a stroke", "add [[stroke.stroke]]");
+        t.fail("stroke", "a group has no stroke", "add [[stroke.stroke]]");
     file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1);
     auto fit = read_fit(t);
     if (fit)

@@ -80,7 +80,7 @@ std::vector<double> svg_numbers(std::string_view text, std::string_view unit = {
             ++at;
             skip_blanks(text, at);
             if (at == text.size())
-                throw value_fault{at, "ends with a comma", "a number follows a comma"};
+                throw value_fault{at, "it ends with a comma", "write a number after the comma"};
         }
     }
     return all;
@@ -163,7 +163,7 @@ std::vector<outline> points(const element& e, bool closed)
     const auto v = e.doc.read(e.node, "points", [](std::string_view text) {
         std::vector<double> numbers = svg_numbers(text);
         if (numbers.size() % 2 != 0)
-            throw value_fault{text.size(), "an x without a y", "give pairs of numbers"};
+            throw value_fault{text.size(), "an x has no y", "give pairs of numbers"};
         return numbers;
     });
     if (!v || v->size() < 4)
@@ -246,16 +246,16 @@ svg_length parse_svg_length(std::string_view text)
         if (name == unit)
             return {v * mm, true};
     throw value_fault{at, fmt::format("unit {} is unknown", detail::quoted(unit)),
-                      "known units: mm, cm, in, pt, pc, px, Q"};
+                      "use mm, cm, in, pt, pc, px, Q"};
 }
 
 svg_view_box parse_svg_view_box(std::string_view text)
 {
     const std::vector<double> v = svg_numbers(text);
     if (v.size() != 4)
-        throw value_fault{0, fmt::format("{} of 4 numbers", v.size()), "give x, y, width and height"};
+        throw value_fault{0, fmt::format("it has {} of 4 numbers", v.size()), "give x, y, width and height"};
     if (!(v[2] > 0.0 && v[3] > 0.0))
-        throw value_fault{0, "has no size", "give a width and a height above 0"};
+        throw value_fault{0, "it has no size", "give a width and a height above 0"};
     return {{v[0], v[1]}, v[2], v[3]};
 }
 
@@ -308,7 +308,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
         refuse_other_form(text_, name_, text_form::xml);
         throw error(error_kind::bad_input,
                     place(static_cast<std::size_t>(std::max<std::ptrdiff_t>(r.offset, 0))), r.description(),
-                    "the file is not well-formed XML");
+                    "correct the file: it is not well-formed XML");
     }
     if (svg_tag(root()) != "svg")
         fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");

@@ -347,7 +347,7 @@ private:
             href = n.attribute("xlink:href").value();
         if (href.size() < 2 || href.front() != '#')
             doc_.leave_out(n, fmt::format("{} refers to nothing in this file", doc_.called(n)),
-                           "href=\"#id\"");
+                           "use href=\"#id\"");
         const xml_node target = doc_.by_id(href.substr(1));
         if (!target)
             doc_.leave_out(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
@@ -369,7 +369,7 @@ private:
         const double scale = std::hypot(s.to_mm.a, s.to_mm.b) * std::hypot(s.to_mm.c, s.to_mm.d);
         if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
             doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
-                           "a scale of 0 or a skew of 90 degrees leaves no drawing");
+                           "avoid a scale of 0 and a skew of 90 degrees");
         std::vector<path> paths;
         std::size_t look = 0; // hash: equal for equal shapes in equal places
         for (outline& o : outlines) {
@@ -405,8 +405,8 @@ private:
         const auto is_point = [](const path& p) { return p.length_mm() == 0.0; };
         const bool all = std::all_of(paths.begin(), paths.end(), is_point);
         if (all && !n.attribute("data-duration-s"))
-            doc_.leave_out(n, fmt::format("{}: has no length", doc_.called(n)),
-                           "data-duration-s makes it a tap");
+            doc_.leave_out(n, fmt::format("{}: it has no length", doc_.called(n)),
+                           "add data-duration-s to make it a tap");
         if (!all && std::erase_if(paths, is_point) != 0)
             note_omission({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
                            "it draws a point"});
@@ -431,8 +431,7 @@ private:
             const double part = all > 0.0 ? length / all : 1.0 / static_cast<double>(paths.size());
             const double time = duration ? *duration * part : length / speed;
             if (time > detail::longest_stroke_s)
-                doc_.fail(n, fmt::format("{} lasts {:g} s", doc_.called(n), time),
-                          "a stroke lasts at most a day");
+                doc_.fail(n, fmt::format("{} lasts {:g} s", doc_.called(n), time), "use at most a day");
             strokes_.push_back(
                 {.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
                  .motion = trajectory::along(paths[i], {.duration_s = time, .easing = s.easing}, s.intensity),

@@ -435,8 +435,8 @@ void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std
         const bool in_order = i == 0 || out[i - 1].tactor < d.tactor;
         if (!in_order || d.tactor >= l.places().size() || !(d.amplitude > 0.0 && std::isfinite(d.amplitude)))
             throw error(error_kind::bad_input, fmt::format("phantom model \"{}\"", m.name()),
-                        fmt::format("gave tactor {} amplitude {}", d.tactor, d.amplitude),
-                        "drives go in order of tactor, with finite amplitudes above 0");
+                        fmt::format("it gave tactor {} amplitude {}", d.tactor, d.amplitude),
+                        "give drives in order of tactor, with finite amplitudes above 0");
     }
 }
 

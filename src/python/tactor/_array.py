@@ -154,7 +154,7 @@ class Array(_Value):
         with reading(path) as name:
             setup = _tactor.Setup.load(name)
             if setup.array is None:
-                raise InputError(os.fspath(path), "has no [array]", "see tactor.toml(5)")
+                raise InputError(os.fspath(path), "it has no [array]", "add one, see tactor.toml(5)")
         return cls._wrap(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
 
     @classmethod
@@ -173,7 +173,7 @@ class Array(_Value):
         except (TypeError, ValueError):
             x = y = pitch_mm
         _need(name, str, "name")
-        n, m = (_whole(what, count, 1, 1024, "1 to 1024 tactors") for what, count in (("rows", rows), ("columns", columns)))
+        n, m = (_whole(what, count, 1, 1024, "use 1 to 1024 tactors") for what, count in (("rows", rows), ("columns", columns)))
         return cls._wrap(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
 
     @classmethod
@@ -276,7 +276,7 @@ class Array(_Value):
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
         counts = np.floor((high - low) / step + 1e-9) + 1
         if counts.prod() > 1e6:
-            raise InputError("step_mm", f"{step:g} gives {counts.prod():.0f} places", "at most 1000000", field="step_mm")
+            raise InputError("step_mm", f"{step:g} gives {counts.prod():.0f} places", "use a larger step: at most 1000000 places", field="step_mm")
         x, y = (low[axis] + step * np.arange(counts[axis]) for axis in (0, 1))
         asked = np.stack(np.meshgrid(x, y), axis=-1)
         inside = np.array([self.contains(place) for place in asked.reshape(-1, 2)]).reshape(asked.shape[:2])
@@ -388,7 +388,7 @@ class Array(_Value):
 def _places(what: str, points: _t.Any) -> _t.Any:
     places = _floats(what, points)
     if places.ndim != 2 or places.shape[1] != 2:
-        raise InputError(what, f"they have the shape {places.shape}", "give [(x_mm, y_mm), ...]", field=what)
+        raise InputError(what, f"their shape is {places.shape}", "give [(x_mm, y_mm), ...]", field=what)
     return places
 
 
@@ -402,9 +402,9 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
     except (TypeError, ValueError) as e:
         if isinstance(e, InputError):
             raise
-        raise InputError("thresholds", f"{_shown(t.thresholds)} are none", "give [(Hz, dBFS), ...]", field="thresholds") from None
+        raise InputError("thresholds", f"{_shown(t.thresholds)} is not a list of thresholds", "give [(Hz, dBFS), ...]", field="thresholds") from None
     return (_place("position", t.position), _whole("channel", t.channel, 0, 1023), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
-            level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"),
+            level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "use 1 or -1"), t.actuator, thresholds, level("rise_s"),
             level("displacement_um_at_0dbfs"))
 
 
@@ -430,7 +430,7 @@ def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
     except TypeError:
         return [values] * count
     if len(all_of_them) != count:
-        raise InputError(what, f"there are {len(all_of_them)}, and {_counted(count, 'tactor')}", "give one for each tactor", field=what)
+        raise InputError(what, f"there are {len(all_of_them)} for {_counted(count, 'tactor')}", "give one for each tactor", field=what)
     return all_of_them
 
 

@@ -52,7 +52,7 @@ def _is_plain(value: _t.Any) -> bool:
 def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = math.inf, hint: str = "", finite: bool = True) -> float:
     """Returns a number between bounds; refuses all else by the name `what`."""
     if not hint and math.isfinite(least):
-        hint = f"{least:g} to {most:g}" if math.isfinite(most) else f"{least:g} or more"
+        hint = f"use {least:g} to {most:g}" if math.isfinite(most) else f"use {least:g} or more"
     try:
         if isinstance(value, (str, bytes, bytearray, memoryview, bool)) or not _is_plain(value):
             raise TypeError
@@ -68,7 +68,7 @@ def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = ma
 
 def _whole(what: str, value: _t.Any, least: int, most: int, hint: str = "") -> int:
     """Returns a whole number between bounds; 48000.0 is one, too."""
-    hint = hint or f"a whole number from {least} to {most}"
+    hint = hint or f"give a whole number from {least} to {most}"
     number = _number(what, value, least, most, hint)
     if number != int(number):
         raise InputError(what, f"{_shown(value)} is not a whole number", hint, field=what)
@@ -99,7 +99,7 @@ def _need(value: object, kind: type, what: str) -> None:
     """Refuses an argument of another type by its name."""
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
-        raise TypeError(f"{what}: {article} {kind.__name__} is wanted, not {type(value).__name__}")
+        raise TypeError(f"{what}: it must be {article} {kind.__name__}, not {type(value).__name__}")
 
 
 def _counted(n: int, noun: str) -> str:
@@ -110,7 +110,7 @@ def encoded(name: str | os.PathLike[str], what: str = "file") -> bytes:
     """Returns a name as the system takes it; refuses zero bytes, which would end it."""
     as_bytes = os.fsencode(name)
     if b"\0" in as_bytes:
-        raise InputError(what, f"{os.fspath(name)!r} has a zero byte in it", "no file or device is called so", field=what)
+        raise InputError(what, f"{os.fspath(name)!r} has a zero byte", "give a name without it", field=what)
     return as_bytes
 
 

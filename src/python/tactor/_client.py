@@ -258,7 +258,7 @@ class _Connection:
         try:
             line = json.dumps(message, allow_nan=False).encode() + b"\n"
         except (TypeError, ValueError) as e:
-            raise InputError("params", f"they are no JSON: {e}", "give numbers, texts, lists and dicts") from None
+            raise InputError("params", f"they are not JSON: {e}", "give numbers, texts, lists and dicts") from None
         try:
             with self.lock:
                 self.socket.sendall(line)
@@ -266,7 +266,7 @@ class _Connection:
             raise self._gone() from None
 
     def _gone(self) -> StreamError:
-        return StreamError(self.path, "the service has gone", "start it, and make a new client")
+        return StreamError(self.path, "the service has ended", "start it again, and make a new client")
 
     def _run(self) -> None:
         try:
@@ -318,7 +318,7 @@ def _connected(socket: str | os.PathLike[str] | None, tcp: str | None) -> _Conne
     """Connects to the service at that socket or address, or to the first that listens: the user's, then the system's."""
     if tcp is not None:
         if socket is not None:
-            raise InputError("tcp", "there is also a socket", "give one of them", field="tcp")
+            raise InputError("tcp", "it cannot be combined with socket", "give one of them", field="tcp")
         return _Connection(tcp, _parse_address(tcp))
     if socket is not None:
         return _Connection(os.fspath(socket))
@@ -416,7 +416,7 @@ class Client(_Unique):
         """
         given = [value for value in (at_s, delay) if value is not None]
         if len(given) > 1 or (given and start != "now"):
-            raise InputError("start", "there are several starts", "give one of start, at_s and delay", field="start")
+            raise InputError("start", "several starts are given", "give one of start, at_s and delay", field="start")
         if at_s is not None:
             start = {"monotonic_s": _number("at_s", at_s)}
         elif delay is not None:
@@ -507,7 +507,7 @@ def _source(stroke: _t.Any) -> dict[str, str]:
         return {"path": stroke.data}
     if isinstance(stroke, str):
         return {"stroke": stroke}
-    raise TypeError(f"stroke: a Stroke, a Path or the name of a preset is wanted, not {type(stroke).__name__}")
+    raise TypeError(f"stroke: it must be a Stroke, a Path or the name of a preset, not {type(stroke).__name__}")
 
 
 def _option_values(options: dict[str, _t.Any]) -> dict[str, _t.Any]:
@@ -517,6 +517,6 @@ def _option_values(options: dict[str, _t.Any]) -> dict[str, _t.Any]:
         if value is None:
             continue
         if hasattr(value, "weights"):
-            raise InputError(name, f"{_shown(value)} is of this process", "a service has built-in models only", field=name)
+            raise InputError(name, f"{_shown(value)} exists only in this process", "use a built-in model", field=name)
         values[name] = value.item() if hasattr(value, "item") else value
     return values

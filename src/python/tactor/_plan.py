@@ -44,7 +44,7 @@ class PhantomModel(_t.Protocol):
 def ask_model(model: _t.Any, name: str, x_mm: float, y_mm: float, intensity: float, tactors: int) -> list[tuple[int, float]]:
     """Returns the tactors and amplitudes above 0 that a model gives, in order of tactor; called by the extension."""
     what = f"phantom {name}"
-    hint = f"weights() returns a dict of tactor, 0 to {tactors - 1}, and amplitude, which is finite and not below 0"
+    hint = f"let weights() return a dict of tactors, 0 to {tactors - 1}, and finite amplitudes, 0 or more"
     answer = model.weights(x_mm, y_mm, intensity)
     if not hasattr(answer, "items"):
         raise InputError(what, f"it returned {_shown(answer)}", hint)
@@ -60,7 +60,7 @@ class Frozen(list[_T]):
     """A list that was made once and cannot be changed."""
 
     def _refuse(self, *_: object, **__: object) -> _t.NoReturn:
-        raise TypeError("it belongs to a plan and cannot be changed: list() of it can")
+        raise TypeError("it belongs to a plan and cannot be changed: change a copy, list(...)")
 
     append = extend = insert = remove = pop = clear = sort = reverse = _refuse  # type: ignore[assignment]
     __setitem__ = __delitem__ = __iadd__ = __imul__ = _refuse  # type: ignore[assignment]

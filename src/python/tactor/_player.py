@@ -28,7 +28,7 @@ if _t.TYPE_CHECKING:
 
 
 _LATEST_S = 8e9  # of a clock that counts nanoseconds in 64 bits
-_CLOCK = "seconds as time.monotonic() gives them"
+_CLOCK = "give seconds as time.monotonic() gives them"
 
 
 class Player(_Unique):
@@ -102,7 +102,7 @@ class Player(_Unique):
         if sample_format is not None:
             _need(sample_format, str, "sample_format")
         _need(keep_drive_time, bool, "keep_drive_time")
-        for name, least, hint in (("latency", 0.0001, "0.0001 to 10 s"), ("sync_delay", 0.0, "0 to 10 s")):
+        for name, least, hint in (("latency", 0.0001, "use 0.0001 to 10 s"), ("sync_delay", 0.0, "use 0 to 10 s")):
             value = given.pop(name)
             given[f"{name}_ms"] = None if value is None else 1e3 * _number(name, value, least, 10.0, hint)
         files = None if config is None else encoded(config, "config"), None if array._file is None else encoded(array._file)
@@ -180,18 +180,18 @@ class Player(_Unique):
         if hasattr(score, "__array_interface__"):
             score = Score._make_own(self._array, _find_frames(_t.cast(_t.Any, score)), {"rate": self.rate}, self.channels)
         if not isinstance(score, Score):
-            raise TypeError(f"a Score is wanted, not {type(score).__name__}")
+            raise TypeError(f"score: it must be a Score, not {type(score).__name__}")
         if not isinstance(at, str) or at not in ("now", "armed"):
-            raise InputError("at", f"{at!r} is not known", 'one of "now", "armed", or at_s=, delay= or frame=')
+            raise InputError("at", f"{at!r} is unknown", 'use "now", "armed", or at_s=, delay= or frame=')
         if frame is not None:
-            frame = _whole("frame", frame, 0, (1 << 63) - 1, "frames of the stream count from 0")
+            frame = _whole("frame", frame, 0, (1 << 63) - 1, "give 0 or more")
         times = [t for t in (at_s, delay, frame) if t is not None]
         if len(times) > 1 or (times and at != "now"):
-            raise InputError("at", "there are several starts", "give one of at, at_s, delay and frame")
+            raise InputError("at", "several starts are given", "give one of at, at_s, delay and frame")
         if at_s is not None:
             at_s = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:
-            at_s = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
+            at_s = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "give seconds")
         if score._own is not None:
             if self._array is not self._given and score._array == self._given:
                 score = score._moved(self._array)

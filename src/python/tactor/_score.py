@@ -34,7 +34,7 @@ def _find_type(dtype: _DTypeLike) -> _np.dtype[_t.Any]:
             return found
     except TypeError:
         pass
-    raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"', field="dtype")
+    raise InputError("dtype", f"{dtype!r} is unknown", 'use one of "float32", "int16", "int32"', field="dtype")
 
 
 def _find_frames(samples: _ArrayLike) -> _NDArray[_t.Any]:
@@ -45,7 +45,7 @@ def _find_frames(samples: _ArrayLike) -> _NDArray[_t.Any]:
         raw = raw[:, np.newaxis]
     wanted = np.dtype("float32") if raw.dtype == np.float64 else raw.dtype.newbyteorder("<")
     if raw.ndim != 2 or not raw.shape[1] or wanted.str not in _FORMATS or not _are_plain(raw):
-        raise InputError("samples", f"an array of shape {raw.shape} and type {raw.dtype} has no samples that can be played",
+        raise InputError("samples", f"an array of shape {raw.shape} and type {raw.dtype} has no samples to play",
                          "give one of shape (frames, channels), of float32 (full scale is 1), float64, int16 or int32", field="samples")
     with np.errstate(over="ignore"):  # it is refused as not finite
         return np.ascontiguousarray(raw, dtype=wanted)
@@ -56,12 +56,12 @@ def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
     if isinstance(plans, Plan):
         return [(plans.start, plans)]
     if not isinstance(plans, _abc.Iterable):
-        raise TypeError(f"plans: a Plan or several are wanted, not {type(plans).__name__}")
+        raise TypeError(f"plans: it must be a Plan or several, not {type(plans).__name__}")
     all_of_them = []
     for p in plans:
         pair = (p.start, p) if isinstance(p, Plan) else p
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[1], Plan)):
-            raise TypeError(f"a plan or (start_s, plan) is wanted, not {p!r}")
+            raise TypeError(f"plans: it must have plans or (start_s, plan), not {p!r}")
         all_of_them.append((None if pair[0] is None else _number("start", pair[0]), pair[1]))
     return all_of_them
 
@@ -237,7 +237,7 @@ class Score(_Value):
             out = np.empty((count, self.channels), sample_type)
         elif out.shape != (count, self.channels) or not out.flags.c_contiguous or not out.flags.writeable:
             raise InputError("out", f"an array of shape {out.shape} does not fit",
-                             f"give one of shape ({count}, {self.channels}) that can be written, in C's order", field="out")
+                             f"give one of shape ({count}, {self.channels}) that is writable, in C's order", field="out")
         renderer = _tactor.Renderer(self._core, _FORMATS[sample_type.str])
         renderer.skip(min(first, self.frames))
         renderer.into(out)

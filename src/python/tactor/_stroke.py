@@ -91,7 +91,7 @@ def _pauses(pauses: _t.Any) -> _t.Any:
     rows = []
     for row in pauses:
         if not hasattr(row, "__len__") or len(row) not in (2, 3):
-            raise InputError("pauses", f"one is {row!r}", "(part, seconds) or (part, seconds, intensity)", field="pauses")
+            raise InputError("pauses", f"one is {row!r}", "give (part, seconds) or (part, seconds, intensity)", field="pauses")
         rows.append((*row, 1.0)[:3])
     return _floats("pauses", rows).tolist() if rows else rows
 
@@ -104,7 +104,7 @@ def _is_one(value: _t.Any) -> bool:
 def _times(t: _t.Any) -> _t.Any:
     times = _floats("t", t)
     if times.ndim != 1:
-        raise InputError("t", f"it has the shape {times.shape}", "give a time, or a list of them", field="t")
+        raise InputError("t", f"its shape is {times.shape}", "give a time, or a list of them", field="t")
     return times
 
 
@@ -155,7 +155,7 @@ class Stroke(_Stated):
         """
         one_speed, one_intensity = _is_one(speed), _is_one(intensity)
         if duration is not None and speed is not None and one_speed:
-            raise InputError("duration", "there is also speed", "give one of them")
+            raise InputError("duration", "it cannot be combined with speed", "give one of them")
         _need(path, Path, "path")
         _need(easing, str, "easing")
         placing = _placed(name, start, carrier)
@@ -195,9 +195,9 @@ class Stroke(_Stated):
         count = columns[0].size
         for what, column in zip(("t", "x", "y"), columns):
             if column.ndim != 1 or column.size != count:
-                raise InputError(what, f"it has the shape {column.shape}, not ({count},)", "t, x and y are equally long")
+                raise InputError(what, f"its shape is {column.shape}, not ({count},)", "give t, x and y of the same length")
         if columns[3].size not in (1, count) or columns[3].ndim != 1:
-            raise InputError("intensity", f"it has the shape {columns[3].shape}, not ({count},)", "one for each point, or one for all")
+            raise InputError("intensity", f"its shape is {columns[3].shape}, not ({count},)", "give one for each point, or one for all")
         columns[3] = np.broadcast_to(columns[3], (count,))
         return cls._wrap(_tactor.Stroke.timed(name, np.column_stack(columns), intensity_max).same_as(*placing))
 

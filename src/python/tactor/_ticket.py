@@ -269,7 +269,7 @@ class LiveStroke(Ticket):
             x_mm, y_mm, intensity = _number("x_mm", x_mm), _number("y_mm", y_mm), _number("intensity", intensity, 0.0)
         intensity /= self._intensity_max
         if at_s is not None:
-            at_s = _number("at_s", at_s, 0.0, 8e9, "seconds as time.monotonic() gives them, or none for now")
+            at_s = _number("at_s", at_s, 0.0, 8e9, "give seconds as time.monotonic() gives them, or none for now")
         moved: bool = self._core.to(x_mm, y_mm, intensity, at_s)
         if moved:
             for remark in self._core.remarks(x_mm, y_mm, intensity):

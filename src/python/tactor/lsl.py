@@ -46,7 +46,7 @@ def _load(library: str | os.PathLike[str] | None) -> ctypes.CDLL:
         except (OSError, AttributeError) as e:
             why = why or str(e)
     raise DeviceError("liblsl", f"it cannot be loaded: {why}",
-                      "install it from the Lab Streaming Layer's releases, and name it in PYLSL_LIB where the system does not find it")
+                      "install it from the Lab Streaming Layer's releases, and name it in PYLSL_LIB if the system does not find it")
 
 
 class Markers(_Unique):

@@ -241,7 +241,7 @@ error busy(const std::string& name, const surroundings& s)
     return unavailable(name, fmt::format("it is busy: {} plays on it", names),
                        server
                            ? "a sound server uses it: the udev rules keep sound servers off the card Tactor"
-                           : fmt::format("stop it, e.g. kill {}", holders.front().pid));
+                           : fmt::format("stop it, such as by kill {}", holders.front().pid));
 }
 
 error forbidden(const std::string& name, const surroundings& s)

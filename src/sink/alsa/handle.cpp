@@ -160,7 +160,7 @@ std::string formats(const hw_params& p)
     return names.empty() ? " none that tactor plays" : names;
 }
 
-/// Returns "channels 1 to 8, rates 44100 to 192000 Hz, formats s32 s16" of a configuration space.
+/// Returns "channels: 1 to 8; rate in Hz: 44100 to 192000; formats: s32 s16" of a configuration space.
 std::string describe(const hw_params& p)
 {
     unsigned first_channels = 0;
@@ -174,8 +174,9 @@ std::string describe(const hw_params& p)
     snd_pcm_hw_params_get_rate_max(p.get(), &most_hz, &direction);
     if (direction < 0)
         --most_hz; // the bound itself is outside the range
-    return fmt::format("channels {}, rates {} Hz, formats{}", range(first_channels, last_channels, 10000),
-                       range(least_hz, most_hz, 10'000'000), formats(p));
+    return fmt::format("channels: {}; rate in Hz: {}; formats:{}",
+                       range(first_channels, last_channels, 10000), range(least_hz, most_hz, 10'000'000),
+                       formats(p));
 }
 
 // Greatest numbers of a sensible request: alsa-lib computes with 32 bits.
@@ -190,7 +191,7 @@ std::string request_text(const alsa_options& o)
         formats = to_string(*o.format);
     else
         for (const format_kind f : format_preference)
-            formats += fmt::format("{}{}", formats.empty() ? "" : " or ", to_string(f));
+            formats += fmt::format("{}{}", formats.empty() ? "" : ", ", to_string(f));
     return fmt::format("{} channel{} at {} Hz in {}", o.channels, o.channels == 1 ? "" : "s", o.rate,
                        formats);
 }
@@ -228,7 +229,7 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
     const auto add = [&s](std::string_view word) { s += fmt::format("{}{}", s.empty() ? "" : ", ", word); };
     const bool has_channels = set_channels(p, copy(space), o) != 0;
     if (!has_channels)
-        add("channels");
+        add("number of channels");
     if (snd_pcm_hw_params_test_rate(p, space.get(), o.rate, 0) != 0)
         add("rate");
     if (!takes_format(p, space, wanted_formats(o)))
@@ -237,11 +238,11 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
     wider.wider = true;
     const bool holds = !has_channels && set_channels(p, copy(space), wider) != 0;
     const std::string why =
-        s.empty() ? "it supports each of them alone, but not together" : fmt::format("refused: {}", s);
+        s.empty() ? "it supports each of these alone, but not together" : fmt::format("unsupported {}", s);
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                 fmt::format("cannot play {}; {}", request_text(o), why),
-                 fmt::format("it supports {}{}", describe(space),
-                             holds ? "; {wider=true} leaves the other channels silent" : ""))
+                 fmt::format("it cannot play {}: {}", request_text(o), why),
+                 fmt::format("use what it supports: {}{}", describe(space),
+                             holds ? "; {wider=true}, and the other channels stay silent" : ""))
         .with_field(has_channels ? "" : "channels");
 }
 
@@ -309,10 +310,10 @@ stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& a
     s.planar = access == SND_PCM_ACCESS_RW_NONINTERLEAVED;
     if (s.device_channels != asked_for.channels || s.rate != o.rate || period == 0 || buffer < period)
         throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                    fmt::format("asked for {}, it gave {} at {} Hz with {} of {} frames", request_text(o),
-                                counted(s.device_channels, "channel"), s.rate, s.period_frames,
-                                s.buffer_frames),
-                    "use the PCM without plugins, e.g. hw:CARD=NAME");
+                    fmt::format("{} were requested, but it opened with {} at {} Hz and {} of {} frames",
+                                request_text(o), counted(s.device_channels, "channel"), s.rate,
+                                s.period_frames, s.buffer_frames),
+                    "use the PCM without plugins, such as hw:CARD=NAME");
     return s;
 }
 
@@ -324,7 +325,7 @@ void check(const alsa_options& o)
                              unsigned most) {
         if (value < least || value > most)
             throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", o.pcm),
-                        fmt::format("{} {} out of range", value, thing),
+                        fmt::format("{} {} is out of range", value, thing),
                         fmt::format("give {} to {}", least, most))
                 .with_field(field);
     };

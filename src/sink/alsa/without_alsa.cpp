@@ -49,7 +49,7 @@ void require_device_name(const std::string& pcm)
 {
     if (const std::string why = alsa::not_plain(pcm); !why.empty())
         throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", pcm), why,
-                    "an array file can only name a device, such as hw:CARD=Tactor");
+                    "in an array file, name only a device, such as hw:CARD=Tactor");
 }
 
 std::optional<card_info> read_card(const std::string&)

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void fail_on_disk(const fs::path& file, int code)
 {
     throw error(error_kind::runtime, file.string(), std::strerror(code),
-                fmt::format("earlier answers are kept; {}--resume continues",
+                fmt::format("earlier answers are kept; {}continue with --resume",
                             code == ENOSPC || code == EDQUOT ? "free some space, and "
                             : code == EROFS                  ? "make the disk writable again, and "
                                                              : ""));
@@ -145,8 +145,8 @@ void try_to_write(const fs::path& file)
         return;
     const bool named_so = code == ENAMETOOLONG;
     throw error(named_so || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file.string(),
-                fmt::format("it could not be written: {}", std::strerror(code)),
-                named_so ? "use a shorter code of the participant, or name of the run"
+                fmt::format("it cannot be written: {}", std::strerror(code)),
+                named_so ? "use a shorter participant code, or a shorter name for the run"
                 : code == ENOSPC || code == EDQUOT
                     ? "free some space; the session has not begun"
                     : "name a folder that can be written; the session has not begun");
@@ -176,7 +176,7 @@ detail::owned_fd lock_folder(const fs::path& folder)
     const int code = errno;
     if (code == EWOULDBLOCK)
         throw error(error_kind::bad_input, folder.string(), "another session is running in this folder",
-                    "end that one first; two experimenters need different folders");
+                    "end it first, or use another folder");
     throw error(error_kind::runtime, folder.string(), std::strerror(code),
                 "name a folder that can be locked");
 }

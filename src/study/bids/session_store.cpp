@@ -114,13 +114,13 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
             "use --resume to continue it, or another code for another person");
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
-        throw error(error_kind::bad_input, file.string(), "it is not JSON", "it was changed");
+        throw error(error_kind::bad_input, file.string(), "it is not JSON", "restore it: it was changed");
     ordered both = facts_; // keys of either
     both.update(began);
     for (const auto& [key, value] : both.items())
         if (!is_as_begun(key, began.value(key, ordered("")), facts_.value(key, ordered(""))))
             throw error(error_kind::bad_input, file.string(), change_text(key, began, facts_),
-                        "continue a session as it began");
+                        "continue with the same definition, array and options");
     facts_ = began;
     resumed_ = true;
 }
@@ -213,7 +213,7 @@ void session_store::keep(const Write& write)
         release();
         write();
         throw error(error_kind::runtime, e.subject(), e.why(),
-                    "the last answer is kept; free some space, then use --resume");
+                    "earlier answers are kept; free some space, and continue with --resume");
     }
 }
 
@@ -353,8 +353,8 @@ void session_store::check_tables() const
             lost = lost == nullptr ? r : lost;
         else if (lost != nullptr)
             throw error(error_kind::bad_input, table(*lost).string(),
-                        fmt::format("it is missing, but the run {} came after it", r->outline.name),
-                        "put it back: otherwise its trials would come once more");
+                        fmt::format("it is missing, but run \"{}\" came after it", r->outline.name),
+                        "put it back, or its trials will come again");
         rows(*r);
         practice_rows(*r);
     }
@@ -402,7 +402,7 @@ std::vector<std::string> session_store::mend()
     }
     const auto note_lost = [&](bool lost, const fs::path& file, const std::string& what) {
         done.push_back(file.string() +
-                       (lost ? ": it is missing: a new one begins (put the old one back from a copy)"
+                       (lost ? ": it is missing, so a new one begins (restore the old one from a copy)"
                              : fmt::format(": {} was missing and was added again", what)));
     };
     if (added)

@@ -223,7 +223,7 @@ void check_code(const std::string& code)
 {
     if (code.empty() || make_file_name(code) != code)
         throw error(error_kind::bad_input, "--participant", fmt::format("\"{}\" is not a code", code),
-                    "use only letters and digits, as P07");
+                    "use only letters and digits, such as P07");
 }
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)
@@ -302,10 +302,10 @@ void study_folder::refuse_others()
     }
     const fs::path description = folder_ / "dataset_description.json";
     if (is_on_disk(description) && says_simulated(read_file(description)) == !simulated_)
-        throw error(
-            error_kind::bad_input, description.string(),
-            fmt::format("it has {} sessions, but this one has {}", kind(!simulated_), kind(simulated_)),
-            one_kind);
+        throw error(error_kind::bad_input, description.string(),
+                    fmt::format("the study has {} sessions, but this session is {}", kind(!simulated_),
+                                kind(simulated_)),
+                    one_kind);
 }
 
 std::vector<fs::path> study_folder::list_files() const
@@ -370,7 +370,7 @@ void study_folder::check_lists() const
         row && !group.empty() && people.has("group"))
         if (const auto listed = people.cell(*row, "group"); listed && *listed != group)
             people.refuse(*row, fmt::format("sub-{} is in group \"{}\", not \"{}\"", code_, *listed, group),
-                          "use --group with the group of the list, or correct the list");
+                          "use --group with the group in the list, or correct the list");
     const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
@@ -380,7 +380,7 @@ void study_folder::check_lists() const
             if (!answers.has(column))
                 throw error(error_kind::bad_input, source_place{answers.file(), 1},
                             fmt::format("the column {} of the questionnaire is missing", column),
-                            "give a changed questionnaire another name");
+                            "rename the questionnaire if you changed it");
     }
 }
 

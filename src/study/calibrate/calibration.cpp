@@ -49,7 +49,7 @@ random_numbers numbers_for(const calibration_settings& s, const std::string& par
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
 }
 
-constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
+constexpr const char* shape = "write it as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 [[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)
 {
@@ -63,7 +63,7 @@ double number(std::string_view key, std::string_view text, double low, double hi
         refuse(fmt::format("{}: \"{}\" is not a number", key, text));
     if (!(*v >= low && *v <= high))
         refuse(fmt::format("{} is {}", key, text),
-               fmt::format("{} to {}", plain_number(low), plain_number(high)));
+               fmt::format("give {} to {}", plain_number(low), plain_number(high)));
     return *v;
 }
 
@@ -96,8 +96,9 @@ void choose_measured(observer_settings& o, const std::vector<unsigned>& measured
     if (n == 1 || n == measured.size())
         return;
     if (n != all)
-        refuse(fmt::format("{} for {}", counted(n, "threshold"), counted(measured.size(), "tactor")),
-               "give one for all, or one for each");
+        refuse(
+            fmt::format("there are {} for {}", counted(n, "threshold"), counted(measured.size(), "tactor")),
+            "give one for all, or one for each");
     std::vector<double> own;
     for (const unsigned t : measured)
         own.push_back(o.thresholds_dbfs[t]);

@@ -46,7 +46,7 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
     for (const auto& [key, value] : all.items())
         ours = ours && j.contains(key);
     if (!ours || !j["date"].is_string())
-        throw error(error_kind::bad_input, file.string(), "it does not say how the calibration began",
+        throw error(error_kind::bad_input, file.string(), "it lacks the settings of the calibration",
                     "start a new calibration with another log");
     return j;
 }
@@ -62,7 +62,7 @@ void take_beginning(const fs::path& file, calibration_settings& s)
             throw error(error_kind::bad_input, file.string(),
                         fmt::format("the session began with {} {}, but now it is {}", key, began[key].dump(),
                                     value.dump()),
-                        "continue a session as it began");
+                        "continue with the same array and options");
 }
 
 // Returns the name of the file with the settings: that of the log with the extension .json.
@@ -177,8 +177,8 @@ void check_beginning(const fs::path& log, calibration_settings& s)
     const fs::path beginning = settings_file(log);
     if (!is_on_disk(beginning))
         throw error(error_kind::bad_input, beginning.string(),
-                    "it is missing, and it records how the session began",
-                    "start a new calibration with another file name");
+                    "it is missing, so the session's settings are unknown",
+                    "put it back, or start a new calibration with another file name");
     take_beginning(beginning, s);
 }
 
@@ -204,7 +204,7 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
                         "use --resume to continue its session, or other names for a new one");
         if (!begun && lines_.rows() > 0)
             throw error(error_kind::bad_input, beginning.string(),
-                        "it is missing, and it records how the log began",
+                        "it is missing, so the log's settings are unknown",
                         "start a new calibration with another log");
         if (!begun || !resume)
             detail::write_file(beginning, settings_text(s), detail::owner_kind::program);
@@ -247,7 +247,7 @@ void calibration_log::open()
         throw error(error_kind::bad_input, file_.string(), "it is not a regular file", "name another log");
     if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
         throw error(error_kind::bad_input, file_.string(), "another session is writing it",
-                    "end that one first, or name another log");
+                    "end it first, or name another log");
 }
 
 // Reads the lines; none if the log is empty or its header is cut off.
@@ -324,15 +324,15 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
     for (std::size_t row = 0; row < lines.rows(); ++row) {
         if (c.done())
             lines.refuse(row, "the session ends before this line",
-                         "the log belongs to another session; start a new calibration with another log");
+                         "start a new calibration with another log: this one belongs to another session");
         const calibration_trial trial = c.next();
         const calibration_answer own =
             simulated != nullptr ? simulated->answer(trial) : answer_in(lines, row);
         const bool possible = trial.interval == 0 || own.interval == 1 || own.interval == 2;
         if (!possible || !is_same(log_cells(c.answer(own)), lines, row))
             lines.refuse(row, "the session went differently",
-                         "the log was changed, or belongs to another session; start a new calibration with "
-                         "another log");
+                         "start a new calibration with another log: this one was changed, or belongs to "
+                         "another session");
     }
 }
 

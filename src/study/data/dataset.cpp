@@ -49,7 +49,7 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
         all.push_back(i->path());
     if (failed)
         throw error(error_kind::bad_input, source_place{folder.string()}, failed.message(),
-                    "let it be readable, with everything in it")
+                    "make it readable, with everything in it")
             .with_os_code(failed.value());
     return all;
 }
@@ -64,7 +64,8 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
             continue;
         if (std::find(known.begin(), known.end(), name.substr(prefix.size())) == known.end())
             throw error(error_kind::bad_input, source_place{path.string()},
-                        "participants.tsv does not list its participant", "add a line, or move it away");
+                        "participants.tsv does not list this participant",
+                        "add a line there, or move this folder away");
     }
 }
 
@@ -79,7 +80,7 @@ std::vector<std::string> read_codes(const fs::path& folder)
     std::vector<std::string> known = read_participants(text_table(folder / "participants.tsv"));
     if (known.empty())
         throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
-                    "it lists no participant", "tactor experiment adds a line for each participant");
+                    "it lists no participant", "add a line for each participant, as tactor experiment does");
     refuse_strangers(folder, known);
     return known;
 }
@@ -98,7 +99,7 @@ std::string find_code(const std::vector<std::string>& known, const std::string& 
     std::string code = wanted.starts_with(prefix) ? wanted.substr(prefix.size()) : wanted;
     if (std::find(known.begin(), known.end(), code) == known.end())
         throw selection_error(option, fmt::format("\"{}\" is not in participants.tsv", wanted),
-                              fmt::format("there are {}", fmt::join(known, ", ")));
+                              fmt::format("use one of {}", fmt::join(known, ", ")));
     return code;
 }
 
@@ -132,7 +133,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.motion = find_place(t, row, "motion", run.motions);
     r.response_time_s = t.number(row, "response_time");
     if (r.response_time_s.value_or(0.0) < 0.0)
-        t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 or more seconds");
+        t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 s or more");
     task_in(run).read_row(r, t, row, run);
     return r;
 }
@@ -145,7 +146,7 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
     run_data d = read_run(t, run);
     if (t.cut_at())
         t.refuse_cut(d.trials.size() < run.trials
-                         ? "use tactor experiment --resume, which keeps the rest of it next to the table"
+                         ? "run tactor experiment --resume, which moves it to another file"
                          : "complete it, or delete it");
     return d;
 }
@@ -173,8 +174,7 @@ public:
     {
         if (first_.empty())
             throw error(error_kind::bad_input, source_place{(folder_ / "sourcedata").string()},
-                        "no participant has a session.json",
-                        "tactor experiment writes it, with the definition in it");
+                        "no participant has a session.json", "name a folder that tactor experiment wrote");
         for (std::vector<run_data>& runs : set_.data)
             runs.resize(set_.experiment.runs.size());
         return std::move(set_);
@@ -189,8 +189,8 @@ private:
         const unsigned planned = set_.experiment.sessions;
         if (session.value_or(1) > planned || session.has_value() != (planned > 1))
             throw error(error_kind::bad_input, session_name(code, session),
-                        fmt::format("the experiment has {}", counted(planned, "session")),
-                        "move it away, or {exclude} the participant");
+                        fmt::format("the experiment has {}, but not this one", counted(planned, "session")),
+                        "move it away, or leave out the participant with {exclude}");
         std::string& group = set_.groups.back();
         if (std::vector<run_data>& runs = set_.data.back(); runs.empty()) {
             group = s.group;
@@ -200,7 +200,7 @@ private:
             throw error(error_kind::bad_input, session_name(code, session),
                         fmt::format("it is in group \"{}\", but an earlier session is in group \"{}\"",
                                     s.group, group),
-                        "a participant is in one group: correct session.json, or {exclude} the participant");
+                        "correct session.json, or leave out the participant with {exclude}");
         for (std::size_t i = 0; i < set_.experiment.runs.size(); ++i) {
             const run_outline& run = find_run(set_, set_.participants.size() - 1, i);
             const fs::path table = table_path(code, session, run);
@@ -253,7 +253,7 @@ private:
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
                 std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), is_its_table))
                 throw error(error_kind::bad_input, source_place{path.string()},
-                            "it belongs to no run of the experiment", "move it away");
+                            "the experiment has no such run", "move the file away");
         }
     }
 
@@ -314,7 +314,7 @@ session_data read_session(const std::filesystem::path& file)
 {
     const std::string name = file.string();
     const nlohmann::ordered_json j = files::read_object(read_file(file), name);
-    const files::json_value all(j, name, "tactor-analyze(1) lists what it reads");
+    const files::json_value all(j, name, "see tactor-analyze(1)");
     session_data s;
     s.simulated = all["simulated"].need_truth();
     s.text = all["experiment"]["text"].need_text();
@@ -323,7 +323,7 @@ session_data read_session(const std::filesystem::path& file)
     if (!groups.empty()) {
         s.group = all["group"].need_text();
         if (std::ranges::find(groups, s.group, &group_outline::name) == groups.end())
-            all["group"].refuse("is not a group of the experiment");
+            all["group"].refuse("it is not a group of the experiment");
     }
     return s;
 }
@@ -425,7 +425,8 @@ run_data read_run(const text_table& t, const run_outline& run)
             continue;
         }
         if (!seen.insert(*place).second)
-            t.refuse(i, fmt::format("trial {} counts twice", *place), "make all its attempts but one void");
+            t.refuse(i, fmt::format("trial {} counts twice", *place),
+                     "keep one of its attempts, and make the others void");
         trial r = read_trial(t, i, run);
         if (t.has("early") && t.cell(i, "early"))
             r.early = t.truth(i, "early");
@@ -447,7 +448,7 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
                 throw error(
                     error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
                     fmt::format("sub-{} is also in {}", code, (home->second / "participants.tsv").string()),
-                    "name each folder once, and rename a code that two people share");
+                    "name each folder once, and give two people different codes");
             known.push_back(code);
         }
     reader r;

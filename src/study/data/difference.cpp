@@ -47,7 +47,7 @@ public:
             return;
         constexpr std::size_t longest = 100;
         found_ = of + std::string(name);
-        const std::string both = fmt::format(": {}, then {}", shown(before), shown(now));
+        const std::string both = fmt::format(": {}, not {}", shown(before), shown(now));
         if (both.size() <= longest)
             found_ += both;
     }

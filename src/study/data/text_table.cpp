@@ -116,8 +116,8 @@ std::string read_file(const std::filesystem::path& file)
                     "name a folder that tactor experiment wrote")
             .with_os_code(failed.value());
     if (!std::filesystem::is_regular_file(s))
-        throw error(error_kind::bad_input, source_place{file.string()}, "it is not a file",
-                    "only regular files belong in the folder of a study");
+        throw error(error_kind::bad_input, source_place{file.string()}, "it is not a regular file",
+                    "replace it with a regular file");
     return std::string(
         std::string_view(detail::read_text_file(file, most_bytes, detail::owner_kind::program)));
 }
@@ -129,7 +129,7 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
     std::error_code failed;
     const auto refuse = [&](std::string_view why) {
         throw error(error_kind::bad_input, source_place{at.string()}, why,
-                    "correct it, or leave out its participant with {exclude}")
+                    "correct it, or leave out the participant with {exclude}")
             .with_os_code(failed.value());
     };
     for (const fs::path& part : below) {
@@ -139,7 +139,7 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
         if (fs::symlink_status(at, failed).type() == fs::file_type::not_found)
             return false;
         if (fs::status(at, failed).type() == fs::file_type::not_found)
-            refuse("it is a link to nothing");
+            refuse("it is a broken link");
         if (failed)
             refuse(failed.message());
     }
@@ -166,7 +166,7 @@ text_table::text_table(const std::filesystem::path& file, std::string text, last
     std::vector<table_line> lines = split_table(text_, text_.size() - detail::without_mark(text_).size());
     if (lines.empty())
         throw error(error_kind::bad_input, source_place{file_}, "it is empty",
-                    "the first line names the columns");
+                    "name the columns in the first line");
     take_header(std::move(lines.front()));
     for (std::size_t i = 1; i < lines.size(); ++i)
         take_row(std::move(lines[i]), end == last_line::may_be_cut);
@@ -209,14 +209,15 @@ void text_table::take_row(table_line line, bool may_be_cut)
     if (cut_)
         return rows_.push_back(std::move(line));
     if (!plain)
-        refuse_at(line.begin(), "it is not UTF-8", utf8_hint);
+        refuse_at(line.begin(), "the line is not UTF-8", utf8_hint);
     if (line.cells.size() == columns_.size() + 1 && rows_.empty() && line.cells.front().text == "1")
-        refuse_at(line.begin(), "it begins with a row number, which has no column",
+        refuse_at(line.begin(), "the line begins with a row number, but no column has it",
                   "leave it out: row.names = FALSE in R");
     if (line.cells.size() != columns_.size())
-        refuse_at(line.begin(),
-                  fmt::format("it has {}, not {}", counted(line.cells.size(), "column"), columns_.size()),
-                  "put a tab between two cells, and n/a in a cell without a value");
+        refuse_at(
+            line.begin(),
+            fmt::format("the line has {}, not {}", counted(line.cells.size(), "column"), columns_.size()),
+            "separate cells by tabs, and write n/a in empty ones");
     rows_.push_back(std::move(line));
 }
 
@@ -230,7 +231,8 @@ std::optional<std::size_t> text_table::find(std::string_view column) const
 void text_table::need_column(std::string_view column) const
 {
     if (!has(column))
-        refuse_at(0, fmt::format("the column {} is missing", column), "tactor-analyze(1) lists them");
+        refuse_at(0, fmt::format("the column {} is missing", column),
+                  "put it back: tactor-analyze(1) lists the columns");
 }
 
 std::optional<std::string_view> text_table::cell(std::size_t row, std::string_view column) const
@@ -244,7 +246,7 @@ std::string_view text_table::need(std::size_t row, std::string_view column) cons
 {
     const auto text = cell(row, column);
     if (!text)
-        refuse(row, fmt::format("{} is missing", column), "n/a is not allowed here");
+        refuse(row, fmt::format("{} is missing", column), "give a value: n/a is not allowed here");
     return *text;
 }
 

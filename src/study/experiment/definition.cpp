@@ -104,7 +104,7 @@ std::vector<stroke> read_strokes(const toml_table& t, const std::filesystem::pat
 {
     if (!t.has("file") && t.has("intensity_max"))
         t.fail("intensity_max", fmt::format("{} has no file", t.title()),
-               "only a recording has a scale of intensities");
+               "add file, or leave out intensity_max");
     const std::vector<std::string_view> kinds(stroke_keys.begin(), stroke_keys.begin() + 3);
     if (std::none_of(kinds.begin(), kinds.end(), [&t](std::string_view key) { return t.has(key); }))
         return {};
@@ -158,7 +158,7 @@ std::string write_choice(const options::option& o, std::string_view value)
     if (value.empty())
         return std::string(o.field_name());
     const char* quote = o.what == options::kind::flag ? "" : "\"";
-    return fmt::format("the method's {}, {}{}{},", options::dashed(o), quote, value, quote);
+    return fmt::format("{} = {}{}{} in [[method]]", options::dashed(o), quote, value, quote);
 }
 
 // Returns the indices of the items of `all` that a table names, in the order of `all`. Returns all indices if
@@ -168,7 +168,7 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
 {
     const toml::array* list = t.list(key, "names");
     if (list != nullptr && list->empty())
-        t.fail(key, fmt::format("{} is empty", key), "put names in quotes, in brackets");
+        t.fail(key, fmt::format("{} is empty", key), "give names in quotes, in brackets");
     std::vector<std::string> known;
     for (const T& one : all)
         known.push_back(one.name);
@@ -177,7 +177,7 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
         const auto at = std::find(known.begin(), known.end(), list->get(i)->value_exact<std::string>());
         if (at == known.end())
             detail::fail_at(t.where(*list->get(i)), fmt::format("{} has an undefined name", key),
-                            fmt::format("one of {}", fmt::join(known, ", ")));
+                            fmt::format("use one of {}", fmt::join(known, ", ")));
         wanted[static_cast<std::size_t>(at - known.begin())] = true;
     }
     std::vector<std::size_t> places;
@@ -213,7 +213,7 @@ std::string array_in(const toml_table& t, const fs::path& folder)
     std::error_code ignored;
     if (!fs::exists(folder / text, ignored))
         t.fail("array", fmt::format("there is no array '{}'", text),
-               fmt::format("{}, or a file", fmt::join(presets, ", ")));
+               fmt::format("use {}, or name a file", fmt::join(presets, ", ")));
     return (folder / text).string();
 }
 
@@ -277,7 +277,7 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
 {
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
     if (!t)
-        root.fail("there is no [experiment]", "begin with one");
+        root.fail("there is no [experiment]", "add it at the start");
     d.outline.name = name_in(*t, "name");
     d.outline.sessions = t->whole("sessions", 1, 99).value_or(1);
     if (e.outline_only)
@@ -309,9 +309,9 @@ masking_definition read_masking(const toml_table& root)
     const double most = greatest_noise_dbfs(o.color);
     if (noise != "none" && o.level_dbfs > most)
         t->fail("level_dbfs",
-                fmt::format("level_dbfs is {}, but the peaks of {} noise reach full scale at {}",
+                fmt::format("level_dbfs is {}, but the peaks of {} noise reach full scale at {} dBFS",
                             o.level_dbfs, noise, most),
-                "lower it here, and turn up the amplifier of the headphones");
+                "lower it, and turn up the headphone amplifier");
     o.fade_s = t->number("fade_s", {0.0, 10.0}).value_or(o.fade_s);
     m.through_run = t->choice("while", {"stimulus", "run"}).value_or("stimulus") == "run";
     if (noise != "none")
@@ -501,7 +501,7 @@ std::vector<toml_table> need_tables(const toml_table& root, std::string_view key
 {
     std::vector<toml_table> all = root.tables(key);
     if (all.empty())
-        root.fail(fmt::format("there is no [[{}]]", key), "an experiment has at least one");
+        root.fail(fmt::format("there is no [[{}]]", key), "add one");
     return all;
 }
 
@@ -522,8 +522,7 @@ std::vector<T> read_all(const toml_table& root, std::string_view key, const Read
 experiment_definition definition_in(std::string_view toml, const std::string& name, const extent& e)
 {
     const toml::table document = detail::parse_toml(
-        toml, name,
-        {"tactor-experiment(5)", "the definition of an experiment is TOML, see tactor-experiment(5)"});
+        toml, name, {"tactor-experiment(5)", "write the definition in TOML, see tactor-experiment(5)"});
     const toml_table root(document, "the file", name);
     experiment_definition d;
     d.text = toml;
@@ -553,7 +552,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
         d.outline.runs.push_back(d.runs.back().outline);
     }
     if (d.runs.empty())
-        root.fail("each [[run]] is a questionnaire", "an experiment has at least one run with trials");
+        root.fail("each [[run]] is a questionnaire", "add a run with trials");
     if (root.has("group"))
         d.outline.groups = read_all<group_outline>(root, "group", [&](const toml_table& t) {
             if (!e.outline_only)
@@ -622,7 +621,7 @@ experiment_definition load_definition(const std::string& name_or_file)
     std::error_code ignored;
     if (!fs::exists(name_or_file, ignored) && name_or_file.find_first_of("./") == std::string::npos)
         throw error(error_kind::bad_input, "experiment", fmt::format("there is no '{}'", name_or_file),
-                    fmt::format("{}, or a file", shipped_experiment));
+                    fmt::format("use {}, or name a file", shipped_experiment));
     const detail::whole_text text = detail::read_text_file(name_or_file, most_definition_bytes);
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
 }

@@ -21,7 +21,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr const char* simulation_shape = "as seed=1,sigma=1";
+constexpr const char* simulation_shape = "write it as seed=1,sigma=1";
 constexpr double least_cost = 1e-3;
 
 [[noreturn]] void refuse_simulation(const std::string& why)
@@ -34,7 +34,7 @@ T simulation_value(std::string_view key, std::string_view text, T low, T high)
 {
     const auto v = detail::number_in<T>(text);
     if (!v || !(*v >= low && *v <= high))
-        refuse_simulation(fmt::format("{} is \"{}\", not {} to {}", key, text, low, high));
+        refuse_simulation(fmt::format("{} is \"{}\", not a number from {} to {}", key, text, low, high));
     return *v;
 }
 
@@ -49,7 +49,7 @@ double find_cost(const experiment_definition& d, const run_definition& r, const 
                     fmt::format("simulate: the prediction for motion \"{}\" with method \"{}\" {}",
                                 d.motions[motion].name, d.methods[method].name,
                                 r.simulate_as == "uniformity" ? "does not move" : "is silent"),
-                    "people can judge it; the simulated observer cannot");
+                    "run it with people: only they can judge it");
     return std::max(*c, least_cost);
 }
 

@@ -133,7 +133,7 @@ std::string describe_threshold(const json_value& t)
     for (const json_value& pair : t.list()) {
         const std::vector<double> hz_and_dbfs = pair.need_numbers();
         if (hz_and_dbfs.size() != 2)
-            pair.refuse("is not a frequency with a threshold");
+            pair.refuse("it is not a frequency with a threshold");
         parts.push_back(
             fmt::format("{} at {} Hz", plain_number(hz_and_dbfs[1]), plain_number(hz_and_dbfs[0])));
     }

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
 {
     throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, written),
-                "it was changed after the session: restore it");
+                "restore it: it was changed after the session");
 }
 
 std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::path& plans)

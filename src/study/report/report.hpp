@@ -24,7 +24,7 @@ namespace tactor::study {
 using files::json_value;
 
 /// Hint for a file that differs from what a session wrote.
-inline constexpr const char* changed_file = "it was changed";
+inline constexpr const char* changed_file = "restore it: it was changed";
 
 /// A stimulus that a session lists, with its plans (schema tactor-plan/1, or tactor-plans/1 for several
 /// strokes).

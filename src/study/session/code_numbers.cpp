@@ -162,7 +162,7 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
     const auto last = std::ranges::max_element(numbers_, {}, &decltype(numbers_)::value_type::second);
     if (last->second > most)
         throw error(error_kind::bad_input, c.where,
-                    fmt::format("code: there are {} events, up to number {} ({}), but {} is the largest",
+                    fmt::format("code: {} events need numbers up to {} ({}), but {} is the largest",
                                 numbers_.size(), last->second, last->first, most),
                     most == greatest_number
                         ? "combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] }"

@@ -72,8 +72,8 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
     if (r.who == audience::person && !r.hand)
         throw error(
             error_kind::bad_input, "--hand",
-            fmt::format("motion \"{}\" is mirrored for left hands, and the hand is missing", mirrored->name),
-            "add --hand left, or --hand right");
+            fmt::format("motion \"{}\" is mirrored for left hands, but no hand is given", mirrored->name),
+            "add --hand left or --hand right");
     if (r.hand != hand_kind::left)
         return;
     const auto [least, most] =
@@ -134,7 +134,7 @@ void take_session(experiment_definition& d, session_number session)
         throw error(error_kind::bad_input, "--session",
                     session ? fmt::format("there is no session {}", *session)
                             : fmt::format("the definition has {} sessions, but none is given", all),
-                    several ? fmt::format("give 1 to {}", all) : "leave it out");
+                    several ? fmt::format("use 1 to {}", all) : "leave it out");
     d.session = session;
 }
 
@@ -152,12 +152,12 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
     if (t.method_2)
         by += fmt::format(" and then with \"{}\"", d.methods[*t.method_2].name);
     throw error(error_kind::bad_input, m.where,
-                fmt::format("motion \"{}\" with {}: {} would change it", m.name, by,
-                            too_long ? fmt::format("[limits] max_drive_s, {} s in {} s for one tactor,",
+                fmt::format("motion \"{}\" with {}: {} would limit it", m.name, by,
+                            too_long ? fmt::format("max_drive_s in [limits], {} s in {} s for one tactor,",
                                                    l.max_drive_s, l.window_s)
-                                     : fmt::format("[limits] power_dbfs, {:.4g} dB,", l.power_dbfs)),
-                too_long ? "use shorter strokes, or other limits if the actuators bear them"
-                         : "use a lower level, or other limits if the actuators bear them");
+                                     : fmt::format("power_dbfs in [limits], {:.4g} dB,", l.power_dbfs)),
+                too_long ? "use shorter strokes, or raise the limit if the actuators bear it"
+                         : "use a lower level, or raise the limit if the actuators bear it");
 }
 
 // Checks the trials of all runs, including practice.
@@ -284,7 +284,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     const std::size_t row = r.row.value_or(default_row(d, code));
     if (row > count_rows(d))
         throw error(error_kind::bad_input, "--order", fmt::format("{} is out of range", row),
-                    fmt::format("give 1 to {}", count_rows(d)));
+                    fmt::format("use 1 to {}", count_rows(d)));
     auto runs = make_sequence(d, code, seed, row);
     stimulus_set stimuli(d, e.tactors, render);
     if (r.who != audience::observer)
@@ -493,9 +493,9 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
                    row.plan_1 == planned.plan_1 && row.plan_2 == planned.plan_2;
         }
         if (!same)
-            throw error(error_kind::bad_input, fmt::format("run {}: line {}", r.outline.name, i + 2),
-                        fmt::format("trial {}, attempt {} does not belong there", row.trial, row.attempt),
-                        "the table was changed, or belongs to another session");
+            throw error(error_kind::bad_input, fmt::format("run \"{}\": line {}", r.outline.name, i + 2),
+                        fmt::format("trial {}, attempt {} does not come next", row.trial, row.attempt),
+                        "restore the table: it was changed, or belongs to another session");
         queue.take(row.is_void);
         take_line(*values, row);
     }

@@ -161,7 +161,7 @@ keypad::keypad(std::string device)
     std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
     if (::ioctl(descriptor_.get(), EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0)
         throw error(error_kind::bad_input, device_, "it is not an input device",
-                    "name one, as /dev/input/by-id/...-event-kbd");
+                    "name one, such as /dev/input/by-id/...-event-kbd");
     bool any = false;
     for (std::size_t code = 0; code <= KEY_MAX; ++code)
         any = any ||
@@ -324,7 +324,7 @@ session_key session_keys::wait(const std::string& subject, bool repeated)
             return *std::move(k);
         if (ended()) {
             session::show("\n");
-            throw error(error_kind::runtime, subject, "the answers ended", resume_hint);
+            throw error(error_kind::runtime, subject, "the input ended", resume_hint);
         }
         stage_.wait_for(any_ ? any_.get() : STDIN_FILENO);
     }

@@ -84,7 +84,7 @@ private:
 };
 
 /// Hint of an error that ends a session with a person.
-inline constexpr const char* resume_hint = "the answers are kept; --resume continues";
+inline constexpr const char* resume_hint = "earlier answers are kept; continue with --resume";
 
 /// A keypad. While this object lives, no other program gets its keys. For use by one thread.
 class keypad {

@@ -572,7 +572,8 @@ void person_session::ask_consent()
     const bool agrees = wait_for_one_of("yn") == 'y';
     session::show(agrees ? w["yes"] + "\n\n" : w["no"] + "\n");
     if (!agrees)
-        throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree", "the session has no data");
+        throw error(error_kind::runtime, "sub-" + p_.participant, "the participant did not agree",
+                    "the session has no data");
     agreed_at_ = acq_time_text(rt::unix_ns());
     flow_.agree();
 }
@@ -605,7 +606,7 @@ void person_session::walk(unsigned tactor)
     } else if (key == 'n' && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
         // On a page a finger may slip, so the first No only drives the tactor once more.
         throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
-                    "find out why with tactor check --walk; then begin again");
+                    "find the cause with tactor check --walk, then begin again");
     }
 }
 

@@ -27,7 +27,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr const char* port_hint = "list the ports by ls /dev/serial/by-id /dev/ttyS*";
+constexpr const char* port_hint = "list the ports: ls /dev/serial/by-id /dev/ttyS*";
 
 class serial_port final : public amplifier::code_lines {
 public:
@@ -104,7 +104,8 @@ std::unique_ptr<amplifier::code_lines> open_serial_port(const std::string& devic
         refuse(error_kind::not_available, std::strerror(errno), port_hint);
     const auto* const rate = std::ranges::find(detail::baud_rates, baud, &detail::baud_rate::baud);
     if (rate == detail::baud_rates.end() || !set_rate(port.get(), rate->termios))
-        refuse(error_kind::not_available, fmt::format("it does not take {} baud", baud), "another baud");
+        refuse(error_kind::not_available, fmt::format("it does not support {} baud", baud),
+               "use another baud");
     auto lines = std::make_unique<serial_port>(std::move(port));
     if (!lines->set(0))
         refuse(error_kind::not_available, std::strerror(errno), port_hint);

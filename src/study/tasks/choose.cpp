@@ -92,7 +92,8 @@ public:
     void check(const detail::toml_table& t, const run_outline& o) const override
     {
         if (o.methods.size() < 2)
-            t.fail(fmt::format("{} has one method to choose from", o.name), "name two or more in methods");
+            t.fail(fmt::format("run \"{}\" has one method to choose from", o.name),
+                   "name two or more in methods");
     }
     void read(const detail::toml_table& t, run_definition& r) const override
     {
@@ -112,7 +113,7 @@ public:
         r.method_1 = find_place(t, row, "method_1", o.methods);
         r.method_2 = find_place(t, row, "method_2", o.methods);
         if (r.method_1 == r.method_2)
-            t.refuse(row, "both stimuli have the same method", "choose compares two");
+            t.refuse(row, "both stimuli have the same method", "give two different methods");
         r.response = read_one_of_two(t, row);
     }
 

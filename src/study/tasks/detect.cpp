@@ -54,7 +54,7 @@ public:
         else if (!is_silent)
             r.method_1 = find_place(t, row, "method_1", o.methods);
         else if (!o.vary.empty() && t.cell(row, "value"))
-            t.refuse(row, "a trial without a stimulus has a value", "n/a");
+            t.refuse(row, "the trial has a value but no stimulus", "write n/a");
         score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const override

@@ -62,7 +62,7 @@ public:
             const auto number = t.number(row, column); // R writes 100000 as 1e+05
             if (number && !(*number >= least_estimate && *number <= most_estimate))
                 t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),
-                         "a number above 0, from 1e-9 to 1e9");
+                         "give a number from 1e-9 to 1e9");
             return number;
         });
     }
@@ -120,12 +120,12 @@ public:
 
     named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
     {
-        const std::string estimate = fmt::format("{}", t.estimate);
+        const std::string text = fmt::format("{}", t.estimate);
         return {{"method", own.methods[t.method_1]},
-                {"response", estimate},
+                {"response", text},
                 {"value", fmt::format("{}", t.value)},
                 {"signal", "1"},
-                {"estimate", estimate}};
+                {"estimate", text}};
     }
 
     // Estimates follow the logarithm of a value that is not a level.

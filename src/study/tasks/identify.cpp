@@ -87,7 +87,8 @@ public:
     void check(const detail::toml_table& t, const run_outline& o) const override
     {
         if (o.motions.size() < 2)
-            t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
+            t.fail(fmt::format("run \"{}\" has one motion to identify", o.name),
+                   "name two or more in motions");
     }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override

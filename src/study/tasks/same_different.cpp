@@ -30,8 +30,8 @@ public:
     void check(const detail::toml_table& t, const run_outline& o) const override
     {
         if (o.methods.size() != 2)
-            t.fail(fmt::format("{} has {}", o.name, counted(o.methods.size(), "method")),
-                   "use two, which are the same or differ");
+            t.fail(fmt::format("run \"{}\" has {}, not 2", o.name, counted(o.methods.size(), "method")),
+                   "name two in methods");
     }
     void read(const detail::toml_table& t, run_definition& r) const override
     {

@@ -32,7 +32,7 @@ void read_trials(const toml_table& t, run_outline& o)
         return;
     const std::size_t all = *each * o.values.size() * o.motions.size() * o.methods.size();
     if (t.has("trials") || all == 0 || o.catches || all > most_trials)
-        t.fail("trials_per_value", fmt::format("trials_per_value makes {} trials", all),
+        t.fail("trials_per_value", fmt::format("trials_per_value gives {} trials in all", all),
                t.has("trials") || all > most_trials
                    ? fmt::format("use trials instead, at most {}", most_trials)
                    : "use trials instead");
@@ -44,7 +44,7 @@ detail::bounds read_vary(const toml_table& t, run_outline& o)
     o.vary = t.need(t.text("vary"), "vary");
     const std::optional<varied> v = find_varied(o.vary);
     if (!v)
-        t.fail("vary", fmt::format("\"{}\" is not a number that a run can vary", o.vary),
+        t.fail("vary", fmt::format("a run cannot vary \"{}\"", o.vary),
                "use an option of [[method]] such as level_dbfs, speed_mm_s or soa_s, or x_mm, y_mm, "
                "length_mm, apart_mm or rotate_deg of the stroke");
     o.on_db_axis = v->on_db_axis;
@@ -83,14 +83,14 @@ void read_values(const toml_table& t, run_outline& o, const detail::bounds& b)
 void refuse_method_blocks(const toml_table& t, const run_outline& o)
 {
     if (t.text("blocks") == "methods")
-        t.fail("blocks", fmt::format("{} has two methods in each trial", o.name),
+        t.fail("blocks", fmt::format("run \"{}\" has two methods in each trial", o.name),
                "use blocks = \"motions\", or leave it out");
 }
 
 void refuse_method_name(const toml_table& t, const run_outline& o, std::string_view name)
 {
     if (std::ranges::count(o.methods, name) != 0)
-        t.fail(fmt::format("a method of {} is called \"{}\"", o.name, name),
+        t.fail(fmt::format("a method of run \"{}\" is called \"{}\"", o.name, name),
                "use another name: in the tables it means a stimulus without a method");
 }
 
@@ -136,7 +136,7 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
     const auto at = std::find(known.begin(), known.end(), name);
     if (at == known.end())
         t.refuse(row, fmt::format("{} \"{}\" is not in the run", column, name),
-                 fmt::format("one of {}", fmt::join(known, ", ")));
+                 fmt::format("use one of {}", fmt::join(known, ", ")));
     return static_cast<std::size_t>(at - known.begin());
 }
 
@@ -144,7 +144,7 @@ unsigned read_one_of_two(const text_table& t, std::size_t row)
 {
     const auto response = t.whole(row, "response", 1, 2);
     if (!response)
-        t.refuse(row, "the response is missing", "a trial that counts needs one");
+        t.refuse(row, "the response is missing", "give one, or make the trial void");
     return *response;
 }
 
@@ -161,7 +161,7 @@ double read_value(const text_table& t, std::size_t row, const run_outline& o)
     };
     if (std::ranges::none_of(o.values, is_same))
         t.refuse(row, fmt::format("value {} is not in the run", t.need(row, "value")),
-                 fmt::format("one of {}", fmt::join(o.values, ", ")));
+                 fmt::format("use one of {}", fmt::join(o.values, ", ")));
     return *value;
 }
 
@@ -171,7 +171,7 @@ void read_comparison(trial& r, const text_table& t, std::size_t row, const run_o
 {
     const bool standard_first = o.standard && t.need(row, "method_1") == standard_name;
     if (o.standard && !standard_first && t.need(row, "method_2") != standard_name)
-        t.refuse(row, "no stimulus is the standard", "each trial needs one");
+        t.refuse(row, "no stimulus is the standard", "give each trial one");
     r.method_1 = find_place(t, row, standard_first ? "method_2" : "method_1", o.methods);
     r.value = read_value(t, row, o);
 }

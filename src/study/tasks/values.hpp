@@ -59,7 +59,7 @@ auto read_twice(const text_table& t, std::size_t row, std::string_view column, c
     const auto response = read("response");
     const auto own = read(column);
     if (!response && !own)
-        t.refuse(row, fmt::format("the {} is missing", column), "a trial that counts needs one");
+        t.refuse(row, fmt::format("the {} is missing", column), "give one, or make the trial void");
     if (response && own && *response != *own)
         t.refuse(row, fmt::format("response is {}, but {} is {}", *response, column, *own),
                  "make them equal");

@@ -35,19 +35,19 @@ void check_shape(const own_samples& x, const render_options& o, unsigned channel
     for (unsigned c = 1; c <= channels; ++c)
         remix += c <= x.channels ? fmt::format(" {}", c) : " 0";
     if (x.rate != o.rate)
-        throw bad_samples(x, fmt::format("it has {} Hz, and the stream {} Hz", x.rate, o.rate),
+        throw bad_samples(x, fmt::format("its rate is {} Hz, but the stream's is {} Hz", x.rate, o.rate),
                           fmt::format("use {{rate={}}}, or convert it: sox IN -r {} OUT", x.rate, o.rate));
     if (x.channels != channels)
         throw bad_samples(
-            x, fmt::format("it has {}, and the stream {}", counted(x.channels, "channel"), channels),
+            x, fmt::format("it has {}, but the stream has {}", counted(x.channels, "channel"), channels),
             x.channels < channels
                 ? fmt::format("add silent ones: {}", remix)
                 : fmt::format("use {{channels={}}}, or leave some out: {}", x.channels, remix));
     if (x.bytes.empty())
-        throw bad_samples(x, "there are no samples in it", "give one frame or more");
+        throw bad_samples(x, "it has no samples", "give one frame or more");
     if (x.bytes.size() % frame_bytes != 0)
         throw bad_samples(
-            x, fmt::format("{} bytes are no whole number of frames of {}", x.bytes.size(), frame_bytes),
+            x, fmt::format("{} bytes are not a whole number of frames of {}", x.bytes.size(), frame_bytes),
             "give whole frames");
     if (x.bytes.size() > most_own_bytes)
         throw bad_samples(x, too_large_text(x.bytes.size()), "play it in pieces");
@@ -83,7 +83,7 @@ void check_levels(const array& a, const own_samples& x, const std::vector<own_ch
     if (at != a.tactors.end()) {
         const bool has_own = at->max_dbfs < level_dbfs;
         who += fmt::format(" (tactor {})", at - a.tactors.begin());
-        limit = has_own ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", at->max_dbfs)
+        limit = has_own ? fmt::format("its max_dbfs of {:.4g} dBFS", at->max_dbfs)
                         : fmt::format("the level of {:.4g} dBFS", level_dbfs);
         more = has_own          ? ", or raise max_dbfs"
                : peak_db <= 0.0 ? fmt::format(", or use {{level_dbfs={:.4g}}}", peak_db)
@@ -120,8 +120,8 @@ void add_channel(score::impl& s, own_channel c)
 score score::from_samples(const array& a, own_samples s, const render_options& o)
 {
     if (o.sl_db)
-        throw bad_samples(s, "it has no carrier, for which a sensation level could count",
-                          "give the most that its peak may be: {level_dbfs=-20}");
+        throw bad_samples(s, "a sensation level needs a carrier, but samples have none",
+                          "limit the peak instead, such as with {level_dbfs=-20}");
     array plain = a;
     for (tactor_spec& t : plain.tactors)
         t.gain_db = 0.0; // no level depends on it

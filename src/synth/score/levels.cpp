@@ -35,7 +35,8 @@ namespace {
     const source_place& at = a.tactors[i].where;
     const std::string name = fmt::format("tactor {}", i);
     if (at.text().empty())
-        throw error(error_kind::bad_input, name, why, hint).with_field(o.sl_db ? "sl_db" : "level_dbfs");
+        throw error(error_kind::bad_input, name, fmt::format("it {}", why), hint)
+            .with_field(o.sl_db ? "sl_db" : "level_dbfs");
     throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
 }
 
@@ -52,7 +53,7 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     if (!(level <= 1e-9)) {
         refuse_tactor(
             a, i, o,
-            fmt::format("would play at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS",
+            fmt::format("would play at {:.4g} dBFS, above full scale: gain_db is {} at a level of {} dBFS",
                         level, t.gain_db, o.level_dbfs),
             fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db));
     }
@@ -265,8 +266,7 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
         return;
     const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
     const bool limited = limit_db < 0.0;
-    const std::string limit =
-        limited ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
+    const std::string limit = limited ? fmt::format("its max_dbfs of {:.4g} dBFS", limit_db) : "full scale";
     const std::string driven = fmt::format("would play at {:.4g} dBFS, above {}", in_db(peak), limit);
     const char* raise = limited ? ", or raise max_dbfs" : "";
     if (o.sl_db)

@@ -15,7 +15,7 @@ from serving import LONG, ServeTest
 class Trials(test_calibrate.CalibrateTest):
     def test_noise_covers_both_intervals_of_each_trial(self):
         self.refused(1, *test_calibrate.Person.ARGS, "--masker", "raw:noise.raw", "--masker-dbfs", -20, stdin="1\n2\n",
-                     says=["trial 3: the answers ended"])
+                     says=["trial 3: the input ended"])
         pieces = noise_pieces(self.dir / "noise.raw")
         # Three trials: half a second before interval 1, two intervals of 50 ms, half a second between.
         self.assertGreaterEqual(sum(pieces), 3 * 109)

@@ -176,22 +176,22 @@ TEST_CASE("a device of exactly eight channels takes eight, and says so when aske
     CHECK(open_alsa(configured(eight_channels(), 8))->setup().channels == 8);
     const failure e = failure_of_open(configured(eight_channels(), 9));
     CHECK(e.kind == error_kind::not_available);
-    CHECK(e.says("PCM \"t\": cannot play 9 channels at 48000 Hz in s32 or float"));
-    CHECK(e.says("refused: channels"));
-    CHECK(e.says("channels 8, rates any Hz, formats s32 float"));
+    CHECK(e.says("PCM \"t\": it cannot play 9 channels at 48000 Hz in s32, float"));
+    CHECK(e.says("unsupported number of channels"));
+    CHECK(e.says("channels: 8; rate in Hz: any; formats: s32 float"));
 }
 
 TEST_CASE("the fewest channels that hold the stream are taken")
 {
     alsa_options o = configured(eight_channels(), 5);
-    CHECK(failure_of_open(o).says("refused: channels"));
+    CHECK(failure_of_open(o).says("unsupported number of channels"));
     o.wider = true;
     const auto s = open_alsa(o);
     CHECK(s->setup().channels == 5);
     CHECK(s->setup().device_channels == 8);
     CHECK(s->setup().frame_bytes() == 20);
     o.channels = 9;
-    CHECK(failure_of_open(o).says("refused: channels"));
+    CHECK(failure_of_open(o).says("unsupported number of channels"));
     o = {};
     o.channels = 9;
     o.wider = true;
@@ -269,16 +269,16 @@ TEST_CASE("a missing format is refused by name")
     const failure e = failure_of_open(o);
     CHECK(e.kind == error_kind::not_available);
     CHECK(e.says("9 channels at 48000 Hz in float"));
-    CHECK(e.says("refused: format"));
-    CHECK(e.says("it supports channels any, rates any Hz, formats s32"));
+    CHECK(e.says("unsupported format"));
+    CHECK(e.says("use what it supports: channels: any; rate in Hz: any; formats: s32"));
 }
 
 TEST_CASE("plug neither resamples nor mixes channels behind the user's back")
 {
     const failure e = failure_of_open(configured(stereo_44100));
     CHECK(e.kind == error_kind::not_available);
-    CHECK(e.says("refused: channels, rate"));
-    CHECK(e.says("channels 2, rates 44100 Hz"));
+    CHECK(e.says("unsupported number of channels, rate"));
+    CHECK(e.says("channels: 2; rate in Hz: 44100"));
     alsa_options o = configured(stereo_44100, 2);
     o.rate = 44100;
     CHECK(open_alsa(o)->setup().rate == 44100);
@@ -362,13 +362,13 @@ TEST_CASE("a device of a card: formats in order of preference, rate and channels
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE}}, o).format == format_kind::s16);
 
     const failure nothing = catch_failure([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });
-    CHECK(nothing.says("refused: format"));
+    CHECK(nothing.says("unsupported format"));
     CHECK(nothing.says("none that tactor plays"));
     o.channels = 65;
     o.rate = 44100;
     const failure e = catch_failure([&] { open({}, o); });
-    CHECK(e.says("refused: channels, rate"));
-    CHECK(e.says("channels 1 to 64, rates 48000 Hz, formats s32 float s16"));
+    CHECK(e.says("unsupported number of channels, rate"));
+    CHECK(e.says("channels: 1 to 64; rate in Hz: 48000; formats: s32 float s16"));
 }
 
 TEST_CASE("a device that rounds the period reports its value")
