@@ -51,8 +51,8 @@ const stroke_format* find_format_by_extension(const std::filesystem::path& file)
 /// Returns the format that the content of a text shows; null for none.
 const stroke_format* find_format_by_content(std::string_view text);
 
-/// Returns the format of a text with strokes: by the extension of its file, else by its content.
-const stroke_format& find_stroke_format(std::string_view text, const std::filesystem::path& file);
+/// Returns the format of a text with strokes: by the extension of its file, else by its content, else TOML.
+const stroke_format* find_stroke_format(std::string_view text, const std::filesystem::path& file);
 
 /// Returns "TOML, CSV or SVG": the titles of all formats.
 std::string list_stroke_formats();

@@ -103,9 +103,9 @@ read_file read_bytes(std::string bytes, const std::string& name, double intensit
 {
     if (is_plan(bytes, name))
         return {read_plan_strokes(bytes, name)};
-    const detail::stroke_format& format = detail::find_stroke_format(bytes, name);
-    std::vector<stroke> strokes = format.parse({bytes, name, intensity_max});
-    if (format.name != "toml" || intensity_max != 1.0)
+    const detail::stroke_format* format = detail::find_stroke_format(bytes, name);
+    std::vector<stroke> strokes = format->parse({bytes, name, intensity_max});
+    if (format->name != "toml" || intensity_max != 1.0)
         bytes.clear(); // other programs would read other intensities
     return {std::move(strokes), std::move(bytes)};
 }

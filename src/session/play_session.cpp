@@ -43,12 +43,12 @@ void run_facts::check_amplifier() const
 }
 
 play_session::play_session(const alsa_options& device, const stream_options& o, const environment& e,
-                           const stream_source& source)
+                           const stream_source& adapt)
     : options_(o),
       environment_(e),
       pcm_(device.pcm),
       log_(o.verbose, o.log),
-      stream_(make_parts(device, source))
+      stream_(make_parts(device, adapt))
 {
     stream_.step();
     stream_.work_here();
@@ -59,13 +59,13 @@ play_session::play_session(const alsa_options& device, const stream_options& o, 
     warn_of_rights(stats().realtime, locked_);
 }
 
-stream_parts play_session::make_parts(alsa_options device, const stream_source& source)
+stream_parts play_session::make_parts(alsa_options device, const stream_source& adapt)
 {
     device.log = log_.function();
     stream_parts p = open_parts(device, options_, environment_, options_.arm);
     p.times.wait_s = options_.reopen_s;
-    if (source)
-        source(p);
+    if (adapt)
+        adapt(p);
     p.open = [this, open = std::move(p.open), log = device.log, first = true]() mutable {
         std::unique_ptr<sink> s = open();
         if (std::exchange(first, false))

@@ -46,7 +46,7 @@ public:
     /// Opens lines and device, sets up real time and starts the stream.
     /// \throws error.
     play_session(const alsa_options& device, const stream_options& o, const environment& e,
-                 const stream_source& source = {});
+                 const stream_source& adapt = {});
     play_session(const play_session&) = delete;
     play_session& operator=(const play_session&) = delete;
 
@@ -102,7 +102,7 @@ public:
     run_facts finish();
 
 private:
-    stream_parts make_parts(alsa_options device, const stream_source& source);
+    stream_parts make_parts(alsa_options device, const stream_source& adapt);
     /// Logs the failure of opening the device, if any.
     /// \throws error (bad_input) if it can never be opened.
     void check_failure();

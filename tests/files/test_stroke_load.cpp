@@ -131,7 +131,7 @@ TEST_CASE("each format is told by its name, its extensions and what it writes")
     CHECK(detail::find_format_by_name("json") == nullptr);
     CHECK(detail::find_format_by_extension("a.json") == nullptr);
     CHECK(detail::find_format_by_content("{\"plans\": []}") == nullptr); // plans
-    CHECK(&detail::find_stroke_format("{}", "a") ==
+    CHECK(detail::find_stroke_format("{}", "a") ==
           detail::find_format_by_name("toml")); // says that it is JSON
 }
 

@@ -19,6 +19,7 @@
 #include "core/words.hpp"
 #include "net/listen.hpp"
 #include "session/device.hpp"
+#include "session/piece.hpp"
 #include "session/process.hpp"
 #include "study/bids/session_store.hpp"
 #include "study/experiment/definition.hpp"

@@ -79,8 +79,8 @@ net::json make_params(const std::string& argument)
     if (files::holds_plans(text))
         throw error(error_kind::bad_input, shown_name(argument),
                     "it is a plan, which a server does not accept", "give the stroke");
-    const detail::stroke_format& format = detail::find_stroke_format(text, piped ? "" : argument);
-    return {{std::string(format.name), std::string_view(text)}};
+    const detail::stroke_format* format = detail::find_stroke_format(text, piped ? "" : argument);
+    return {{std::string(format->name), std::string_view(text)}};
 }
 
 // Returns the name of each STROKE and its parameter.

@@ -54,12 +54,12 @@ const stroke_format* find_format_by_content(std::string_view text)
     return find_format([text](const stroke_format& f) { return f.begins(text); });
 }
 
-const stroke_format& find_stroke_format(std::string_view text, const std::filesystem::path& file)
+const stroke_format* find_stroke_format(std::string_view text, const std::filesystem::path& file)
 {
     const stroke_format* found = find_format_by_extension(file);
     if (found == nullptr)
         found = find_format_by_content(text);
-    return found == nullptr ? *formats[0] : *found;
+    return found == nullptr ? formats[0] : found;
 }
 
 std::string list_stroke_formats()
@@ -81,7 +81,7 @@ inline namespace v0 {
 
 std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
 {
-    return detail::find_stroke_format(text, {}).parse({text, name, intensity_max});
+    return detail::find_stroke_format(text, {})->parse({text, name, intensity_max});
 }
 
 std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
@@ -89,7 +89,7 @@ std::vector<stroke> load_strokes(const std::filesystem::path& file, double inten
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
     const std::filesystem::path folder = file.parent_path();
-    return detail::find_stroke_format(text, file).parse({text, name, intensity_max, &folder});
+    return detail::find_stroke_format(text, file)->parse({text, name, intensity_max, &folder});
 }
 
 std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)

@@ -17,7 +17,7 @@
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 
-#include "session/piece.hpp"
+#include "files/plan/plan_json.hpp"
 #include "study/experiment/definition.hpp"
 
 namespace tactor::study {
@@ -229,7 +229,7 @@ private:
 struct stimulus {
     std::size_t motion = 0; ///< index in the definition
     std::size_t method = 0;
-    session::piece made = {};   ///< strokes, and a plan for each
+    files::piece made = {};     ///< strokes, and a plan for each
     render_options render = {}; ///< the session's options, replaced by the method's
     double weakened_db = 0.0;   ///< reduction of the level, see weakening
     std::uint64_t frames = 0;   ///< length from the first frame to the end of the last sound

@@ -16,6 +16,7 @@
 
 #include "rt/clock.hpp"
 #include "rt/system_files.hpp"
+#include "session/piece.hpp"
 #include "session/say.hpp"
 #include "study/session/serial_port.hpp"
 #include "synth/score/joined.hpp"
@@ -239,10 +240,10 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
         code_ = nullptr; // the only outputs are lines, which are not open
 }
 
-coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned interval) const
+coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const
 {
-    const std::size_t method = interval == 2 ? t.method_2.value() : t.method_1;
-    return {find_event(p_.definition.methods[method]), &p_.run_at(s.run), t.motion, method, interval};
+    const std::size_t method = place == 2 ? t.method_2.value() : t.method_1;
+    return {find_event(p_.definition.methods[method]), &p_.run_at(s.run), t.motion, method, place};
 }
 
 unsigned sync_codes::number(const coded_event& e) const
@@ -364,8 +365,8 @@ void sync_codes::note_stimuli(const session_step& s, const planned_trial& t, std
     if (code_ == nullptr)
         return;
     const stimulus_set& all = p_.stimuli;
-    const auto note_one = [&](unsigned interval, std::uint64_t frame, std::int64_t at_ns) {
-        const coded_event e = find_stimulus(s, t, interval);
+    const auto note_one = [&](unsigned place, std::uint64_t frame, std::int64_t at_ns) {
+        const coded_event e = find_stimulus(s, t, place);
         note({to_string(e.event), number(e), frame - lead_, frame, at_ns, all.at(e.motion, e.method).frames});
     };
     note_one(1, frame_1, ns);

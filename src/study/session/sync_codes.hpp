@@ -146,8 +146,8 @@ private:
         std::optional<stroke_report> refused = {}; ///< report, if the stream refused the code
         session_step of = {};
     };
-    /// Returns the stimulus in an interval, 1 or 2.
-    coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned interval) const;
+    /// Returns the first or second stimulus of a trial: place 1 or 2.
+    coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const;
     unsigned number(const coded_event& e) const;
     /// Notes a code that was cut short, with a message: the recorder may have another number.
     void note_broken(const session_step& s, const sent& code);
