@@ -1,4 +1,6 @@
-// SPDX-License-Identifier: MIT WAV files in memory.
+// SPDX-License-Identifier: MIT
+/// \file
+/// WAV files in memory.
 #pragma once
 
 #include <string>

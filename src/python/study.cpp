@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Study functions, which call the code of the tool.
+// SPDX-License-Identifier: MIT
+// Study functions, which call the code of the tool.
 #include <string>
 #include <utility>
 #include <vector>

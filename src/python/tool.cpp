@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Comparisons and pictures, made by the code of the tool.
+// SPDX-License-Identifier: MIT
+// Comparisons and pictures, made by the code of the tool.
 #include <optional>
 #include <string>
 #include <utility>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Colours of time: the map "viridis" of matplotlib (CC0), cut at the end that would be invisible on the background.
+// SPDX-License-Identifier: MIT
+// Colours of time: the map "viridis" of matplotlib (CC0), cut at the end that would be invisible on the background.
 
 // Colours of the map, 33 at even distances; linear interpolation is within 2 of 255.
 const VIRIDIS = [

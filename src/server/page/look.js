@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Icons, colours of the theme, and painting in them on a canvas.
+// SPDX-License-Identifier: MIT
+// Icons, colours of the theme, and painting in them on a canvas.
 import {make} from "../../net/page/dom.js";
 
 // Icons as paths on a grid of 20.

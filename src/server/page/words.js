@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Names and sentences for people, instead of the identifiers of files and options.
+// SPDX-License-Identifier: MIT
+// Names and sentences for people, instead of the identifiers of files and options.
 
 export const ALGORITHMS = {
   "park2016": ["Park 2016", "Short bursts that touch but do not overlap, on three tactors at a time. Follows any path."],

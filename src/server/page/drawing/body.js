@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The body: outlines of its parts, and the place of the array on it, from its file or as chosen in this browser.
+// SPDX-License-Identifier: MIT
+// The body: outlines of its parts, and the place of the array on it, from its file or as chosen in this browser.
 import {state, changed, on_change, remember, remembered} from "../state.js";
 
 // Outlines of parts of the body, mm. Hands: length 180 (men 189, women 172) and breadth 80.5 (86, 77), Ibeachu 2011 and Chan; fingers 51,

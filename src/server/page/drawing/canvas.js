@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The picture of the array at one moment: drives and felt places, over ground and strokes.
+// SPDX-License-Identifier: MIT
+// The picture of the array at one moment: drives and felt places, over ground and strokes.
 import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {paint, write, disc} from "../look.js";

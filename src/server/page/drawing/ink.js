@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Strokes, their bursts, and their predicted felt places.
+// SPDX-License-Identifier: MIT
+// Strokes, their bursts, and their predicted felt places.
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font, paint, disc} from "../look.js";
 import {array, view, layers, start_layer, trace_rows, to_px} from "./view.js";

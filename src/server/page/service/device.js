@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT State of the service: a word and a reason for each state, and a banner if the user must act.
+// SPDX-License-Identifier: MIT
+// State of the service: a word and a reason for each state, and a banner if the user must act.
 import {state, on_change, changed, ceiling_dbfs, is_cardless, is_simulated, say, remember, remembered, now_ms} from "../state.js";
 import {by_id, make, on_click, listen, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Plans for the picture: one request at a time, always for the newest state.
+// SPDX-License-Identifier: MIT
+// Plans for the picture: one request at a time, always for the newest state.
 import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms, take_by_id} from "../state.js";
 import {call, is_connected} from "./connection.js";
 import {make_request, put_take, with_side} from "../takes/takes.js";

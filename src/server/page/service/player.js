@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Plays takes, tests tactors, stops, and advances the moment.
+// SPDX-License-Identifier: MIT
+// Plays takes, tests tactors, stops, and advances the moment.
 import {state, changed, on_change, current_take, take_by_id, is_cardless, is_simulated, ceiling_dbfs, take_gain, marks, say, now_ms, SILENT_DB} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Comparison of two methods on one stroke: side 0 is the take itself, side 1 has other options. Both loop in step, and
+// SPDX-License-Identifier: MIT
+// Comparison of two methods on one stroke: side 0 is the take itself, side 1 has other options. Both loop in step, and
 // one of them is silent.
 import {state, changed, on_change, current_take, level_dbfs, say} from "../state.js";
 import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Small pictures, computed from the formulas that they explain.
+// SPDX-License-Identifier: MIT
+// Small pictures, computed from the formulas that they explain.
 import {make} from "../../../net/page/dom.js";
 import {is_dark} from "../look.js";
 import {sampled} from "../geometry.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Settings of the take. Options come from the service's table: options in OWN have special controls, all others are
+// SPDX-License-Identifier: MIT
+// Settings of the take. Options come from the service's table: options in OWN have special controls, all others are
 // made from their rows.
 import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make, all_of, listen} from "../../../net/page/dom.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The prediction, and faults of the take in plain words, with remedies.
+// SPDX-License-Identifier: MIT
+// The prediction, and faults of the take in plain words, with remedies.
 import {state, changed, on_change, current_take, level_dbfs, say} from "../state.js";
 import {by_id, make, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The definition of a study of two methods, for `tactor experiment`, and its files: the array, and each stroke of the
+// SPDX-License-Identifier: MIT
+// The definition of a study of two methods, for `tactor experiment`, and its files: the array, and each stroke of the
 // take.
 import {quoted, strokes_toml} from "../takes/stroke_file.js";
 

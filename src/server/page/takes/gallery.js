@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take. The tour: six
+// SPDX-License-Identifier: MIT
+// The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take. The tour: six
 // steps on a card next to the array, each with a stroke to try.
 import {state, changed, on_change, is_simulated} from "../state.js";
 import {by_id, make, listen} from "../../../net/page/dom.js";

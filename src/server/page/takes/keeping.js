@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Takes in the browser's storage and in other tabs: writes each change, and reports changes that it cannot write.
+// SPDX-License-Identifier: MIT
+// Takes in the browser's storage and in other tabs: writes each change, and reports changes that it cannot write.
 import {state, changed, say, remember, remembered, take_by_id} from "../state.js";
 import {open_storage} from "./storage.js";
 import {listen} from "../../../net/page/dom.js";

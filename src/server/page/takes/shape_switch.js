@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The switch at the bottom of the canvas: the stroke plays as drawn, or as the curve through its points.
+// SPDX-License-Identifier: MIT
+// The switch at the bottom of the canvas: the stroke plays as drawn, or as the curve through its points.
 import {state, on_change, current_stroke} from "../state.js";
 import {by_id, on_click, show_pressed, listen, set_text} from "../../../net/page/dom.js";
 import {edit_stroke} from "./takes.js";

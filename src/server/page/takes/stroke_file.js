@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT A take as a stroke file: options as keys of the file, the gain as its level, and other options in a comment at its
+// SPDX-License-Identifier: MIT
+// A take as a stroke file: options as keys of the file, the gain as its level, and other options in a comment at its
 // end.
 
 const KEYS = {algorithm: "algorithm", phantom: "phantom", faces: "faces", soa: "soa_s", burst: "burst_s", carrier: "carrier_hz", waveform: "waveform"};

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Takes: {id, version, name, origin, strokes, options}. They are values: a change makes a new take with a new version,
+// SPDX-License-Identifier: MIT
+// Takes: {id, version, name, origin, strokes, options}. They are values: a change makes a new take with a new version,
 // so that it can be undone.
 import {state, changed, current_take, level_dbfs, say, LEAST_PART_S} from "../state.js";
 import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";

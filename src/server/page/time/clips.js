@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The strokes in time: buttons under the lanes' canvas, which handles pointers and draws marks over them.
+// SPDX-License-Identifier: MIT
+// The strokes in time: buttons under the lanes' canvas, which handles pointers and draws marks over them.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_pressed} from "../../../net/page/dom.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Speed and strength along the strokes, requested and felt, and the points that change them.
+// SPDX-License-Identifier: MIT
+// Speed and strength along the strokes, requested and felt, and the points that change them.
 import {state, changed, current_take, current_stroke} from "../state.js";
 import {paint, write, plot} from "../look.js";
 import {left, right, to_x} from "./time_axis.js";

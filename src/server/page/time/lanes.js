@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Lanes that show the times at which tactors play: a ruler, the strokes, a lane for each tactor. They are drawn only
+// SPDX-License-Identifier: MIT
+// Lanes that show the times at which tactors play: a ruler, the strokes, a lane for each tactor. They are drawn only
 // when something has changed; the moment is an element above them.
 import {state, current_take, marks} from "../state.js";
 import {colour, is_dark, paint, write, plot} from "../look.js";

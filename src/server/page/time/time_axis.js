@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT The two timelines: seconds to pixels, tactors to lanes, the visible part of both, and marks on them.
+// SPDX-License-Identifier: MIT
+// The two timelines: seconds to pixels, tactors to lanes, the visible part of both, and marks on them.
 import {state, changed, on_change, current_take, marks} from "../state.js";
 import {colour, write, paint, plot} from "../look.js";
 import {by_id, make} from "../../../net/page/dom.js";

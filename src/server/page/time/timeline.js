@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Pointers and keys on the timelines: choose a moment, move and trim clips, drag points of speed and strength.
+// SPDX-License-Identifier: MIT
+// Pointers and keys on the timelines: choose a moment, move and trim clips, drag points of speed and strength.
 import {listen} from "../../../net/page/dom.js";
 import {state, changed, current_take, marks, say, now_ms} from "../state.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
