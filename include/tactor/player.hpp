@@ -474,10 +474,10 @@ public:
     /// Returns the drive time that earlier players and other programs had left on the device when the stream
     /// began, s, by channel; see drive_limits::max_drive_s. Empty without player_options::keep_drive_time.
     [[nodiscard]] std::vector<double> drive_levels_s() const;
-    /// Returns the reason why the drive time of this player does not count fully; empty: it does. Without a
-    /// file that can be written, the next run does not know of it. A file that cannot be read as a whole, or
-    /// that another program keeps locked for 0.2 s, counts as if each tactor had been driven for as long as
-    /// it may. The first reason stays. player_options::log gets it, too.
+    /// Returns why the drive time may be incomplete; empty if it is not. If the file cannot be written, the
+    /// next run does not know this drive time. If it cannot be read as a whole, or another program keeps it
+    /// locked for 0.2 s, each tactor counts as driven for as long as allowed. Keeps the first reason.
+    /// player_options::log gets it, too.
     [[nodiscard]] std::string drive_time_doubt() const;
     [[nodiscard]] player_stats stats() const;
 

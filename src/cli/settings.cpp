@@ -18,7 +18,8 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 {
     const std::string name =
         fmt::format("{}--{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), options::dashed(o));
-    const std::string help(o.help); // with marks, which only the help page turns into options
+    // Still has the marks around option names; the help page replaces them.
+    const std::string help(o.help);
     CLI::Option* added = nullptr;
     if (o.what == options::kind::flag)
         added = command.add_flag_function(

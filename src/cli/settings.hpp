@@ -38,7 +38,7 @@ constexpr int exit_status_for(error_kind kind) noexcept
 }
 
 struct command_line {
-    CLI::App& app; ///< the command's; gets its options
+    CLI::App& app; ///< parser of the command; the options are added to it
     std::vector<std::string> words;
     std::function<void(const CLI::App&)> show = {}; ///< shows the options in place of running the command
     settings values = {};                           ///< values of the options of the table
@@ -65,7 +65,7 @@ void begin_group(CLI::App& command, const std::string& heading = "Options");
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
 
-/// Adds --force, by which output replaces a file that tactor did not write or that was changed since.
+/// Adds --force, which lets output replace a file that tactor did not write or that changed since.
 void add_force_option(CLI::App& command, bool& into);
 
 /// Adds an option whose text `take` reads. Returns it.

@@ -26,7 +26,8 @@ double frames_between(std::uint64_t from, std::uint64_t to) noexcept
     return to >= from ? static_cast<double>(to - from) : -static_cast<double>(from - to);
 }
 
-// Exact for times below 2^53 ns (104 days), within 8 ns in the first two years of the clock.
+// Returns to - from in ns. Exact for times below 2^53 ns (104 days), within 8 ns in the first two years of
+// the clock.
 double ns_between(std::int64_t from, std::int64_t to) noexcept
 {
     return static_cast<double>(to) - static_cast<double>(from);

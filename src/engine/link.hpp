@@ -62,7 +62,7 @@ struct report {
     enum class kind : std::uint32_t {
         begun,       ///< `frame`: of the stream, where the score starts
         over,        ///< `frame`: frames of the score that were played
-        returned,    ///< an xrun came before it had begun: hand it over again
+        returned,    ///< an xrun, a suspend or a mute came before the score began: send it again
         stream_over, ///< the last report of all
     };
     kind what = kind::begun;

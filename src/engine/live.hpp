@@ -194,8 +194,8 @@ public:
     /// \param window frames, 1 or more
     explicit smoothing(std::uint64_t window) : window_(window) {}
 
-    /// Puts the stroke at `p` from this frame on. Frames do not go back. For the same frame the newest place
-    /// counts. Before the first frame it has always been at the first place.
+    /// Puts the stroke at `p` from this frame on. `frame` never decreases. A later place for the same frame
+    /// replaces the earlier. Before the first frame the stroke rests at the first place.
     void to(std::uint64_t frame, const place& p);
     /// Returns the place of the stroke at a frame after the newest, if no other place comes.
     place at(std::uint64_t frame) const;

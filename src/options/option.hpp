@@ -234,8 +234,8 @@ void put(option_values& w, const option& o, const value& v);
 std::string range_text(detail::bounds b, std::string_view unit);
 
 /// Parses a finite number within bounds.
-/// \throws error (bad_input) about `what`. It has the text, the number to write if the text has a unit, and
-///         the range, in the words of `range` unless empty.
+/// \throws error (bad_input) about `what`. The message has the text, the number without its unit if the text
+///         has one, and the range: `range`, or `b` if that is empty.
 double parse_number(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit,
                     std::string range = {});
 /// Parses a whole number within bounds.

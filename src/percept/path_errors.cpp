@@ -174,7 +174,7 @@ void path_errors::report(percept_summary& r) const
     const auto rms = [this](double squares) { return std::sqrt(squares / felt_); };
     r.rms_error_mm = rms(lagged_.back());
     r.largest_error_mm = largest_;
-    // The last of equal sums has the smallest lag.
+    // If sums are equal, keep the last: it has the smallest lag.
     std::size_t best = lag_count - 1;
     for (std::size_t k = lag_count - 1; k-- > 0;)
         if (lagged_[k] < lagged_[best])

@@ -87,8 +87,8 @@ piece read_piece(source from, std::string name, const layout& faces, const optio
 void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces,
                  const options::option_values& o);
 
-/// Called before the work on stroke i, and with the number of strokes before what concerns all of them. May
-/// throw.
+/// Called with i before the work on stroke i, and with the number of strokes before the work on all of them.
+/// May throw.
 using before_stroke = std::function<void(std::size_t i)>;
 
 /// Plans the strokes of a piece, unless it has plans.

@@ -62,7 +62,7 @@ struct calibrate_options {
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
-    std::vector<method_option> method_options; ///< those that the command line gives
+    std::vector<method_option> method_options; ///< method options given on the command line
     bool has_start = false; ///< the command line gives the start level, which no ceiling may lower
     bool resume = false;
 };

@@ -36,14 +36,14 @@ struct experiment_options {
     std::vector<std::string> keypads = {}; ///< input devices of the participant's
     std::string masker = {};               ///< PCM of the masking noise; empty: none
     std::optional<study::simulation> simulate = {};
-    std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: without
+    std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: no --power
     std::size_t studies = study::power_request{}.studies;
     std::size_t part = 1;                ///< of --power, from 1
     std::size_t parts = 0;               ///< 0: all in one run
     std::vector<std::string> merge = {}; ///< files of all parts; empty: without
 };
 
-/// `o` must live as long as the command.
+/// Adds the options of experiment. `o` must outlive the command.
 void add_experiment_options(CLI::App& command, experiment_options& o);
 
 /// Checks that options go together and none is missing. \throws error (bad_input).

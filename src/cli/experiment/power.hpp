@@ -9,7 +9,8 @@
 
 namespace tactor::cli {
 
-/// `o` must live as long as the command, which has the other options of experiment.
+/// Adds --power, --studies, --part and --merge to a command that already has the other options of experiment.
+/// `o` must outlive it.
 void add_power_options(CLI::App& command, experiment_options& o);
 
 /// Prints the power of the design, or writes a part of it; returns the exit status, which is that of a signal

@@ -49,7 +49,7 @@ std::vector<std::string_view> split(std::string_view line)
     return words;
 }
 
-// Reads a number, also nan, and with a plus sign.
+// Reads a number; accepts nan and a leading +.
 std::optional<double> read_number(std::string_view word)
 {
     if (word.starts_with('+') && !word.starts_with("+-"))
@@ -230,7 +230,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
     });
 }
 
-// Refuses options that a live stroke does not have, and standard input that is also the program's output.
+// Refuses options that do not apply to a live stroke, and output into the file that standard input reads.
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)

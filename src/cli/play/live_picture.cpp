@@ -132,7 +132,7 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
     std::string place;
     if (now.targets.size() == 1)
         place = fmt::format("   at {:.1f}, {:.1f} mm", now.targets[0].x_mm, now.targets[0].y_mm);
-    // Assumes a place of this length, so that the length of the bar does not change.
+    // Leaves room for a place of this width, so that the bar keeps its length.
     const std::size_t beside = times.size() + std::string_view("   at -000.0, -000.0 mm").size() + margin + 3;
     if (columns >= beside + 10) {
         const std::size_t length = std::min<std::size_t>(30, columns - beside);

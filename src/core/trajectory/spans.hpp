@@ -18,9 +18,10 @@ namespace tactor::detail {
 struct trajectory_span {
     double from_s = 0.0;
     double to_s = 0.0;
-    double intensity = 0.0;                            ///< the greatest in the stretch
-    const shape* curve = nullptr;                      ///< null: a straight line, or a rest
-    std::function<double(double parameter)> time_at{}; ///< curves: time when the target is there
+    double intensity = 0.0;       ///< the greatest in the stretch
+    const shape* curve = nullptr; ///< null: a straight line, or a rest
+    /// Curves: time at which the target reaches `parameter`, s.
+    std::function<double(double parameter)> time_at{};
 };
 
 /// Calls `visit` for each span, in order of time and without gaps from 0 to the duration. Stops when it

@@ -308,7 +308,7 @@ void player::impl::call_watchers(const stroke_report& r)
     for (auto own = watchers.extract(r.id); own; own = watchers.extract(r.id)) {
         lock.unlock();
         call([&] { own.mapped()(r); });
-        own = {}; // its contents may call the player
+        own = {}; // destroy it without the lock: its destructor may call the player
         lock.lock();
     }
 }

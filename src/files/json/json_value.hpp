@@ -46,7 +46,7 @@ public:
     /// Returns the names of an object's members.
     std::vector<std::string> keys() const;
 
-    /// Returns a member of an object; missing if this value is.
+    /// Returns a member of an object; missing if this value is missing.
     json_value operator[](const std::string& key) const;
     /// Returns this value if its object has it, even as null.
     /// \throws error (bad_input).

@@ -80,7 +80,7 @@ public:
     {
         (*this)(name, make(), what);
     }
-    /// Writes a member in another form than its value has.
+    /// Writes the member as `v`; ignores the third argument.
     template <class T, class Take>
     void with(const char* name, const T& v, const Take&, const detail::about& what)
     {

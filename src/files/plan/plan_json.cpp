@@ -255,7 +255,7 @@ void members(Io& io, Spread& s)
         return v ? nullable<std::array<double, 2>>{{{v->low, v->high}}} : nullable<std::array<double, 2>>{};
     };
     constexpr about figure{
-        "of the figures of the same names. Each interval is null where that is null for somebody"};
+        "interval of the figure with the same name; null if that figure is null for any of these people"};
     io("rms_error_mm", ends(s.rms_error_mm), figure);
     io("largest_error_mm", ends(s.largest_error_mm), figure);
     io("along_rms_mm", ends(s.along_rms_mm), figure);

@@ -36,8 +36,7 @@ struct piece {
     double total_s() const;
 };
 
-/// A piece that is planned, and everything that its samples depend on. It refers to objects that must outlive
-/// it.
+/// Planned strokes, and everything that their samples depend on. It refers to objects that must outlive it.
 struct plan_record {
     const piece& made;
     const array& tactors;

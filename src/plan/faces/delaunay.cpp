@@ -23,7 +23,7 @@ namespace {
 using site = boost::polygon::point_data<std::int32_t>;
 
 // Converts points to 32-bit sites, for which Boost.Polygon is exact. The scale is a power of two, which keeps
-// a grid of whole millimetres exactly rectangular; the grain of a 1 m array is 5e-7 mm.
+// a grid of whole millimetres exactly rectangular; the resolution of a 1 m array is 5e-7 mm.
 std::vector<site> quantise(const std::vector<point>& points)
 {
     const box b = box_around(points);

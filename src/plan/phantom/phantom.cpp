@@ -364,7 +364,8 @@ private:
 constexpr double sigma_in_pitches = 0.6;
 constexpr double least_share = 0.01; // part of the largest weight; smaller weights are dropped
 
-/// The model of Yun, Oh and Choi, WHC 2019: all tactors near the point, by distance.
+/// The model of Yun, Oh and Choi, WHC 2019: the weights of all tactors fall with distance; those below 1 % of
+/// the largest are dropped.
 class gaussian final : public phantom_model {
 public:
     explicit gaussian(const layout& l) : layout_(l), variance_(square(sigma_in_pitches * l.pitch_mm())) {}

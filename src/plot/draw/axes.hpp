@@ -33,8 +33,9 @@ struct ticks {
 };
 /// Returns at most `most` ticks in lo ... hi, and at least one if lo <= 0 <= hi.
 ticks nice_ticks(double lo, double hi, std::size_t most);
-/// Returns at most `most` ticks at round numbers whose decimal logarithms are in lo ... hi; over a decade and
-/// more, at 1, 2 and 5 times the powers of ten, or only at these.
+/// Returns ticks at round numbers whose decimal logarithms are in lo ... hi. Below a decade there are at most
+/// `most` ticks. Over a decade or more, ticks are at 1, 2 and 5 times powers of ten. If these are more than
+/// `most`, ticks are at powers of ten alone, however many.
 ticks log_ticks(double lo, double hi, std::size_t most);
 
 inline constexpr double small_text = 6.0; ///< pt, the least at one print column

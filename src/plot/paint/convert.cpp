@@ -69,7 +69,7 @@ private:
                 "install librsvg2-bin, or write SVG");
 }
 
-// Starts the program with three files as its standard ones, and no others.
+// Starts the program with `files` as standard input, output and error; closes all other descriptors.
 pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>& files)
 {
     posix_spawn_file_actions_t actions;

@@ -51,7 +51,7 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
     return all;
 }
 
-// Adds the answers. A void trial comes again until it is valid.
+// Simulates the answers to all trials of a run. Repeats a void trial until it is valid.
 void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
                 const run_definition& r)
 {

@@ -139,8 +139,9 @@ bool staircase::answer(bool right)
     return turned;
 }
 
-// Steps down at each right answer until the first reversal. Three answers a step would need so many trials
-// that a lapse on the way is likely, which would end the large steps far above the threshold.
+// Takes an answer; returns true if the direction turned. One right answer lowers the level until the first
+// reversal: with three, the descent would be so long that a lapse is likely, and a lapse would end the large
+// steps too early.
 bool staircase::step(bool right)
 {
     const unsigned for_down = run_.reversals.empty() ? 1 : o_.right_for_down;

@@ -152,7 +152,8 @@ struct calibration_settings {
     std::string date = {};     ///< UTC day on which it began
     std::string array = {};    ///< SHA-256 of what the array file will say besides the thresholds
 
-    double start_dbfs() const noexcept { return staircase.start_dbfs; } ///< its ceiling, if lower
+    /// Returns the start level, before the ceiling of a tactor lowers it.
+    double start_dbfs() const noexcept { return staircase.start_dbfs; }
 };
 
 /// Returns "1up3down" or "1up2down".

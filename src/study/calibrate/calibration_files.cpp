@@ -51,7 +51,7 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
     return j;
 }
 
-// Takes the date from the session's beginning. The device of the noise may differ, all else must be the same.
+// Copies the date of the session's start from `file`. Throws if a setting differs, except the noise device.
 void take_beginning(const fs::path& file, calibration_settings& s)
 {
     const ordered_json began = parse_settings(file, s);

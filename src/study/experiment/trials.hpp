@@ -107,8 +107,8 @@ public:
         if (is_void)
             all_.push_back({t.trial, t.attempt + 1});
     }
-    /// Makes the last trial come again although it counted. Returns false if it does not count, or no trial
-    /// was taken.
+    /// Queues the last trial again, and no longer counts it. Returns false if there is no last trial that
+    /// counts.
     bool take_back()
     {
         if (!last_counts_)

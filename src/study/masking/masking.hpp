@@ -129,8 +129,8 @@ public:
     /// later than the fade and masking_options::patience_s allow, or if the waiter gave up.
     bool wait_for(masking_state s, const waiter& wait = poll_descriptor);
 
-    /// Number of times that the stream stood still. The noise did not cover a stimulus during which it
-    /// changed.
+    /// Number of times that the stream stood still. If it grew during a stimulus, the noise did not cover
+    /// that stimulus.
     unsigned breaks() const noexcept { return breaks_; }
     /// Reason for the end of the stream; `ok` while it goes on.
     io_kind ended() const noexcept { return ended_; }

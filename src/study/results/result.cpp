@@ -134,7 +134,7 @@ private:
             add(figure, "too many participants for the exact test");
     }
 
-    // Notes the participants who lack a figure, for one text about all conditions.
+    // Notes the participants who lack a figure, so that one text covers all conditions.
     template <class Person>
     void note(const measured<Person>& v)
     {

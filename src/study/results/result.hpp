@@ -185,7 +185,7 @@ struct result_outline {
 
 /// Returns a value of cells that are tested, or only described.
 cell_means outline_cells(bool tested);
-/// Returns a value with one figure and nobody.
+/// Returns a value with one unnamed figure and no participants.
 template <class Measured>
 Measured outline_figures()
 {

@@ -48,7 +48,7 @@ json run_json(const run_analysis& r)
     return j;
 }
 
-// Adds the schema of a row at its place to that of an object.
+// Adds the schema of a row to that of an object, under the names in `at`.
 void place_row(json& object, std::span<const std::string> at, const json& value, bool required)
 {
     json& needed = object["required"];

@@ -14,7 +14,7 @@ namespace tactor::study {
 /// Returns an object with the schema tactor-analysis/1.
 nlohmann::ordered_json make_analysis_json(const analysis& a);
 
-/// Returns that schema.
+/// Returns the JSON schema of tactor-analysis/1.
 nlohmann::ordered_json analysis_schema();
 
 // Return parts of this object.

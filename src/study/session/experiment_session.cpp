@@ -62,8 +62,8 @@ bool assume_thresholds(array& a, bool nobody_feels)
 }
 
 // For a left hand, exchanges left and right about the middle of the array in motions with `mirror` and in the
-// strokes of methods. Throws error (bad_input) if a motion has `mirror` and a session with a person lacks the
-// hand.
+// strokes of methods. Throws error (bad_input) if a motion has `mirror` and the session is with a person
+// whose hand is not given.
 void mirror_for_hand(experiment_definition& d, const array& a, const session_request& r)
 {
     const auto mirrored = std::ranges::find(d.motions, true, &motion_definition::mirror);

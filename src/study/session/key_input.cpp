@@ -336,7 +336,8 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
     for (;;) {
         session_key k = wait("the session", true);
         const bool is_point = k.is_dot && estimate;
-        const bool erases = k.from_keypad && k.command && !is_point && !shown.empty(); // command b
+        // A keypad's b erases while digits are typed.
+        const bool erases = k.from_keypad && k.command && !is_point && !shown.empty();
         if (!k.is_key || (k.command && !erases && !is_point))
             return k;
         if (shown.empty() && k.since_ns < first_key_ns)

@@ -125,8 +125,8 @@ struct session_key {
     std::optional<operator_key> command = {};
     std::optional<unsigned> answer = {};     ///< number in `text`, or of the page's answer
     std::optional<std::string> entered = {}; ///< line with its blanks, or text from the page
-    bool is_key = false;                     ///< true for a key, after which more digits may come
-    bool is_held = false;                    ///< true if a terminal repeats the key
+    bool is_key = false;  ///< true for a key press, false for a whole line or an answer from the page
+    bool is_held = false; ///< true if a terminal repeats the key
     std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< repeat_guard::since_ns()
     bool from_keypad = false;
     bool is_dot = false;    ///< true for a keypad's dot, which means b except in an estimate

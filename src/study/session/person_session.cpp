@@ -622,7 +622,8 @@ void person_session::begin_store()
         store_.note("date", now);
     if (!agreed_at_.empty())
         store_.note("consent", agreed_at_);
-    json walks = store_.facts().value("walk", json::array()); // a resumed session has a walk, too
+    // A resumed session keeps its earlier walks.
+    json walks = store_.facts().value("walk", json::array());
     for (const json& one : walked_)
         walks.push_back(one);
     store_.note("walk", walks);

@@ -149,7 +149,7 @@ private:
     /// Returns the first or second stimulus of a trial: place 1 or 2.
     coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const;
     unsigned number(const coded_event& e) const;
-    /// Notes a code that was cut short, with a message: the recorder may have another number.
+    /// Notes and reports a code that was cut short: the recorder may have read another number.
     void note_broken(const session_step& s, const sent& code);
     score make(unsigned number) const;
     void note(const sent& s);

@@ -97,8 +97,9 @@ likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_
     return all;
 }
 
-// Returns the move to the maximum that would follow if the information were constant, with the lapse within
-// its bounds. Returns nothing if there is no maximum. The lapse stays if the answers say nothing about it.
+// Returns the step of Newton's method, or of Fisher's scoring if `expected`, with the lapse within its
+// bounds. Returns nothing if the information is not that of a maximum. With `expected`, the lapse stays if
+// the answers say nothing about it.
 std::optional<point> find_move(const likelihood& l, double lapse, double most_lapse, bool expected)
 {
     if (l.singular())
@@ -162,8 +163,7 @@ std::optional<summit> climb(const std::vector<answer_block>& blocks, const psych
     return {};
 }
 
-// Returns the highest of the summits that climbs from the starts reach: with lapses and a guess there may be
-// several.
+// Climbs from each start and returns the highest summit. With lapses and guesses there may be several.
 std::optional<summit> find_summit(const std::vector<answer_block>& blocks, const psychometric_family& f,
                                   const std::vector<point>& starts)
 {

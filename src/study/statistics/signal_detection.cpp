@@ -17,7 +17,7 @@
 namespace tactor::study {
 namespace {
 
-// Computes in double, for the reason in tests.cpp.
+// Policy that computes in double; tests.cpp has the reason.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using normal = boost::math::normal_distribution<double, in_double>;
 

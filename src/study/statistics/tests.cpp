@@ -30,7 +30,7 @@ double noncentrality(double t, double df, double below)
         return boost::math::cdf(boost::math::non_central_t_distribution<double, in_double>(df, delta), t) -
                below;
     };
-    // Begin near t, at the distance by which an estimated standard deviation is uncertain.
+    // Start with a bracket around t about as wide as the uncertainty of t; widen it until it holds the root.
     double width = 1.0 + std::abs(t) / std::sqrt(df);
     double low = t - width;
     double high = t + width;
@@ -151,7 +151,7 @@ parts project(const cell_table& t, const matrix& c, const std::vector<std::size_
         for (std::size_t k = 0; k < c.size(); ++k)
             for (std::size_t l = 0; l < c.size(); ++l)
                 s.cross[k][l] += (z[i][k] - means[groups[i]][k]) * (z[i][l] - means[groups[i]][l]);
-    // Type III: the effect is of the mean of all groups' means, each with the same weight.
+    // Type III: tests the unweighted mean of the group means.
     const auto all = static_cast<double>(z.size());
     double inverse = 0.0;
     for (const double one : n)

@@ -138,7 +138,8 @@ public:
     /// Lists the responses in its tables that have separate numbers in [sync.codes]; empty if all share a
     /// number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
-    /// Returns the name of a response in the meaning of a code; empty if all responses share a number.
+    /// Returns the words for a response in the description of its code; empty if all responses share a
+    /// number.
     virtual std::string name_response(const run_outline& o, std::string_view response) const;
 
     /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.

@@ -190,7 +190,7 @@ void measure(score::impl& s)
 /// Returns the carrier of a plan at a time.
 double hz_at(const plan& p, double t_s)
 {
-    // For a recording along the path the course contains its repetition rate.
+    // For a recording along the path the carrier profile holds its repetition rate.
     if (p.course.empty() || p.wave.kind == waveform_kind::recording)
         return p.carrier_hz;
     const auto after = std::upper_bound(p.course.begin(), p.course.end(), t_s,

@@ -213,8 +213,9 @@ complex times(complex a, complex b)
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-/// Writes the Fourier sum of n elements, `step` apart from `from` on, to `to`; n is a power of 2. Adds the
-/// sums of the even and of the odd elements (Cooley and Tukey 1965). `units[k]` is exp(2 pi i k / size).
+/// Writes to `to` the Fourier sum of n elements: from[0], from[step], from[2 step] ...; n is a power of 2.
+/// Adds the sums of the even and of the odd elements (Cooley and Tukey 1965). `units[k]` is
+/// exp(2 pi i k / size).
 void add_up(const complex* from, std::size_t step, std::size_t n, const spectrum& units, complex* to)
 {
     if (n == 1) {
