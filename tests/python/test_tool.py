@@ -42,7 +42,7 @@ def test_a_strokes_own_fit_and_a_speed_are_the_tools(tool, tmp_path, palm, keys,
     file = tmp_path / "s.toml"
     file.write_text(f'[stroke]\npath = "M 5 10 L 30 20"\n{keys}\n'.replace("rest", "pauses = [[0.5, 0.3]]"))
     said = tool("compare", file, *([] if speed is None else ["--speed", speed]), "--format", "json")
-    printed = json.loads(said.replace("(--snap moves", "(snap = true moves"))  # the tool makes options of the library's fields
+    printed = json.loads(said.replace("(use --snap to", "(use snap = true to"))  # the tool makes options of the library's fields
     assert tactor.compare(palm, tactor.load(file)[0], speed=speed) == printed["results"]
 
 
