@@ -94,11 +94,12 @@ void warn_of_session(const study::prepared_experiment& p, const experiment_optio
 std::function<void(double)> show_target(const array& a, const std::vector<stroke>& target)
 {
     const auto picture = std::make_shared<live_picture>(a);
-    return [picture, &target, faces = layout(a), total_s = study::find_duration_s(target),
+    return [picture, &target, faces = layout(a), spans = study::list_spans(target),
+            total_s = study::find_duration_s(target),
             now = instant{std::vector<double>(a.tactors.size(), 0.0), {}}](double t_s) mutable {
         now.targets.clear();
-        for (const std::optional<point>& p : study::find_places(target, faces, t_s))
-            if (p)
+        for (std::size_t i = 0; i < target.size(); ++i)
+            if (const auto p = study::find_place(target[i], spans[i], faces, t_s))
                 now.targets.push_back(*p);
         picture->draw(now, t_s, total_s);
     };

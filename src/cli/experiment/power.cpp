@@ -93,12 +93,16 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
     }
 }
 
-json counts_json(const study::power_at& at)
+// Describes the counts for one number of participants, also for the files of --part.
+template <class Io>
+void count_members(Io& io, const study::power_at& at)
 {
-    return {{"participants", at.participants},
-            {"significant", at.significant},
-            {"for_last", at.for_last},
-            {"untested", at.untested}};
+    constexpr detail::about significant{
+        "studies with a p below alpha, and among these the studies in which the last method was better"};
+    io("participants", at.participants, {"participants of each study", {2, detail::from_0.high}});
+    io("significant", at.significant, significant);
+    io("for_last", at.for_last, significant);
+    io("untested", at.untested, {"studies without a test"});
 }
 
 // Outcome for one number of participants, as JSON.
@@ -111,14 +115,9 @@ struct listed_power {
 template <class Io, detail::either<listed_power> Power>
 void members(Io& io, Power& v)
 {
-    constexpr detail::about significant{
-        "studies with a p below alpha, and among these the studies in which the last method was better"};
     constexpr detail::about share{"significant / studies, and both ends of its exact binomial 95 % interval",
                                   {0.0, 1.0}};
-    io("participants", v.counts.participants, {"participants of each study", {2, detail::from_0.high}});
-    io("significant", v.counts.significant, significant);
-    io("for_last", v.counts.for_last, significant);
-    io("untested", v.counts.untested, {"studies without a test"});
+    count_members(io, v.counts);
     io("power", v.power, share);
     io("ci", v.ci, share);
 }
@@ -210,7 +209,7 @@ void write_part(const std::string& file, json j, const study::power_request& ask
     for (const study::run_power& p : all) {
         j["runs"].push_back(json::array());
         for (const study::power_at& at : p.at)
-            j["runs"].back().push_back(counts_json(at));
+            j["runs"].back().push_back(files::make_object([&at](auto& io) { count_members(io, at); }));
     }
     study::write_whole(file, study::json_text(j));
 }

@@ -184,8 +184,7 @@ std::vector<point> find_targets(const piece& p, const score& s, const layout& fa
         const double t = t_s - static_cast<double>(s.starts()[i]) / s.rate();
         if (t < 0.0 || t > s.plans()[i].plan.total_s)
             continue;
-        const point at = p.strokes[i].motion.position(t);
-        all.push_back(faces.contains(at) ? at : faces.nearest(at));
+        all.push_back(faces.nearest(p.strokes[i].motion.position(t)));
     }
     return all;
 }

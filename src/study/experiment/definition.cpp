@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/choices.hpp>
 #include <tactor/error.hpp>
 #include <tactor/waveform.hpp>
 
+#include "core/start_times.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/text_file.hpp"
@@ -576,14 +576,11 @@ std::string spell_for_definition(std::string_view hint, bool own_level)
 
 std::vector<stroke_span> list_spans(const std::vector<stroke>& strokes)
 {
-    std::vector<double> starts_s;
-    std::vector<double> ends_s;
+    detail::start_times times;
     std::vector<stroke_span> all;
     for (const stroke& s : strokes) {
-        const double start_s = resolve_start_s(s.start_s, s.anchor, starts_s, ends_s);
-        all.push_back({start_s, start_s + s.motion.duration_s()});
-        starts_s.push_back(all.back().start_s);
-        ends_s.push_back(all.back().end_s);
+        const double start_s = times.start(s.start_s, s.anchor);
+        all.push_back({start_s, times.lasts(s.motion.duration_s())});
     }
     return all;
 }

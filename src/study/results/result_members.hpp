@@ -22,6 +22,7 @@ using detail::by_name;
 using detail::nullable;
 
 inline constexpr detail::bounds probability{0.0, 1.0};
+inline constexpr const char* paired_test = "paired t test, two-sided";
 inline constexpr about f_test{"F, degrees of freedom and p; for epsilon and Mauchly's W see tactor-json(5)"};
 
 /// Returns both ends of an interval.
@@ -40,14 +41,20 @@ void mean_members(Io& io, const t_test& t)
     io.or_null("ci_within", list_ends(t.ci_within), {"the same within participants"});
 }
 
+/// Describes t, its degrees of freedom and p. `text`: name of the test.
+template <class Io>
+void t_members(Io& io, const t_test& t, const char* text)
+{
+    io.or_null("t", t.t, {text});
+    io.or_null("df", t.df, {text, {1.0, detail::from_0.high}});
+    io.or_null("p", t.p, {text, probability});
+}
+
 template <class Io>
 void test_members(Io& io, const t_test& t)
 {
-    constexpr about test{"t test, two-sided"};
     mean_members(io, t);
-    io.or_null("t", t.t, test);
-    io.or_null("df", t.df, {test.text, {1.0, detail::from_0.high}});
-    io.or_null("p", t.p, {test.text, probability});
+    t_members(io, t, "t test, two-sided");
     io.or_null("p_signflip", t.p_signflip,
                {"exact p of the permutation test that changes signs", probability});
     io.or_null("d", t.d, {"effect size"});
@@ -105,12 +112,9 @@ template <class Io>
 void row_member(Io& io, const char* name, const method_difference& v)
 {
     io.object(name, {"the last method minus the first"}, [&t = v.test](auto& inner) {
-        constexpr about test{"paired t test, two-sided"};
         inner.or_null("difference", t.mean, {"mean difference"});
         inner.or_null("ci", list_ends(t.ci), {"both ends of its 95 % interval"});
-        inner.or_null("t", t.t, test);
-        inner.or_null("df", t.df, {test.text, {1.0, detail::from_0.high}});
-        inner.or_null("p", t.p, {test.text, probability});
+        t_members(inner, t, paired_test);
         inner.or_null("p_signflip", t.p_signflip,
                       {"exact p of the permutation test that changes signs", probability});
         inner.or_null("d_z", t.d, {"mean / sd of the differences"});
@@ -164,13 +168,10 @@ void row_member(Io& io, const char* name, const paired_list& v)
 {
     io.list(name, v.pairs, {"all pairs of motions"},
             [&v](auto& inner, const paired_comparison& c, std::size_t) {
-                constexpr about test{"paired t test, two-sided"};
                 inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
                 inner.fact("b", [&] { return v.motions[c.b]; }, {"the second motion"});
                 inner.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
-                inner.or_null("t", c.test.t, test);
-                inner.or_null("df", c.test.df, {test.text, {1.0, detail::from_0.high}});
-                inner.or_null("p", c.test.p, {test.text, probability});
+                t_members(inner, c.test, paired_test);
                 inner.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
             });
 }

@@ -18,11 +18,6 @@ std::string number_keys(std::size_t answers)
     return answers <= most_keys ? std::string("123456789").substr(0, answers) : "";
 }
 
-point bring_onto(const layout& faces, point p)
-{
-    return faces.contains(p) ? p : faces.nearest(p);
-}
-
 // Returns the places of each stroke at equal parts of its own time.
 std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, const layout& faces)
 {
@@ -31,7 +26,7 @@ std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, 
         all.emplace_back();
         for (double i = 0.0; i <= picture_points; ++i)
             all.back().push_back(
-                bring_onto(faces, s.motion.position(s.motion.duration_s() * i / picture_points)));
+                faces.nearest(s.motion.position(s.motion.duration_s() * i / picture_points)));
     }
     return all;
 }
@@ -71,28 +66,24 @@ page_progress find_progress(const prepared_experiment& p, const session_step& s)
             s.practice ? run.practice.size() : run.trials.size()};
 }
 
-std::vector<std::optional<point>> find_places(const std::vector<stroke>& target, const layout& faces,
-                                              double t_s)
+std::optional<point> find_place(const stroke& s, const stroke_span& when, const layout& faces, double t_s)
 {
-    const std::vector<stroke_span> spans = list_spans(target);
-    std::vector<std::optional<point>> all(target.size());
-    for (std::size_t i = 0; i < target.size(); ++i)
-        if (target.size() == 1 || (t_s >= spans[i].start_s && t_s <= spans[i].end_s))
-            all[i] = bring_onto(faces, target[i].motion.position(t_s - spans[i].start_s));
-    return all;
+    if (t_s < when.start_s || t_s > when.end_s)
+        return {};
+    return faces.nearest(s.motion.position(t_s - when.start_s));
 }
 
 std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<stroke>& target,
                                                              const array& a, double parts)
 {
     const layout faces(a);
+    const std::vector<stroke_span> spans = list_spans(target);
     const double duration_s = find_duration_s(target);
     std::vector<std::vector<std::optional<point>>> all(target.size());
-    for (double i = 0.0; i <= parts; ++i) {
-        const std::vector<std::optional<point>> now = find_places(target, faces, duration_s * i / parts);
-        for (std::size_t s = 0; s < now.size(); ++s)
-            all[s].push_back(now[s]);
-    }
+    for (std::size_t s = 0; s < target.size(); ++s)
+        for (double i = 0.0; i <= parts; ++i) // the last product may be rounded up
+            all[s].push_back(
+                find_place(target[s], spans[s], faces, std::min(duration_s, duration_s * i / parts)));
     return all;
 }
 

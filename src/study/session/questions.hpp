@@ -37,10 +37,9 @@ trial_answers find_answers(const experiment_definition& d, const run_definition&
 /// Returns the progress of the session at a step.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);
 
-/// Returns the position of each stroke of a target at a time since the target's start, moved to the nearest
-/// point of the array. One of several strokes has no position before it starts and after it ends.
-std::vector<std::optional<point>> find_places(const std::vector<stroke>& target, const layout& faces,
-                                              double t_s);
+/// Returns the position of a stroke at a time since its target's start, moved to the nearest point of the
+/// array; nothing before the stroke starts and after it ends.
+std::optional<point> find_place(const stroke& s, const stroke_span& when, const layout& faces, double t_s);
 
 /// Returns these positions, by stroke, at `parts` equal parts of the target's time.
 std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<stroke>& target,
