@@ -35,7 +35,7 @@ def main():
         one_s, whole = seconds(power(STUDIES))
         two_s, _ = seconds(*(power(STUDIES, "--part", f"{k}/2", "-o", f) for k, f in enumerate(files, 1)))
         merge_s, merged = seconds(power(STUDIES, "--merge", *files))
-        first_s, _ = seconds(power(1, "--part", "1/1", "-o", files[0]))
+        first_s, _ = seconds(power(1, "--part", "1/1", "-o", f"{folder}/first.json"))  # a part of other studies is not replaced
     print(f"{STUDIES} studies of 12 people: {one_s:.1f} s; two parts side by side on {cores} cores: {two_s:.1f} s, {one_s / two_s:.2f} times as fast")
     print(f"a part of one study: {first_s:.2f} s, of it {one_s / STUDIES:.2f} s its study; joining two parts: {merge_s:.2f} s")
     same = merged == whole and whole != b""

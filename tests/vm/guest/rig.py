@@ -39,7 +39,7 @@ def wav_data(path):
     at = 12
     while data[at:at + 4] != b"data":
         at += 8 + int.from_bytes(data[at + 4:at + 8], "little")
-    return data[at + 8:]
+    return data[at + 8:at + 8 + int.from_bytes(data[at + 4:at + 8], "little")]  # the file's mark follows
 
 
 # Captures: a test that fails half-way leaves the card to the next one.
