@@ -233,6 +233,45 @@ class ParticipantPage(BrowserTest, PageTest):
         self.asked(p, "consent")
         self.assertTrue(p.value("document.querySelector('#offline').hidden"))
 
+    def test_a_motion_of_two_strokes_shows_each_while_it_plays(self):
+        self.write("two.toml", '[[stroke]]\npath = "M0 0H20"\nduration_s = 2.0\nstart_s = 0\n'
+                               '[[stroke]]\npath = "M20 0H0"\nduration_s = 1.0\nstart_s = 1.0\n')
+        self.write("both.toml", BARE + toml("motion", "both", file="two.toml")
+                   + toml("run", "how", task="rate", attribute="similarity", animation=True, trials=2, scale=3, motions=["both"], methods=["Birch"])
+                   + toml("run", "what", task="identify", trials=2, motions=["east", "both"], methods=["Birch"]))
+        s = self.start(definition="both.toml")
+        p = self.open(s)
+        ask = self.click(p, "introduce", 1, self.walk(p))
+        p.until("state.screen === 'target' && document.querySelector('#field .dot')")
+        seen = p.value("""new Promise(done => { const all = [];
+            const look = () => {
+                if (state.screen !== 'target') return done(all);
+                all.push([(performance.now() - began) / 1000, [...document.querySelectorAll('#field .dot')].map(
+                    e => getComputedStyle(e).display === 'none' ? null : Number(e.getAttribute('cx')))]);
+                requestAnimationFrame(look); };
+            requestAnimationFrame(look); })""")
+        alone = [dots for at, dots in seen if at < 0.95]
+        both = [(at, dots) for at, dots in seen if 1.05 < at < 1.95]
+        self.assertTrue(alone and both)
+        self.assertTrue(all(a is not None and b is None for a, b in alone), alone)
+        for at, (a, b) in both:
+            self.assertLess(abs(a - 10 * at), 1.5)  # 20 mm in 2 s, and a frame or two late
+            self.assertLess(abs(b - (40 - 20 * at)), 3)
+        ask = self.click(p, "question", 1, ask)
+        p.until("state.screen === 'target' && document.querySelectorAll('#field .dot:not(.away)').length === 2")
+        if PICTURES:
+            p.picture(PICTURES / "participant-two-strokes.png")
+        ask = self.click(p, "question", 1, ask)
+        ask = self.click(p, "introduce", 1, ask)
+        ask = self.asked(p, "question", ask)
+        self.assertEqual(p.value("[...document.querySelectorAll('#answers button')].map(b => [b.querySelectorAll('.start').length, b.querySelectorAll('.end').length])"),
+                         [[1, 1], [2, 2]])
+        self.picture(p, "names-of-two-strokes")
+        self.click(p, "question", 2)
+        self.click(p, "question", 2, ask)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([r["response"] for r in self.rows("01", "what") if r["void"] == "false"], ["both", "both"])
+
     def test_scales_with_words_at_their_ends_and_names(self):
         self.write("many.toml", BARE + toml("run", "marks", task="rate", attribute="similarity", trials=1, scale=9, labels=["very uneven", "very even"])
                    + IDENTIFY.replace("trials = 2", "trials = 1"))
