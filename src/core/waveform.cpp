@@ -148,8 +148,12 @@ burst_envelope parse_envelope(std::string_view text)
     std::size_t at = colon + 1;
     const auto part = detail::scan_number(text, at);
     if (e.kind != envelope_kind::tukey || !part || at != text.size() || !detail::bounds_of::part.holds(*part))
-        throw detail::bad_field("envelope", fmt::format("\"{}\" is unknown", text),
-                                "give a part only to tukey, from 0 to 1, such as tukey:0.5");
+        throw detail::bad_field(
+            "envelope",
+            e.kind == envelope_kind::tukey
+                ? fmt::format("\"{}\" has no part from 0 to 1 after the colon", text)
+                : fmt::format("{} takes no part", to_string(e.kind)),
+            fmt::format("write {}, or tukey with a part, such as tukey:0.5", to_string(e.kind)));
     e.tukey_part = *part;
     return e;
 }

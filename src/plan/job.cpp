@@ -133,7 +133,7 @@ void follower::refuse(double t_s) const
         "{fit=true| to scale it to the array, or }{outside=clamp} to play the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(error_kind::bad_input, job_.name(),
-                    fmt::format("it starts outside the array, at {}, and goes {} mm outside",
+                    fmt::format("the path starts outside the array, at {}, and goes {} mm outside",
                                 place(motion.position(t_s)), plain_number(farthest_outside_mm(t_s), 3)),
                     hint);
     double in = inside_s_;
@@ -142,7 +142,7 @@ void follower::refuse(double t_s) const
     for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
         (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
     throw error(error_kind::bad_input, job_.name(),
-                fmt::format("it leaves the array at {} after {}, and goes {} mm outside",
+                fmt::format("the path leaves the array at {} after {}, and goes {} mm outside",
                             place(motion.position(in)), seconds_text(in),
                             plain_number(farthest_outside_mm(out), 3)),
                 hint);

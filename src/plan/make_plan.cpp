@@ -251,7 +251,7 @@ double burst_duration_s(const timing_profile& p, double soa_s)
     if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
         throw detail::bad_field(
             "soa_s",
-            fmt::format("{} s is out of range: an SOA is longer than {} s and at most {} s", soa_s,
+            fmt::format("{} s is out of range: the SOA must be above {} s and at most {} s", soa_s,
                         p.intercept_s, p.max_soa_s),
             fmt::format("use {}", p.max_soa_s));
     return detail::law_duration_s(p, soa_s);
@@ -265,8 +265,8 @@ double burst_duration_s(const plan_options& o)
     if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
         throw detail::bad_field(
             "soa_s",
-            fmt::format("{} s is out of range: with a set burst duration an SOA is {} to {} s", o.soa_s,
-                        shortest_burst_s, longest_free_soa_s),
+            fmt::format("{} s is out of range: with a set burst duration the SOA must be from {} to {} s",
+                        o.soa_s, shortest_burst_s, longest_free_soa_s),
             fmt::format("use {}", o.profile.max_soa_s));
     if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
         throw detail::bad_field(

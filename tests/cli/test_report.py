@@ -430,7 +430,7 @@ class Refusals(ReportTest):
                 (lambda t: t.update(level=[7]), "level: it is not an object"),
                 (lambda t: t.update(thresholds_assumed="yes"), "thresholds_assumed: it is neither true nor false"),
                 (lambda t: t["stimuli"][0].update(sha256="../../../passwd"), "passwd.json"),
-                (lambda t: t["stimuli"].pop(0), "plan_1 is not a plan of its motion and method")):
+                (lambda t: t["stimuli"].pop(0), "plan_1 is not one of the plans in session.json for this motion")):
             self.change("01", change)
             self.says(why)
             self.write("study/sourcedata/sub-01/session.json", good)
@@ -449,7 +449,7 @@ class Refusals(ReportTest):
         table = beh.read_text()
         other = next(r["plan_1"] for r in rows if r["plan_1"] != rows[0]["plan_1"])
         beh.write_text(table.replace(rows[0]["plan_1"], other, 1))
-        self.says("sub-01_task-howgood_beh.tsv:2: plan_1 is not a plan of its motion")
+        self.says("sub-01_task-howgood_beh.tsv:2: plan_1 is not one of the plans")
         beh.write_text(table)
         self.ok("report", "study")
 

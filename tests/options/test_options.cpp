@@ -324,8 +324,9 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
     CHECK(complaint("level-dbfs = 1") ==
           "t.toml:2:14: level-dbfs: 1 is out of range (did you mean -1? Use -200 to 0 dBFS)");
     CHECK(complaint("snap = 1") == "t.toml:2:8: snap: 1 is neither true nor false");
-    CHECK(complaint("envelope = \"linear:0.3\"") == "t.toml:2:12: envelope: \"linear:0.3\" is unknown (give "
-                                                    "a part only to tukey, from 0 to 1, such as tukey:0.5)");
+    CHECK(complaint("envelope = \"linear:0.3\"") ==
+          "t.toml:2:12: envelope: linear takes no part (write linear, or tukey with "
+          "a part, such as tukey:0.5)");
     CHECK(complaint("waveform = 3") == "t.toml:2:12: waveform: 3 is not a text (put it in quotes)");
     CHECK(complaint("am = 30") == "");
     CHECK(complaint("waveform = \"nowhere.wav\"") == ""); // looked for where it is used

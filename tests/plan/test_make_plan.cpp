@@ -459,7 +459,7 @@ TEST_CASE("a stroke's impossible SOA or burst is refused with its place")
     };
     using is = std::pair<std::string, unsigned>;
     const char* soa = "[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 9\n";
-    CHECK(told(soa) == is{"w.toml:3:9: soa_s: 9 s is out of range: an SOA is longer than 0.0473 s and at "
+    CHECK(told(soa) == is{"w.toml:3:9: soa_s: 9 s is out of range: the SOA must be above 0.0473 s and at "
                           "most 0.07 s (use 0.07)",
                           3});
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.2\n") ==

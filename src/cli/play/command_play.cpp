@@ -363,7 +363,11 @@ std::optional<timed_point> live_lines::parse(std::string_view line)
         v[i] = *number;
         lost = lost || std::isnan(v[i]);
         if (std::abs(v[i]) > farthest_mm || (i == 2 && v[i] < 0.0))
-            refuse(fmt::format("{} is out of range", words[i]));
+            refuse(fmt::format("{} {} is out of range",
+                               i == 0   ? "x"
+                               : i == 1 ? "y"
+                                        : "the intensity",
+                               words[i]));
     }
     if (lost && last_)
         return timed_point{.position = *last_, .intensity = 0.0};

@@ -108,7 +108,7 @@ void check_limits(const session::stream_options& asked, const environment& e)
 server::endpoint_options settle_endpoints(const options::serve_settings& s)
 {
     if (s.socket && s.socket->empty())
-        refuse_option("--socket", "the name is empty", "name a path");
+        refuse_option("--socket", "the path is empty", "give the path of a socket");
     server::endpoint_options e;
     e.allow_hosts = s.allow_hosts;
     e.osc_peers = s.osc_peers;

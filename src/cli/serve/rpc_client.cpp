@@ -93,7 +93,7 @@ server_error make_error(const net::json& e)
 rpc_client::rpc_client(const std::optional<std::string>& socket, session::interrupt& stop) : stop_(stop)
 {
     if (socket && socket->empty())
-        refuse_option("--socket", "the name is empty", "name a socket");
+        refuse_option("--socket", "the path is empty", "give the path of a socket");
     const auto places = candidates(socket);
     int code = ENOENT;
     for (const std::string& p : places) {

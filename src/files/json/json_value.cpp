@@ -181,7 +181,7 @@ double json_reader::number(const json_value& from, const detail::bounds& range)
 {
     const double v = from.need_number();
     if (!range.holds(v))
-        from.refuse(fmt::format("it is {}, not {}", v, range_text(range)));
+        from.refuse(fmt::format("{} is out of range: it must be {}", v, range_text(range)));
     return v;
 }
 

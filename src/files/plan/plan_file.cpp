@@ -363,24 +363,26 @@ bool holds_plans(std::string_view text)
 void check_same_array(const std::string& file, const array& made_for, const array& in_use)
 {
     const auto refuse = [&](const std::string& why) {
-        throw error(error_kind::bad_input, file,
-                    fmt::format("it was planned for the array \"{}\", not for \"{}\": {}", made_for.name,
-                                in_use.name, why),
+        throw error(error_kind::bad_input, file, why,
                     "plan the stroke for this array, or {array=none}: the plan has its own");
     };
     if (made_for.tactors.size() != in_use.tactors.size())
-        refuse(fmt::format("{} there, {} here", counted(made_for.tactors.size(), "tactor"),
-                           in_use.tactors.size()));
+        refuse(fmt::format("the plan's array \"{}\" has {}, \"{}\" has {}", made_for.name,
+                           counted(made_for.tactors.size(), "tactor"), in_use.name, in_use.tactors.size()));
+    const auto differs = [&](std::size_t i, const std::string& there, const std::string& here) {
+        refuse(fmt::format("tactor {} is {} in the plan's array \"{}\", {} in \"{}\"", i, there,
+                           made_for.name, here, in_use.name));
+    };
     for (std::size_t i = 0; i < in_use.tactors.size(); ++i) {
         const tactor_spec& a = made_for.tactors[i];
         const tactor_spec& b = in_use.tactors[i];
         if (distance_mm(a.position, b.position) > same_place_mm)
-            refuse(fmt::format("tactor {} is at ({:.6g}, {:.6g}) mm there, at ({:.6g}, {:.6g}) mm here", i,
-                               a.position.x_mm, a.position.y_mm, b.position.x_mm, b.position.y_mm));
+            differs(i, fmt::format("at ({:.6g}, {:.6g}) mm", a.position.x_mm, a.position.y_mm),
+                    fmt::format("at ({:.6g}, {:.6g}) mm", b.position.x_mm, b.position.y_mm));
         if (a.channel != b.channel)
-            refuse(fmt::format("tactor {} is on channel {} there, on {} here", i, a.channel, b.channel));
+            differs(i, fmt::format("on channel {}", a.channel), fmt::format("on channel {}", b.channel));
         if (a.polarity != b.polarity)
-            refuse(fmt::format("tactor {} has polarity {} there, {} here", i, a.polarity, b.polarity));
+            differs(i, fmt::format("of polarity {}", a.polarity), fmt::format("of polarity {}", b.polarity));
     }
 }
 

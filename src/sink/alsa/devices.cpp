@@ -450,8 +450,7 @@ void tactor::require_device_name(const std::string& pcm)
     constexpr const char* hint = "name a device, such as hw:CARD=Tactor";
     const auto thing = [&pcm] { return fmt::format("PCM {}", detail::quoted(pcm)); };
     if (const std::string why = alsa::not_plain(pcm); !why.empty())
-        throw error(error_kind::bad_input, thing(),
-                    fmt::format("it is more than the name of a device: {}", why), hint);
+        throw error(error_kind::bad_input, thing(), why, hint);
     const std::vector<std::string> route = alsa::find_route(pcm);
     if (alsa::writes(route))
         throw error(error_kind::bad_input, thing(), "it writes a file or starts a command", hint);

@@ -242,7 +242,8 @@ void calibration_log::open()
         code == ENOENT || code == ENOTDIR || code == EISDIR || code == ELOOP || code == ENAMETOOLONG;
     if (!fd_)
         throw error(bad_name ? error_kind::bad_input : error_kind::runtime, file_.string(),
-                    code == ELOOP ? "it is a link" : std::strerror(code), "name a log that can be written");
+                    code == ELOOP ? "it is a link" : std::strerror(code),
+                    code == ENAMETOOLONG ? "use a shorter name" : "name a log that can be written");
     if (::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode))
         throw error(error_kind::bad_input, file_.string(), "it is not a regular file", "name another log");
     if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)

@@ -57,7 +57,8 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                p.hash == *t.cell(row, plan);
     };
     if (std::none_of(s.stimuli.begin(), s.stimuli.end(), same))
-        t.refuse(row, fmt::format("{} is not a plan of its motion and method in session.json", plan),
+        t.refuse(row,
+                 fmt::format("{} is not one of the plans in session.json for this motion and method", plan),
                  changed_file);
 }
 
