@@ -191,7 +191,7 @@ class Person(CalibrateTest):
         self.write("a.toml", TWO + "[[tactor]]\ntactor = 1\nmax_dbfs = -15\nthreshold_dbfs = [[100, -8], [250, -6]]\n")
         args = (*self.ARGS, "--array", "a.toml")
         result = self.refused(1, *args, stdin="1\nx\n2\n")
-        self.assertIn('"x" is neither 1 nor 2', result.stdout)
+        self.assertIn("That is not an answer: 1 or 2: ", result.stdout)
         self.assertEqual([re.findall(r"^(right|wrong)$", result.stdout, re.M), self.responses()],
                          [["right" if r["correct"] == "true" else "wrong" for r in self.rows()], ["1", "2"]])
         result = self.refused(1, *args, "--resume", stdin="2\n")

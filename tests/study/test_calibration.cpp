@@ -489,9 +489,9 @@ TEST_CASE("a bad simulation is refused with the fault")
           std::vector<double>{-3, -1});
     has(complaint(""), "has no =");
     has(complaint("spread=2"), "threshold is missing");
-    has(complaint("threshold=-45,spread=-1"), "spread is -1");
-    has(complaint("threshold=-45,lapse=0.6"), "lapse is 0.6");
-    has(complaint("threshold=low"), "\"low\" is not a number");
+    has(complaint("threshold=-45,spread=-1"), "spread is \"-1\", not a number from 0 to 100");
+    has(complaint("threshold=-45,lapse=0.6"), "lapse is \"0.6\", not a number from 0 to 0.5");
+    has(complaint("threshold=low"), "threshold is \"low\", not a number from -200 to 1000");
     has(complaint("threshold=-45,threshold=-46"), "occurs twice");
     has(complaint("threshold=1,2,3"), "3 thresholds for 2 tactors");
     has(complaint("sigma=1,threshold=-45"), "\"sigma\" is unknown");

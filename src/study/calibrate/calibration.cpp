@@ -10,8 +10,8 @@
 
 #include <tactor/error.hpp>
 
-#include "core/split.hpp"
 #include "core/words.hpp"
+#include "study/experiment/observer_text.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
@@ -49,46 +49,6 @@ random_numbers numbers_for(const calibration_settings& s, const std::string& par
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
 }
 
-constexpr const char* shape = "write it as seed=1,threshold=-45,spread=2,lapse=0.02";
-
-[[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)
-{
-    throw error(error_kind::bad_input, "--simulate", why, hint);
-}
-
-double number(std::string_view key, std::string_view text, double low, double high)
-{
-    const auto v = detail::number_in<double>(text);
-    if (!v)
-        refuse(fmt::format("{}: \"{}\" is not a number", key, text));
-    if (!(*v >= low && *v <= high))
-        refuse(fmt::format("{} is {}", key, text),
-               fmt::format("give {} to {}", plain_number(low), plain_number(high)));
-    return *v;
-}
-
-std::uint64_t whole(std::string_view key, std::string_view text)
-{
-    const double v = number(key, text, 0.0, 0x1p53);
-    if (v != std::floor(v))
-        refuse(fmt::format("{} is {}", key, text), "give a whole number");
-    return static_cast<std::uint64_t>(v);
-}
-
-void take(observer_settings& o, std::string_view key, std::string_view value)
-{
-    if (key == "threshold")
-        o.thresholds_dbfs.push_back(number(key, value, -200.0, 1000.0));
-    else if (key == "spread")
-        o.spread_db = number(key, value, 0.0, 100.0);
-    else if (key == "lapse")
-        o.lapse = number(key, value, 0.0, 0.5);
-    else if (key == "seed")
-        o.seed = whole(key, value);
-    else
-        refuse(fmt::format("\"{}\" is unknown", key));
-}
-
 // Keeps the entries of the measured tactors, if the list has one for each tactor of the array.
 void choose_measured(observer_settings& o, const std::vector<unsigned>& measured, std::size_t all)
 {
@@ -96,7 +56,8 @@ void choose_measured(observer_settings& o, const std::vector<unsigned>& measured
     if (n == 1 || n == measured.size())
         return;
     if (n != all)
-        refuse(
+        throw error(
+            error_kind::bad_input, "--simulate",
             fmt::format("there are {} for {}", counted(n, "threshold"), counted(measured.size(), "tactor")),
             "give one for all, or one for each");
     std::vector<double> own;
@@ -120,8 +81,15 @@ reversal_mean average_reversals(std::span<const double> reversals_dbfs, std::siz
     return m;
 }
 
-staircase::staircase(staircase_options o) : o_(std::move(o)), level_(o_.start_dbfs)
+staircase::staircase(staircase_options o) : o_(std::move(o)), level_(o_.start_dbfs), run_{.rule = make_rule()}
 {
+}
+
+// Makes the rule of a staircase. One right answer lowers the level until the first reversal: with three, the
+// descent would be so long that a lapse is likely, and a lapse would end the large steps too early.
+up_down_rule staircase::make_rule() const
+{
+    return up_down_rule({.in_row = o_.right_for_down, .sizes = o_.steps_db.size(), .fast_to_reversal = true});
 }
 
 bool staircase::answer(bool right)
@@ -139,36 +107,23 @@ bool staircase::answer(bool right)
     return turned;
 }
 
-// Takes an answer; returns true if the direction turned. One right answer lowers the level until the first
-// reversal: with three, the descent would be so long that a lapse is likely, and a lapse would end the large
-// steps too early.
+// Takes an answer; returns true if the direction turned, even if the ceiling blocks the step.
 bool staircase::step(bool right)
 {
-    const unsigned for_down = run_.reversals.empty() ? 1 : o_.right_for_down;
-    if (right && ++run_.right_in_row < for_down)
+    const auto step = run_.rule.answer(right);
+    if (!step)
         return false;
-    run_.right_in_row = 0;
-    const bool up = !right;
-    const bool turned = turn(up);
-    const double by = o_.steps_db[std::min(run_.reversals.size() / 2, o_.steps_db.size() - 1)];
-    go_to(up ? level_ + by : level_ - by);
-    return turned;
+    if (step->turned)
+        run_.reversals.push_back(level_);
+    const double by = o_.steps_db[step->size];
+    go_to(step->up ? level_ + by : level_ - by);
+    return step->turned;
 }
 
 void staircase::go_to(double level_dbfs)
 {
     const double rounded = std::round(level_dbfs * 1e6) / 1e6; // steps of 0.1 dB add up to decimal numbers
     level_ = std::clamp(rounded, floor_dbfs, o_.ceiling_dbfs);
-}
-
-// Notes the direction of a step, even if the ceiling blocks the step. Returns true at a reversal.
-bool staircase::turn(bool up)
-{
-    const bool turned = run_.up && *run_.up != up;
-    run_.up = up;
-    if (turned)
-        run_.reversals.push_back(level_);
-    return turned;
 }
 
 void staircase::note_at_ceiling(bool right)
@@ -220,7 +175,7 @@ void staircase::check(bool right)
     } else if (trials.right < too_many_below || staircases_ == most_staircases) {
         end_ = staircase_end::felt;
     } else {
-        run_ = {};
+        run_ = {.rule = make_rule()};
         ++staircases_;
     }
 }
@@ -392,20 +347,16 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
                                  std::size_t all)
 {
     observer_settings o;
-    std::vector<std::string_view> seen;
-    for (std::string_view item : detail::split(text, ',')) {
-        if (const std::size_t equals = item.find('='); equals != item.npos) {
-            if (std::find(seen.begin(), seen.end(), item.substr(0, equals)) != seen.end())
-                refuse(fmt::format("{} occurs twice", item.substr(0, equals)));
-            seen.push_back(item.substr(0, equals));
-            item.remove_prefix(equals + 1);
-        } else if (seen.empty() || seen.back() != "threshold") {
-            refuse(fmt::format("\"{}\" has no =", item));
-        }
-        take(o, seen.back(), item);
-    }
+    const observer_key keys[] = {
+        {"seed", 0.0, 0x1p53, [&](double v) { o.seed = static_cast<std::uint64_t>(v); }, true},
+        {"threshold", -200.0, 1000.0, [&](double v) { o.thresholds_dbfs.push_back(v); }, false, true},
+        {"spread", 0.0, 100.0, [&](double v) { o.spread_db = v; }},
+        {"lapse", 0.0, 0.5, [&](double v) { o.lapse = v; }}};
+    constexpr const char* example = "seed=1,threshold=-45,spread=2,lapse=0.02";
+    read_observer(text, keys, example);
     if (o.thresholds_dbfs.empty())
-        refuse("threshold is missing");
+        throw error(error_kind::bad_input, "--simulate", "threshold is missing",
+                    fmt::format("write it as {}", example));
     choose_measured(o, measured, all);
     return o;
 }

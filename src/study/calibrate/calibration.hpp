@@ -16,6 +16,7 @@
 
 #include "study/random/random.hpp"
 #include "study/statistics/quest.hpp"
+#include "study/statistics/up_down.hpp"
 
 namespace tactor::study {
 
@@ -89,8 +90,7 @@ private:
         }
     };
     struct run {
-        unsigned right_in_row = 0;
-        std::optional<bool> up = {};
+        up_down_rule rule;
         std::vector<double> reversals = {};
         std::vector<bool> at_ceiling = {}; ///< right or not
         unsigned right_at_floor = 0;
@@ -100,7 +100,7 @@ private:
     };
 
     bool step(bool right);
-    bool turn(bool up);
+    up_down_rule make_rule() const;
     void note_at_ceiling(bool right);
     void note_at_floor(bool right);
     void settle();
@@ -109,7 +109,7 @@ private:
 
     staircase_options o_;
     double level_;
-    run run_ = {};
+    run run_;
     std::size_t staircases_ = 1;
     std::size_t trials_ = 0;
     std::optional<staircase_end> end_ = {};

@@ -43,7 +43,14 @@ page_progress find_progress(const calibration_trial& t, const calibration_settin
 
 person::person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
                const answering& with, const page_words& words)
-    : stage_(s), array_(a), render_(render), settings_(c), page_(with.page), words_(words), keys_(s, with)
+    : stage_(s),
+      array_(a),
+      render_(render),
+      settings_(c),
+      page_(with.page),
+      words_(words),
+      keys_(s, with),
+      asker_(keys_, with.page, words_)
 {
     render_.ramp_s = interval_ramp_s;
     render_.sl_db = 0.0;
@@ -172,21 +179,23 @@ calibration_answer person::choose(const calibration_trial& t)
         return given;
     }();
     keys_.drop_keys();
-    on_page({.name = "question", .question = words_["calibrate_which"], .choices = {"", ""}, .keys = "12"});
-    session::show(" which? ");
-    for (;;) {
-        const session_key k = keys_.wait(fmt::format("trial {}", t.number));
-        if (const unsigned interval = k.answer.value_or(0); interval == 1 || interval == 2) {
-            session::show(fmt::format("{}\n", interval));
-            const double time_s = std::max(0.0, static_cast<double>(k.at_ns - p.ended_ns) * 1e-9);
-            calibration_answer a{.interval = interval, .response_time_s = std::round(time_s * 1e3) / 1e3};
-            if (p.first_frame)
-                a.onset_frame = *p.first_frame + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
-            return a;
-        }
-        if (!keys_.has_keys())
-            session::show(fmt::format("\"{}\" is neither 1 nor 2: which? ", k.text));
-    }
+    const auto answer = asker_.ask(
+        {.screen = {.name = "question",
+                    .question = words_["calibrate_which"],
+                    .choices = {"", ""},
+                    .keys = "12",
+                    .lowest = 1,
+                    .greatest = 2,
+                    .where = where_},
+         .possible = "1 or 2",
+         .prompt = " which? "},
+        [](operator_key) { return true; }, fmt::format("trial {}", t.number));
+    const double time_s = std::max(0.0, static_cast<double>(answer->at_ns - p.ended_ns) * 1e-9);
+    calibration_answer a{.interval = static_cast<unsigned>(answer->number),
+                         .response_time_s = std::round(time_s * 1e3) / 1e3};
+    if (p.first_frame)
+        a.onset_frame = *p.first_frame + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
+    return a;
 }
 
 calibration_answer person::adjust(const calibration_trial& t)

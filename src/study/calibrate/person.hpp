@@ -10,6 +10,7 @@
 #include "study/experiment/page_words.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
+#include "study/session/questions.hpp"
 #include "study/session/stage.hpp"
 
 namespace tactor::study {
@@ -48,6 +49,7 @@ private:
     participant_page* page_; ///< null: none
     page_words words_;
     session_keys keys_;
+    question_asker asker_;
     bool begun_ = false;
     std::optional<page_progress> where_ = {};
 };

@@ -12,8 +12,8 @@
 
 #include <tactor/error.hpp>
 
-#include "core/split.hpp"
 #include "study/analysis/measures.hpp"
+#include "study/experiment/observer_text.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/tasks/task.hpp"
@@ -21,22 +21,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr const char* simulation_shape = "write it as seed=1,sigma=1";
 constexpr double least_cost = 1e-3;
-
-[[noreturn]] void refuse_simulation(const std::string& why)
-{
-    throw error(error_kind::bad_input, "--simulate", why, simulation_shape);
-}
-
-template <class T>
-T simulation_value(std::string_view key, std::string_view text, T low, T high)
-{
-    const auto v = detail::number_in<T>(text);
-    if (!v || !(*v >= low && *v <= high))
-        refuse_simulation(fmt::format("{} is \"{}\", not a number from {} to {}", key, text, low, high));
-    return *v;
-}
 
 // Returns the predicted error of a stimulus, or its unevenness in runs about uniformity.
 double find_cost(const experiment_definition& d, const run_definition& r, const stimulus_set& stimuli,
@@ -57,35 +42,18 @@ double find_cost(const experiment_definition& d, const run_definition& r, const 
 
 simulation parse_simulation(std::string_view text)
 {
-    constexpr std::uint64_t most_seed = (std::uint64_t{1} << 53) - 1;
     simulation s;
-    std::vector<std::string_view> seen;
-    for (const std::string_view item : detail::split(text, ',')) {
-        const std::size_t equals = std::min(item.find('='), item.size());
-        const std::string_view key = item.substr(0, equals);
-        const std::string_view value = equals < item.size() ? item.substr(equals + 1) : std::string_view{};
-        if (std::find(seen.begin(), seen.end(), key) != seen.end())
-            refuse_simulation(fmt::format("{} occurs twice", key));
-        seen.push_back(key);
-        if (key == "seed")
-            s.seed = simulation_value<std::uint64_t>(key, value, 0, most_seed);
-        else if (key == "sigma")
-            s.sigma = simulation_value(key, value, 0.0, 1e6);
-        else if (key == "void")
-            s.voids = simulation_value(key, value, 0.0, 0.9);
-        else if (key == "pse")
-            s.pse = simulation_value(key, value, -1e6, 1e6);
-        else if (key == "jnd")
-            s.jnd = simulation_value(key, value, 1e-9, 1e6);
-        else if (key == "lapse")
-            s.lapse = simulation_value(key, value, 0.0, 0.5);
-        else if (key == "dprime")
-            s.dprime = simulation_value(key, value, 0.0, 10.0);
-        else if (key == "exponent")
-            s.exponent = simulation_value(key, value, 0.0, 10.0);
-        else
-            refuse_simulation(fmt::format("\"{}\" is unknown", key));
-    }
+    const auto into = [](auto& to) { return [&to](double v) { to = v; }; };
+    const observer_key keys[] = {
+        {"seed", 0.0, 0x1p53 - 1.0, [&](double v) { s.seed = static_cast<std::uint64_t>(v); }, true},
+        {"sigma", 0.0, 1e6, into(s.sigma)},
+        {"void", 0.0, 0.9, into(s.voids)},
+        {"pse", -1e6, 1e6, into(s.pse)},
+        {"jnd", 1e-9, 1e6, into(s.jnd)},
+        {"lapse", 0.0, 0.5, into(s.lapse)},
+        {"dprime", 0.0, 10.0, into(s.dprime)},
+        {"exponent", 0.0, 10.0, into(s.exponent)}};
+    read_observer(text, keys, "seed=1,sigma=1");
     return s;
 }
 

@@ -27,9 +27,6 @@ using json = nlohmann::ordered_json;
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
 
-// Time within which a second press of the key that answered the previous question is ignored, ns.
-constexpr std::int64_t second_press_ns = 300'000'000;
-
 // Name in messages of the person who ends a session with q.
 constexpr std::string_view experimenter = "the experimenter (q)";
 
@@ -96,6 +93,7 @@ person_session::person_session(const prepared_experiment& p, session_store& stor
       devices_(std::move(devices)),
       codes_(codes),
       keys_(s, with),
+      asker_(keys_, with.page, p.definition.page),
       flow_(make_flow(p, store, true))
 {
     if (store.facts().contains("streams"))
@@ -491,55 +489,19 @@ void person_session::trial(const session_step& s)
     find_device();
 }
 
-// Blocks until an answer. Returns nothing if the experimenter changed the next step.
-std::optional<person_session::given_answer> person_session::ask(const question& q)
+// Returns nothing if the experimenter changed the next step.
+std::optional<given_answer> person_session::ask(const question& q)
 {
     const session_step now = flow_.next();
-    on_page(q.screen);
-    const std::string possible = q.possible.empty() ? "" : q.possible + ": ";
-    session::show(fmt::format("{} {}", q.screen.question, possible));
-    typed_text text;
-    typed_number number;
-    for (;;) {
-        const session_key k = q.is_text()    ? keys_.wait_for_text(text)
-                              : q.is_typed() ? keys_.wait_for_number(number, q.is_estimate())
-                                             : keys_.wait();
-        const bool is_shown = q.is_typed() && k.is_key;
-        const std::optional<double> estimate = q.is_estimate() ? read_estimate(k.text) : std::nullopt;
-        const bool is_answer =
-            q.is_text()       ? k.entered.has_value()
-            : q.is_estimate() ? estimate.has_value()
-                              : k.answer && *k.answer >= q.screen.lowest && *k.answer <= q.screen.greatest;
-        if (k.command) {
-            if (*k.command == operator_key::repeat && now.what == step_kind::trial)
-                return {};
-            obey(*k.command);
-            if (flow_.next() != now && flow_.next().what != step_kind::pause) {
-                session::show("\n");
-                return {};
-            }
-        } else if (is_answer && is_second_press(k)) {
-            on_page(q.screen); // asks again, because the page took the press as an answer
-        } else if (is_answer) {
-            answered_ = k;
-            if (q.is_text() || q.is_estimate())
-                answered_.answer.reset();
-            given_answer a{estimate.value_or(k.answer.value_or(0)), {}, k.at_ns};
-            a.text = q.is_text() ? *k.entered : fmt::format("{}", a.number);
-            session::show(is_shown ? "\n" : a.text + "\n");
-            return a;
-        } else if (q.is_typed() || !keys_.come_early()) {
-            session::show(
-                fmt::format("{}{}: {}", is_shown ? "\n" : "", p_.definition.page["no_answer"], possible));
-        }
-    }
-}
-
-// Returns false for lines, which are not presses.
-bool person_session::is_second_press(const session_key& k) const
-{
-    return (k.is_key || page_ != nullptr) && k.answer && k.answer == answered_.answer &&
-           k.at_ns - answered_.at_ns < second_press_ns;
+    return asker_.ask(q, [&](operator_key k) {
+        if (k == operator_key::repeat && now.what == step_kind::trial)
+            return false;
+        obey(k);
+        const bool goes_on = flow_.next() == now || flow_.next().what == step_kind::pause;
+        if (!goes_on)
+            session::show("\n");
+        return goes_on;
+    });
 }
 
 void person_session::void_last()

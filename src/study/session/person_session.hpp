@@ -73,11 +73,6 @@ private:
     /// continues.
     bool end();
 
-    struct given_answer {
-        double number = 0.0; ///< unused for a text
-        std::string text;
-        std::int64_t at_ns = 0; ///< time of the answer, CLOCK_MONOTONIC
-    };
     /// Returns a watcher that asks the participant to wait when it is first called.
     std::function<bool(double)> waiting();
     /// Shows the target. Returns a reason if that makes the trial void, else an empty text.
@@ -86,7 +81,6 @@ private:
     /// Returns a watcher that shows which of two stimuli plays at a frame, and catches up on earlier changes.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     std::optional<given_answer> ask(const question& q);
-    bool is_second_press(const session_key& k) const;
 
     /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);
@@ -108,6 +102,7 @@ private:
     session_devices devices_;
     sync_codes& codes_;
     session_keys keys_;
+    question_asker asker_;
     session_flow flow_;
     std::optional<held_run> held_ = {}; ///< run in progress
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
@@ -116,7 +111,6 @@ private:
     unsigned stream_ = 0;
     std::string agreed_at_ = {};                                    ///< time of consent; empty if not asked
     bool begun_ = false;                                            ///< true after begin_store()
-    session_key answered_ = {};                                     ///< previous answer
     std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< questionnaires shown, with their runs
     bool repeat_ = false; ///< true if requested while a stimulus plays
     bool quit_ = false;

@@ -5,12 +5,15 @@
 
 #include <fmt/format.h>
 
-#include "study/session/key_input.hpp"
+#include "session/say.hpp"
 
 namespace tactor::study {
 namespace {
 
 constexpr double picture_points = 60.0; // enough to look smooth
+
+// Time within which a second press of the key that answered the previous question is ignored, ns.
+constexpr std::int64_t second_press_ns = 300'000'000;
 
 // Returns a key for each answer; empty if there are too many answers.
 std::string number_keys(std::size_t answers)
@@ -52,6 +55,57 @@ std::string answers_text(const questionnaire_item& item, const page_words& w)
 bool question::is_typed() const noexcept
 {
     return is_text() || is_estimate() || screen.lowest == 0 || screen.greatest > most_keys;
+}
+
+std::optional<given_answer> question_asker::ask(const question& q,
+                                                const std::function<bool(operator_key)>& obey,
+                                                const std::string& subject)
+{
+    show(q.screen);
+    const std::string possible = q.possible.empty() ? "" : q.possible + ": ";
+    session::show(q.prompt.empty() ? fmt::format("{} {}", q.screen.question, possible) : q.prompt);
+    typed_text text;
+    typed_number number;
+    for (;;) {
+        const session_key k = q.is_text()    ? keys_.wait_for_text(text)
+                              : q.is_typed() ? keys_.wait_for_number(number, q.is_estimate())
+                                             : keys_.wait(subject);
+        const bool is_shown = q.is_typed() && k.is_key;
+        const std::optional<double> estimate = q.is_estimate() ? read_estimate(k.text) : std::nullopt;
+        const bool is_answer =
+            q.is_text()       ? k.entered.has_value()
+            : q.is_estimate() ? estimate.has_value()
+                              : k.answer && *k.answer >= q.screen.lowest && *k.answer <= q.screen.greatest;
+        if (k.command) {
+            if (!obey(*k.command))
+                return {};
+        } else if (is_answer && is_second_press(k)) {
+            show(q.screen); // asks again, because the page took the press as an answer
+        } else if (is_answer) {
+            answered_ = k;
+            if (q.is_text() || q.is_estimate())
+                answered_.answer.reset();
+            given_answer a{estimate.value_or(k.answer.value_or(0)), {}, k.at_ns};
+            a.text = q.is_text() ? *k.entered : fmt::format("{}", a.number);
+            session::show(is_shown ? "\n" : a.text + "\n");
+            return a;
+        } else if (q.is_typed() || !keys_.come_early()) {
+            session::show(fmt::format("{}{}: {}", is_shown ? "\n" : "", words_["no_answer"], possible));
+        }
+    }
+}
+
+// Returns false for lines, which are not presses.
+bool question_asker::is_second_press(const session_key& k) const
+{
+    return (k.is_key || page_ != nullptr) && k.answer && k.answer == answered_.answer &&
+           k.at_ns - answered_.at_ns < second_press_ns;
+}
+
+void question_asker::show(const page_screen& s)
+{
+    if (page_ != nullptr)
+        page_->show(s);
 }
 
 trial_answers find_answers(const experiment_definition& d, const run_definition& r)

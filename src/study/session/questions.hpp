@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Questions of trials and questionnaires, for the terminal and the participant's page.
+/// Questions of trials, questionnaires and calibrations, at the terminal and on the participant's page.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "study/experiment/questionnaire.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
+#include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/tasks/task.hpp"
 
@@ -22,13 +25,45 @@ namespace tactor::study {
 
 /// A question with its answers: numbers from the screen's lowest to its greatest, an estimate, or a text.
 struct question {
-    page_screen screen;   ///< screen for the page; the terminal shows only its `question`
-    std::string possible; ///< possible answers for the terminal: "1 or 2"; may be empty
+    page_screen screen;      ///< screen for the page; the terminal shows only its `question`
+    std::string possible;    ///< possible answers for the terminal: "1 or 2"; may be empty
+    std::string prompt = {}; ///< words at the terminal in place of the question and its possible answers
 
     bool is_text() const noexcept { return screen.entry == entry_kind::text; }
     bool is_estimate() const noexcept { return screen.entry == entry_kind::estimate; }
     /// Returns true if an answer takes several keys and then Enter.
     bool is_typed() const noexcept;
+};
+
+struct given_answer {
+    double number = 0.0; ///< unused for a text
+    std::string text;
+    std::int64_t at_ns = 0; ///< time of the answer, CLOCK_MONOTONIC
+};
+
+/// Asks a participant at the terminal, keypads and page.
+class question_asker {
+public:
+    /// Keeps references: all arguments must outlive this object. `page` is null if there is none.
+    question_asker(session_keys& keys, participant_page* page, const page_words& words)
+        : keys_(keys), page_(page), words_(words)
+    {
+    }
+
+    /// Blocks until an answer. Ignores a second press of the key that answered the previous question.
+    /// `obey`: called for each command of the experimenter; returns false to stop asking, and then this
+    /// returns nothing. `subject`: see session_keys::wait(). Throws as session_keys::wait().
+    std::optional<given_answer> ask(const question& q, const std::function<bool(operator_key)>& obey,
+                                    const std::string& subject = "the session");
+
+private:
+    bool is_second_press(const session_key& k) const;
+    void show(const page_screen& s);
+
+    session_keys& keys_;
+    participant_page* page_;
+    const page_words& words_;
+    session_key answered_ = {}; ///< previous answer
 };
 
 /// Returns the possible answers to the question of a run.

@@ -236,16 +236,11 @@ const task& adaptive_task()
 
 void value_staircase::answer(bool positive)
 {
-    const bool counts = positive != mirrored_;
-    in_row_ = counts ? in_row_ + 1 : 0;
-    if (counts && in_row_ < needed_)
+    const auto step = rule_.answer(positive);
+    if (!step)
         return;
-    in_row_ = 0;
-    const bool up = !positive;
-    reversals_ += up_ && *up_ != up ? 1 : 0;
-    up_ = up;
-    const std::size_t step = steps_[std::min(reversals_ / 2, steps_.size() - 1)];
-    at_ = up ? std::min(at_ + step, top_) : at_ - std::min(at_, step);
+    const std::size_t by = steps_[step->size];
+    at_ = step->up ? std::min(at_ + by, top_) : at_ - std::min(at_, by);
 }
 
 adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)

@@ -5,27 +5,27 @@
 
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "study/experiment/definition.hpp"
 #include "study/statistics/quest.hpp"
+#include "study/statistics/up_down.hpp"
 
 namespace tactor::study {
 
-/// A transformed up-down staircase (Levitt 1971) on a list of values. Several positive answers in a row move
-/// it one step down, and one negative answer moves it one step up. A mirrored staircase goes up after several
-/// negative answers in a row, and down after one positive answer. Every second reversal moves on to the next
-/// step size.
+/// A staircase on a list of values.
 class value_staircase {
 public:
     /// Starts at `start`. `in_row`: number of answers in a row for a step, above 0. `top`: greatest index of
     /// a value.
     value_staircase(unsigned in_row, bool mirrored, std::vector<std::size_t> steps, std::size_t start,
                     std::size_t top)
-        : needed_(in_row), mirrored_(mirrored), steps_(std::move(steps)), at_(start), top_(top)
+        : rule_({.in_row = in_row, .sizes = steps.size(), .mirrored = mirrored}),
+          steps_(std::move(steps)),
+          at_(start),
+          top_(top)
     {
     }
 
@@ -33,14 +33,10 @@ public:
     void answer(bool positive);
 
 private:
-    unsigned needed_;
-    bool mirrored_;
+    up_down_rule rule_;
     std::vector<std::size_t> steps_;
     std::size_t at_;
     std::size_t top_;
-    unsigned in_row_ = 0;
-    std::optional<bool> up_ = {};
-    std::size_t reversals_ = 0;
 };
 
 /// The tracks of an adaptive run, with the answers so far.
