@@ -167,8 +167,8 @@ def check_slopes(tool, name, folder):
 
 
 # A run of each kind of model that measures. The simulated observers' truth in its coefficient, and how near the model comes:
-# exponent (by the dB), exponent, d', none less the mean of three, z of same and different, and 0.6745 / jnd twice.
-TRUTHS = [(0.6 * math.log(10) / 20, 0.05), (0.6, 0.05), (2, 0.15), (-4 / 3, 0.1), (0.911, 0.25), (0.1686, 0.1), (0.1686, 0.1)]
+# exponent (by the dB), exponent, d', none less the mean of three, z of same and different, and 0.6745 / jnd three times.
+TRUTHS = [(0.6 * math.log(10) / 20, 0.05), (0.6, 0.05), (2, 0.15), (-4 / 3, 0.1), (0.911, 0.25), (0.1686, 0.1), (0.1686, 0.1), (0.1686, 0.1)]
 MEASURES = studies.measures(
     "palm-3x3",
     studies.run("size", "estimate", 60, question="How much was it?", vary="level_dbfs", values=[-40, -30, -20], methods=["park"]),
@@ -178,7 +178,8 @@ MEASURES = studies.measures(
     studies.run("same", "same-different", 40),
     studies.run("values", "constant", 100, question="Which was stronger?", vary="level_dbfs", values=[-32, -28, -24, -20, -16], standard=-24,
                 methods=["park"]),
-    studies.run("bayes", "adaptive", 60, question="Which was longer?", vary="length_mm", procedure="quest", range=[4, 20], standard=12, methods=["park"]))
+    studies.run("bayes", "adaptive", 60, question="Which was longer?", vary="length_mm", procedure="quest", range=[4, 20], standard=12, methods=["park"]),
+    studies.run("intervals", "interval", 150, vary="level_dbfs", values=[-36, -32, -28, -24, -20, -16, -12], methods=["park"]))
 COEFFICIENTS = COMMANDS + """
 for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
 for (line in said[-(1:3)]) {

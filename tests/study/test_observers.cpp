@@ -254,7 +254,7 @@ outcome adaptive_studies(const faults& f, const run_definition& r, std::size_t p
         std::vector<double> pses;
         for (std::size_t i = 0; i < people; ++i) {
             second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
-            adaptive_tracks tracks(r);
+            adaptive_tracks tracks(r, two_answers(sigmoid::normal));
             std::vector<trial> all;
             for (std::size_t k = 0; k < trials; ++k) {
                 const auto track = static_cast<unsigned>(k % r.adaptive.tracks + 1);
@@ -410,6 +410,68 @@ std::vector<trial> hold_signals(second_observer& who, const task* task, double d
     return all;
 }
 
+// Returns a participant's trials of two intervals. The observer never guesses: it feels noise in both, and
+// d' grows with the square of the amplitude. At 0 dB it is right in 75 % of the trials.
+std::vector<trial> hold_intervals(second_observer& who)
+{
+    constexpr std::size_t trials = 140;
+    constexpr double at_75_percent = 0.6744897501960817;
+    std::vector<trial> all;
+    for (std::size_t k = 0; k < trials; ++k) {
+        const double db = std::array{-9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0}[k % 7];
+        const double felt = at_75_percent * std::pow(10.0, db / 10.0); // d' over the root of 2
+        const bool second = who.unit() < 0.5;
+        const bool pressed =
+            who.presses_second(second ? felt : -felt, static_cast<double>(k) / (trials - 1), 0.0);
+        all.push_back({.value = db, .positive = pressed == second});
+    }
+    return all;
+}
+
+// Runs a track of an adaptive run of two intervals; returns the estimated threshold, dB.
+std::optional<double> track_intervals(second_observer& who, unsigned down)
+{
+    run_definition r = make_adaptive(down, 1);
+    r.adaptive.two_sided = false;
+    for (double& v : r.outline.values)
+        v -= pse; // dB about the level of 75 %
+    adaptive_tracks tracks(r, {.kind = sigmoid::normal, .guess = 0.5});
+    std::vector<trial> all;
+    for (int k = 0; k < 80; ++k) {
+        const double db = r.outline.values[tracks.next(1)];
+        const double felt = 0.6744897501960817 * std::pow(10.0, db / 10.0);
+        const bool second = who.unit() < 0.5;
+        const bool right = who.presses_second(second ? felt : -felt, k / 79.0, 0.0) == second;
+        tracks.answer(1, right);
+        all.push_back({.value = db, .positive = right});
+    }
+    const auto fit = fit_answers(all, {.kind = sigmoid::normal, .guess = 0.5}, "").fit;
+    return fit ? std::optional(fit->parameters.threshold) : std::nullopt;
+}
+
+TEST_CASE("adaptive tracks of two intervals find the level of 75 %: observers of a second kind")
+{
+    for (const unsigned down : {0U, 2U, 3U})
+        for (const faults& f : faults_to_try()) {
+            const int people = test::rounds(down == 0 ? 12 : 100, 1000);
+            double sum = 0.0;
+            int found = 0;
+            for (int i = 0; i < people; ++i) {
+                second_observer who(f, static_cast<std::uint64_t>(i));
+                if (const auto threshold = track_intervals(who, down)) {
+                    sum += *threshold;
+                    ++found;
+                }
+            }
+            fmt::print("interval, {}: threshold {:+.2f} dB of {} in {} with {}\n",
+                       down == 0 ? std::string("QUEST+") : fmt::format("1up{}down", down), sum / found, found,
+                       people, f.name);
+            CHECK_FIGURE(found >= people * 9 / 10);
+            if (f.lapse == 0.0 && f.bias == 0.0 && f.drift == 0.0 && f.serial == 0.0)
+                CHECK_FIGURE(std::abs(sum / found) < 1.0);
+        }
+}
+
 TEST_CASE("faults and d', thresholds, exponents and choices: observers of a second kind")
 {
     const int people = test::rounds(120, 2000);
@@ -426,6 +488,9 @@ TEST_CASE("faults and d', thresholds, exponents and choices: observers of a seco
                 fit_answers(hold_signals(who, &find_task("detect"), 0.0, true, 0.5), {sigmoid::normal}, "")
                     .fit;
             sums["detect, threshold of 0, in jnds"] += fit ? fit->parameters.threshold / jnd / people : 0.0;
+            const auto right =
+                fit_answers(hold_intervals(who), {.kind = sigmoid::normal, .guess = 0.5}, "").fit;
+            sums["interval, threshold of 0 dB"] += right ? right->parameters.threshold / people : 0.0;
             sums["same-different, d' of 2"] +=
                 measure_detection(hold_signals(who, &find_task("same-different"), 2.0, false, 0.5),
                                   same_different)
@@ -455,6 +520,7 @@ TEST_CASE("faults and d', thresholds, exponents and choices: observers of a seco
         if (f.lapse == 0.0 && f.bias == 0.0 && f.drift == 0.0 && f.serial == 0.0) {
             CHECK(sums["detect, d' of 1.5"] == doctest::Approx(1.5).epsilon(0.06));
             CHECK(std::abs(sums["detect, threshold of 0, in jnds"]) < 0.15);
+            CHECK_FIGURE(std::abs(sums["interval, threshold of 0 dB"]) < 0.8);
             CHECK(sums["same-different, d' of 2"] == doctest::Approx(2.0).epsilon(0.06));
             CHECK(sums["exponent of 0.6"] == doctest::Approx(0.6).epsilon(0.02));
         }

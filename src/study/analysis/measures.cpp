@@ -59,7 +59,7 @@ fitted_function fit_answers(const std::vector<trial>& trials, psychometric_famil
                             std::string_view seed)
 {
     constexpr double most_guess = 0.9; // more leaves no room for a function
-    fitted_function f;
+    fitted_function f{.guess = family.guess};
     f.blocks = make_blocks(trials);
     if (const difference_counts n = count_positive(trials); n.same > 0)
         f.guess = std::min(most_guess, static_cast<double>(n.false_alarms) / static_cast<double>(n.same));

@@ -16,7 +16,8 @@
 
 namespace tactor::study {
 
-/// Fits a function to answers. Its guess rate is the share of positive answers in trials without a stimulus.
+/// Fits a function to answers. Its guess rate is the share of positive answers in trials without a stimulus,
+/// if there are any, else that of the family.
 /// `seed` seeds the bootstrap; if it is empty, there is no bootstrap.
 fitted_function fit_answers(const std::vector<trial>& trials, psychometric_family family,
                             std::string_view seed);

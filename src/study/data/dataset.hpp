@@ -47,6 +47,7 @@ struct run_outline {
     std::vector<double> values = {}; ///< values of `vary`, ascending
     std::optional<double> standard = {}; ///< value of the stimulus to compare with, if a trial has one
     bool catches = false;                ///< detect: some trials have no stimulus
+    bool is_adaptive = false;            ///< true if earlier answers choose the value of a trial
     std::string question = {};
     std::vector<std::string> labels = {};  ///< labels of a scale: for each step, for both ends, or none
     std::vector<std::string> choices = {}; ///< words for the two answers; empty for the usual ones

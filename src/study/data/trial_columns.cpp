@@ -143,8 +143,8 @@ const std::array<trial_column, 23> trial_columns{{
 bool has_column(const run_outline& run, const trial_column& c)
 {
     return c.use == column_use::values ? !run.vary.empty()
-           : c.use == column_use::own  ? task_in(run).about().column == c.name
-                                       : true;
+           : c.use == column_use::own ? task_in(run).about().column == c.name && task_in(run).uses_column(run)
+                                      : true;
 }
 
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs)

@@ -64,12 +64,18 @@ struct method_variants {
     std::vector<std::size_t> values = {}; ///< one per value; empty if the run plays the method itself
     std::optional<std::size_t> standard = {};
     std::optional<std::size_t> silent = {}; ///< variant for trials without a stimulus
+    /// For intervals without a stimulus: silence as long as the variant of each value; may be empty.
+    std::vector<std::size_t> silences = {};
 };
 
 /// Procedure of an adaptive run. It gives values as indices into the run's values.
 struct adaptive_options {
-    unsigned down = 0;   ///< positive answers in a row that move a staircase down; 0 for QUEST+
-    unsigned tracks = 1; ///< number of tracks; every second staircase is mirrored
+    /// Returns true if every second staircase is mirrored.
+    bool is_mirrored() const noexcept { return two_sided && down > 1; }
+
+    unsigned down = 0;     ///< positive answers in a row that move a staircase down; 0 for QUEST+
+    unsigned tracks = 1;   ///< number of tracks
+    bool two_sided = true; ///< false if answers are right or wrong; see read_procedure()
     std::vector<std::size_t> start = {}; ///< first value of each track
     std::vector<std::size_t> steps = {}; ///< step sizes; every second reversal moves on to the next
     std::vector<double> slopes = {};     ///< slopes for QUEST+, as standard deviations of the normal
@@ -91,6 +97,7 @@ struct run_definition {
     std::map<std::size_t, method_variants> variants = {}; ///< variants by index of the method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
     bool pairs = false;                                   ///< true if a trial has two stimuli
+    bool has_silences = false; ///< interval: true, because one of the two stimuli is silence
     adaptive_options adaptive = {};
     unsigned max_in_a_row = 3; ///< greatest number of trials of one motion in a row
     std::string blocks = {};   ///< "methods" or "motions": one block for each; empty if all trials are mixed

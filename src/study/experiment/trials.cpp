@@ -138,6 +138,7 @@ std::vector<std::size_t> list_played(const run_definition& r)
         if (v.values.empty())
             all.push_back(method);
         all.insert(all.end(), v.values.begin(), v.values.end());
+        all.insert(all.end(), v.silences.begin(), v.silences.end());
         for (const auto& one : {v.standard, v.silent})
             if (one)
                 all.push_back(*one);

@@ -126,11 +126,16 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
             v.standard = add(vary(methods[i], *o.standard, "standard"), i);
             more.back().name = standard_name;
         }
-        if (r.catch_share > 0.0) {
-            v.silent = add(methods[i], i);
-            more.back().name = catch_name;
-            more.back().silent = true;
-        }
+        const auto silence = [&](method_definition m) {
+            m.name = catch_name;
+            m.silent = true;
+            return add(std::move(m), i);
+        };
+        if (r.catch_share > 0.0)
+            v.silent = silence(methods[i]);
+        if (r.has_silences)
+            for (const std::size_t of : v.values)
+                v.silences.push_back(silence(more[of - methods.size()]));
     }
 }
 
@@ -158,15 +163,17 @@ void vary_strokes(std::vector<stroke>& all, const method_definition& m)
 
 void set_value(planned_trial& t, const run_definition& r, std::size_t place)
 {
-    for (const auto& [method, v] : r.variants) {
-        if (std::ranges::count(v.values, t.method_1) != 0)
-            t.method_1 = v.values[place];
-        else if (t.method_2 && std::ranges::count(v.values, *t.method_2) != 0)
-            t.method_2 = v.values[place];
-        else
-            continue;
-        return;
-    }
+    const auto set = [&](std::size_t& played) {
+        for (const auto& [method, v] : r.variants)
+            for (const std::vector<std::size_t>& all : {v.values, v.silences})
+                if (std::ranges::count(all, played) != 0) {
+                    played = all[place];
+                    return;
+                }
+    };
+    set(t.method_1);
+    if (t.method_2)
+        set(*t.method_2);
 }
 
 std::optional<double> find_value(const experiment_definition& d, const planned_trial& t)

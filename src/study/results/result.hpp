@@ -112,7 +112,7 @@ struct measured_figure {
 /// A participant's psychometric function.
 struct fitted_function {
     std::vector<answer_block> blocks = {}; ///< answers by value, ascending
-    double guess = 0.0;                    ///< share of positive answers in trials without a stimulus
+    double guess = 0.0;                    ///< guess rate, see fit_answers()
     std::optional<psychometric_fit> fit = {};
     psychometric_bootstrap bootstrap = {};
     std::optional<double> pse = {}; ///< for comparisons: the threshold of the fit

@@ -90,6 +90,8 @@ std::vector<coded_event> list_events_in(const experiment_definition& d, const ru
                 add(code_event::standard, *v.standard);
             if (v.silent)
                 add(code_event::silent, *v.silent);
+            for (const std::size_t silence : v.silences)
+                add(code_event::silent, silence);
             all.push_back({code_event::made_void, &r, motion, method});
         }
     return all;

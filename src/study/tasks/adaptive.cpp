@@ -70,57 +70,12 @@ void set_steps(const toml_table& t, adaptive_options& a, const std::vector<doubl
     }
 }
 
-// Reads the procedure of an adaptive run. Its values are a grid over the range.
-void read_procedure(const toml_table& t, run_definition& r, const detail::bounds& b)
-{
-    constexpr std::array<std::string_view, 4> names{"quest", "1up1down", "1up2down", "1up3down"};
-    run_outline& o = r.outline;
-    adaptive_options& a = r.adaptive;
-    const std::string name = t.need(t.choice("procedure", {names.begin(), names.end()}), "procedure");
-    a.down = static_cast<unsigned>(std::ranges::find(names, name) - names.begin());
-    for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
-        if (t.has(key) && of_quest != (a.down == 0))
-            t.fail(key, fmt::format("{} does not apply to procedure \"{}\"", key, name), "leave it out");
-    const std::vector<double> range = read_numbers(t, "range", b);
-    if (range.size() != 2 || !(range[0] < range[1]))
-        t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
-               "add range = [LEAST, GREATEST]");
-    const double width = range[1] - range[0];
-    const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
-    const double step = !steps.empty() ? *std::ranges::min_element(steps)
-                        : o.on_db_axis ? 1.0
-                                       : width / range_steps;
-    const auto count = static_cast<std::size_t>(std::floor(width / step + 1e-6)) + 1;
-    if (count > most_values)
-        t.fail(t.has("steps") ? "steps" : "range", fmt::format("the range has {} steps", count),
-               fmt::format("use at most {}", most_values));
-    for (std::size_t i = 0; i < count; ++i)
-        o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
-    set_steps(t, a, steps, step);
-    // A staircase that needs several answers for a step stays on one side of the pse. A fit would then move
-    // the pse to that side and find a jnd that is too small.
-    const bool one_sided = a.down > 1;
-    a.tracks = t.whole("tracks", 1, most_tracks).value_or(one_sided ? 2 : 1);
-    if (one_sided && a.tracks % 2 != 0)
-        t.fail("tracks",
-               fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
-                           counted(a.tracks, "track"), name),
-               "use an even number: every second track is mirrored");
-    const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
-    if (start.size() > 1 && start.size() != a.tracks)
-        t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
-    for (unsigned i = 0; i < a.tracks; ++i) // alternates between both ends
-        a.start.push_back(find_nearest(o.values, start.empty()       ? range[i % 2 == 0 ? 1 : 0]
-                                                 : start.size() == 1 ? start[0]
-                                                                     : start[i]));
-    a.slopes =
-        read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / range_steps, width / 2.0}, 5, true);
-    a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
-}
-
 class chooser final : public value_chooser {
 public:
-    explicit chooser(const run_definition& r) : run_(r), tracks_(r) {}
+    chooser(const run_definition& r, const psychometric_family& family, is_positive positive)
+        : run_(r), positive_(positive), tracks_(r, family)
+    {
+    }
 
     void choose(planned_trial& t) override
     {
@@ -129,11 +84,12 @@ public:
     }
     void take(unsigned track, std::string_view method_1, unsigned response) override
     {
-        tracks_.answer(track, is_more(run_.outline, method_1, response));
+        tracks_.answer(track, positive_(run_.outline, method_1, response));
     }
 
 private:
     const run_definition& run_;
+    is_positive positive_;
     adaptive_tracks tracks_;
 };
 
@@ -161,7 +117,7 @@ public:
 
     void read_outline(const toml_table& t, run_definition& r) const override
     {
-        read_procedure(t, r, read_vary(t, r.outline));
+        read_procedure(t, r, read_vary(t, r.outline), true);
         read_trials(t, r.outline);
     }
 
@@ -179,50 +135,16 @@ public:
     }
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {
-        return std::make_unique<chooser>(r);
+        return choose_adaptively(r, two_answers(sigmoid::normal), is_more);
     }
 
     // Results.
 
-    std::string describe(const run_outline& o) const override
-    {
-        return fmt::format("{} ({}); {} chosen by the answers from {} to {}{}", about().trial,
-                           fmt::join(o.methods, ", "), o.vary, plain_number(o.values.front()),
-                           plain_number(o.values.back()),
-                           o.standard ? "; standard " + plain_number(*o.standard) : "");
-    }
+    std::string describe(const run_outline& o) const override { return describe_range(*this, o); }
 
     std::string describe_procedure(const run_definition& r, std::string_view& section) const override
     {
-        const adaptive_options& a = r.adaptive;
-        const std::vector<double>& values = r.outline.values;
-        const double step = values[1] - values[0];
-        const std::string text = fmt::format("{} in each condition, values from {} to {} in steps of {}; ",
-                                             counted(a.tracks, "track"), plain_number(values.front()),
-                                             plain_number(values.back()), plain_number(step));
-        section = a.down == 0 ? "has_quest" : "has_staircases";
-        if (a.down == 0)
-            return text +
-                   fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. "
-                               "Priors were uniform over thresholds at the values, slopes (standard "
-                               "deviations of the normal) of {} and lapses of {}",
-                               list_numbers(a.slopes), list_numbers(a.lapses));
-        std::vector<double> steps;
-        for (const std::size_t places : a.steps)
-            steps.push_back(static_cast<double>(places) * step);
-        std::vector<double> start;
-        for (const std::size_t place : a.start)
-            start.push_back(values[place]);
-        const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
-        const std::string mirrored =
-            fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
-                        counted(a.down, "negative answer"), 100.0 - led_to);
-        return text +
-               fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
-                           "after each other answer, which leads to {:.1f} % positive answers{}; step "
-                           "sizes of {}, the next one after every second reversal",
-                           list_numbers(start), counted(a.down, "positive answer"), led_to,
-                           a.down > 1 ? mirrored : "", list_numbers(steps));
+        return describe_adaptive(r, section);
     }
 };
 
@@ -232,6 +154,103 @@ const task& adaptive_task()
 {
     static const adaptive one;
     return one;
+}
+
+void read_procedure(const toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided)
+{
+    constexpr std::array<std::string_view, 4> names{"quest", "1up1down", "1up2down", "1up3down"};
+    run_outline& o = r.outline;
+    adaptive_options& a = r.adaptive;
+    const std::string name = t.need(t.choice("procedure", {names.begin(), names.end()}), "procedure");
+    a.down = static_cast<unsigned>(std::ranges::find(names, name) - names.begin());
+    for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
+        if (t.has(key) && of_quest != (a.down == 0))
+            t.fail(key, fmt::format("{} does not apply to procedure \"{}\"", key, name), "leave it out");
+    const std::vector<double> range = read_numbers(t, "range", b);
+    if (range.size() != 2 || !(range[0] < range[1]))
+        t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
+               "add range = [LEAST, GREATEST]");
+    const double width = range[1] - range[0];
+    const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
+    const double step = !steps.empty() ? *std::ranges::min_element(steps)
+                        : o.on_db_axis ? 1.0
+                                       : width / range_steps;
+    const auto count = static_cast<std::size_t>(std::floor(width / step + 1e-6)) + 1;
+    if (count > most_values)
+        t.fail(t.has("steps") ? "steps" : "range", fmt::format("the range has {} steps", count),
+               fmt::format("use at most {}", most_values));
+    for (std::size_t i = 0; i < count; ++i)
+        o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
+    set_steps(t, a, steps, step);
+    // A staircase that needs several answers for a step stays on one side of the pse. A fit would then move
+    // the pse to that side and find a jnd that is too small.
+    o.is_adaptive = true;
+    a.two_sided = two_sided;
+    if (!two_sided && a.down == 1)
+        t.fail("procedure", "1up1down leads to 50 % right answers, which guesses reach",
+               "use 1up2down, 1up3down or quest");
+    a.tracks = t.whole("tracks", 1, most_tracks).value_or(a.is_mirrored() ? 2 : 1);
+    if (a.is_mirrored() && a.tracks % 2 != 0)
+        t.fail("tracks",
+               fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
+                           counted(a.tracks, "track"), name),
+               "use an even number: every second track is mirrored");
+    const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
+    if (start.size() > 1 && start.size() != a.tracks)
+        t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
+    for (unsigned i = 0; i < a.tracks; ++i) // with two sides alternates between both ends
+        a.start.push_back(find_nearest(o.values, start.empty()       ? range[two_sided && i % 2 == 1 ? 0 : 1]
+                                                 : start.size() == 1 ? start[0]
+                                                                     : start[i]));
+    a.slopes =
+        read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / range_steps, width / 2.0}, 5, true);
+    a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
+}
+
+std::string describe_adaptive(const run_definition& r, std::string_view& section)
+{
+    const adaptive_options& a = r.adaptive;
+    const std::vector<double>& values = r.outline.values;
+    const double step = values[1] - values[0];
+    const std::string text =
+        fmt::format("{} in each condition, values from {} to {} in steps of {}; ", counted(a.tracks, "track"),
+                    plain_number(values.front()), plain_number(values.back()), plain_number(step));
+    section = a.down == 0 ? "has_quest" : "has_staircases";
+    if (a.down == 0)
+        return text + fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. "
+                                  "Priors were uniform over thresholds at the values, slopes (standard "
+                                  "deviations of the normal) of {} and lapses of {}",
+                                  list_numbers(a.slopes), list_numbers(a.lapses));
+    std::vector<double> steps;
+    for (const std::size_t places : a.steps)
+        steps.push_back(static_cast<double>(places) * step);
+    std::vector<double> start;
+    for (const std::size_t place : a.start)
+        start.push_back(values[place]);
+    const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
+    const std::string mirrored =
+        fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
+                    counted(a.down, "negative answer"), 100.0 - led_to);
+    const char* const positive = a.two_sided ? "positive answer" : "right answer";
+    return text + fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
+                              "after each other answer, which leads to {:.1f} % {}s{}; step "
+                              "sizes of {}, the next one after every second reversal",
+                              list_numbers(start), counted(a.down, positive), led_to, positive,
+                              a.is_mirrored() ? mirrored : "", list_numbers(steps));
+}
+
+std::string describe_range(const task& of, const run_outline& o)
+{
+    return fmt::format("{} ({}); {} chosen by the answers from {} to {}{}", of.about().trial,
+                       fmt::join(o.methods, ", "), o.vary, plain_number(o.values.front()),
+                       plain_number(o.values.back()),
+                       o.standard ? "; standard " + plain_number(*o.standard) : "");
+}
+
+std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, const psychometric_family& family,
+                                                 is_positive positive)
+{
+    return std::make_unique<chooser>(r, family, positive);
 }
 
 void value_staircase::answer(bool positive)
@@ -254,11 +273,10 @@ adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
     const std::vector<double>& values = run_.outline.values;
     const unsigned of_condition = (track - 1) % a.tracks;
     if (a.down > 0)
-        return insert(value_staircase(a.down, of_condition % 2 == 1, a.steps, a.start[of_condition],
-                                      values.size() - 1));
+        return insert(value_staircase(a.down, a.is_mirrored() && of_condition % 2 == 1, a.steps,
+                                      a.start[of_condition], values.size() - 1));
     const quest_grid grid{values, values, {}, a.slopes, a.lapses};
-    return insert(quest(
-        grid, [](double x, const psychometric& p) { return chance(x, p, two_answers(sigmoid::normal)); }));
+    return insert(quest(grid, [f = family_](double x, const psychometric& p) { return chance(x, p, f); }));
 }
 
 std::size_t adaptive_tracks::next(unsigned track)

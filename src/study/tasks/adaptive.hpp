@@ -3,15 +3,21 @@
 /// Adaptive procedures: each answer in a track determines the value of the track's next trial.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "study/experiment/definition.hpp"
+#include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/quest.hpp"
 #include "study/statistics/up_down.hpp"
+#include "study/tasks/task.hpp"
 
 namespace tactor::study {
 
@@ -39,10 +45,33 @@ private:
     std::size_t top_;
 };
 
+/// Reads the procedure of a run whose answers choose the values, from a grid over `range`. `two_sided`: both
+/// answers have equal rank. Then a staircase that needs several positive answers in a row gets a mirrored
+/// twin. Else answers are right or wrong, and tracks start at the greatest value.
+/// \throws error (bad_input) with line and column.
+void read_procedure(const detail::toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided);
+
+/// Names of the keys that read_procedure() reads, besides those of read_vary().
+inline constexpr std::array<std::string_view, 7> procedure_keys{"procedure", "start", "steps", "range",
+                                                                "tracks",    "slope", "lapse"};
+
+/// Describes a trial and the range of its values in the methods section, as task::describe() does.
+std::string describe_range(const task& of, const run_outline& o);
+/// Describes the procedure in the methods section, as task::describe_procedure() does.
+std::string describe_adaptive(const run_definition& r, std::string_view& section);
+
+/// Function that tells whether an answer is positive.
+using is_positive = bool (*)(const run_outline& o, std::string_view method_1, unsigned response);
+
+/// Returns the chooser of an adaptive run. `family`: function that QUEST+ assumes.
+std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, const psychometric_family& family,
+                                                 is_positive positive);
+
 /// The tracks of an adaptive run, with the answers so far.
 class adaptive_tracks {
 public:
-    explicit adaptive_tracks(const run_definition& r) : run_(r) {}
+    /// `family`: function that QUEST+ assumes.
+    adaptive_tracks(const run_definition& r, const psychometric_family& family) : run_(r), family_(family) {}
 
     /// Returns the index of the value for a track's next trial. `track` counts from 1.
     std::size_t next(unsigned track);
@@ -54,6 +83,7 @@ private:
     procedure& find(unsigned track);
 
     const run_definition& run_;
+    psychometric_family family_;
     std::map<unsigned, procedure> tracks_ = {};
 };
 

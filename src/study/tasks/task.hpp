@@ -130,6 +130,8 @@ public:
     virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                             random_numbers& numbers) const;
     virtual std::unique_ptr<value_chooser> choose_values(const run_definition& r) const;
+    /// Returns true if the tables of a run have the task's own column.
+    virtual bool uses_column(const run_outline&) const { return true; }
 
     /// Returns the possible answers; usually two.
     virtual trial_answers ask(const run_definition& r, const page_words& w) const;

@@ -22,11 +22,13 @@ const task& same_different_task();
 const task& estimate_task();
 const task& constant_task();
 const task& adaptive_task();
+const task& interval_task();
 
 std::span<const task* const> list_tasks() noexcept
 {
-    static const std::array all{&choose_task(),         &rate_task(),     &identify_task(), &detect_task(),
-                                &same_different_task(), &estimate_task(), &constant_task(), &adaptive_task()};
+    static const std::array all{&choose_task(),   &rate_task(),           &identify_task(),
+                                &detect_task(),   &same_different_task(), &estimate_task(),
+                                &constant_task(), &adaptive_task(),       &interval_task()};
     return all;
 }
 

@@ -169,10 +169,16 @@ double read_value(const text_table& t, std::size_t row, const run_outline& o)
 
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o)
 {
-    const bool standard_first = o.standard && t.need(row, "method_1") == standard_name;
-    if (o.standard && !standard_first && t.need(row, "method_2") != standard_name)
-        t.refuse(row, "no stimulus is the standard", "give each trial one");
-    r.method_1 = find_place(t, row, standard_first ? "method_2" : "method_1", o.methods);
+    read_comparison(r, t, row, o, o.standard ? standard_name : "");
+}
+
+void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o,
+                     std::string_view other)
+{
+    const bool other_first = !other.empty() && t.need(row, "method_1") == other;
+    if (!other.empty() && !other_first && t.need(row, "method_2") != other)
+        t.refuse(row, fmt::format("neither method is \"{}\"", other), "give each trial one");
+    r.method_1 = find_place(t, row, other_first ? "method_2" : "method_1", o.methods);
     r.value = read_value(t, row, o);
 }
 

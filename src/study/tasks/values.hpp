@@ -52,6 +52,9 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
 unsigned read_one_of_two(const text_table& t, std::size_t row);
 /// Reads the methods and the value of a trial, which may have a standard.
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o);
+/// Reads them if the other stimulus has the name `other` in the table.
+void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o,
+                     std::string_view other);
 /// Reads an answer from two columns, which must agree, each with `read`.
 template <class Read>
 auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
+#include "study/data/text_table.hpp"
+#include "study/tasks/adaptive.hpp"
+#include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
+
+namespace tactor::study {
+namespace {
+
+// Returns the family of right answers: a guess is right in half of the trials.
+psychometric_family right_answers(sigmoid kind)
+{
+    return {.kind = kind, .guess = 0.5};
+}
+
+bool is_right(const run_outline&, std::string_view method_1, unsigned response)
+{
+    return (response == 2) == (method_1 == catch_name);
+}
+
+std::vector<std::string_view> list_keys()
+{
+    std::vector<std::string_view> all{"vary", "values", "trials_per_value"};
+    all.insert(all.end(), procedure_keys.begin(), procedure_keys.end());
+    return all;
+}
+
+class interval_choice final : public task {
+public:
+    interval_choice()
+        : task({.name = "interval",
+                .trial = "Two intervals, one with a stimulus and one with silence that is as long",
+                .response = "Interval in which the participant felt the stimulus: 1 or 2",
+                .questions = {"In which interval did you feel it?", "In which interval did you feel it?",
+                              "In which interval did you feel it?"},
+                .keys = list_keys(),
+                .column = "track"})
+    {
+    }
+
+    void read_outline(const detail::toml_table& t, run_definition& r) const override
+    {
+        r.has_silences = true;
+        refuse_method_name(t, r.outline, catch_name);
+        const detail::bounds b = read_vary(t, r.outline);
+        if (!t.has("procedure"))
+            read_values(t, r.outline, b);
+        else if (t.has("values"))
+            t.fail("values", "the procedure chooses the values", "leave out one of the two");
+        else
+            read_procedure(t, r, b, false);
+        read_trials(t, r.outline);
+    }
+
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    {
+        std::vector<planned_trial> cells;
+        unsigned track = 0;
+        for (const std::size_t motion : r.motions)
+            for (const std::size_t method : r.methods) {
+                const method_variants& v = r.variants.at(method);
+                const auto add = [&](std::size_t place, unsigned of_track) {
+                    cells.push_back({motion, v.values[place], v.silences[place], 0.0, of_track});
+                    cells.push_back({motion, v.silences[place], v.values[place], 0.0, of_track});
+                };
+                for (const std::size_t start : r.adaptive.start)
+                    add(start, ++track);
+                for (std::size_t i = 0; i < v.values.size() && !r.outline.is_adaptive; ++i)
+                    add(i, 0);
+            }
+        return cells;
+    }
+    std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
+    {
+        return r.outline.is_adaptive ? choose_adaptively(r, right_answers(sigmoid::normal), is_right)
+                                     : task::choose_values(r);
+    }
+    bool uses_column(const run_outline& o) const override { return o.is_adaptive; }
+
+    void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
+    {
+        read_comparison(r, t, row, o, catch_name);
+        score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
+    }
+    void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const override
+    {
+        task::score(r, o, method_1, answer);
+        r.positive = is_right(o, method_1, r.response);
+    }
+
+    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    {
+        if (const auto key = lapse(who, r))
+            return *key;
+        const bool silence_first = who.definition.methods[t.method_1].silent;
+        const bool right = feels_more(who, find_value(who.definition, t).value(), r) || r.below(2) == 0;
+        return right == silence_first ? 2 : 1;
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline&, const std::vector<trial>& trials,
+                                     sigmoid kind) const override
+    {
+        return list_threshold(fit_answers(trials, right_answers(kind), ""));
+    }
+
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {outline_measured({{{"psychometric"}, psychometric_functions{}}})};
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
+    {
+        const psychometric_functions begun{{}, right_answers(kind), o.on_db_axis, "right (%)"};
+        const auto measure = [&](const condition_trials& c) {
+            const auto fit = [&](const std::vector<trial>& trials, const std::string& code) {
+                return fit_answers(trials, begun.family, make_seed(o, c, code));
+            };
+            return measure_people(begun, c, people, {}, fit, list_threshold);
+        };
+        return analyse_conditions(o, people, o.methods, {}, "psychometric",
+                                  "Psychometric functions over " + o.vary, measure);
+    }
+
+    main_comparison name_comparison(const run_outline&) const override
+    {
+        return compare_with("threshold", "t", {});
+    }
+
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        return write_model(
+            o, grouped,
+            {"glmer(positive", "family = binomial(psyphy::mafc.probit(2)), ", "", write_value(o)});
+    }
+
+    std::string describe(const run_outline& o) const override
+    {
+        return o.is_adaptive ? describe_range(*this, o) : task::describe(o);
+    }
+    std::string describe_procedure(const run_definition& r, std::string_view& section) const override
+    {
+        return r.outline.is_adaptive ? describe_adaptive(r, section) : task::describe_procedure(r, section);
+    }
+    std::vector<std::string_view> list_sections(const run_outline&) const override
+    {
+        return {"has_functions", "has_intervals"};
+    }
+};
+
+} // namespace
+
+const task& interval_task()
+{
+    static const interval_choice one;
+    return one;
+}
+
+} // namespace tactor::study
