@@ -233,10 +233,10 @@ void service::submit_all(const plan_job& job)
     auto warnings = p.warnings();
     for (std::string& w : warnings)
         w = net::cut_echo(w);
-    net::reply_json answer{
+    net::reply_json reply{
         {"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}};
-    add_weakening(answer, p.weakened);
-    job.to.result(answer, numbers);
+    add_weakening(reply, p.weakened);
+    job.to.result(reply, numbers);
 }
 
 } // namespace tactor::server
