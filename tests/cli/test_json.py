@@ -4,6 +4,7 @@
 Run as: python3 test_json.py TOOL SOURCE_ROOT FOLDER_OF_SCHEMAS JSON_SAMPLES
 """
 import copy
+import itertools
 import json
 import pathlib
 import re
@@ -29,7 +30,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "weakened_db", "meets", "render.together", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova"}}
+            "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova", "runs{}.methods", "runs{}.sessions"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
@@ -43,7 +44,8 @@ MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
-        "runs{}.exponent.participants", "runs{}.by"}
+        "runs{}.exponent.participants", "runs{}.by",
+        *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means"))}
 
 
 def member(at):
@@ -78,6 +80,10 @@ MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_
             + studies.run("some", "detect", 8, catch=0.5)
             + studies.run("same", "same-different", 16, methods=["park", "soft"])
             + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20]))
+
+# A task that measures, with three methods and three sessions.
+THRICE = (FELT.partition("[[run]]")[0].replace("name", "sessions = 3\nname", 1) + studies.toml("method", "soft", level_dbfs=-30)
+          + studies.toml("method", "hard", level_dbfs=-10) + studies.run("there", "detect", 24, catch=0.5))
 
 TRACKS = studies.run("climb", "adaptive", 12, question="?", vary="length_mm", procedure="1up1down", range=[4, 8], standard=6)
 
@@ -174,6 +180,9 @@ class Schemas(ToolTest):
         self.write("coded.toml", '[array]\npreset = "palm-3x3"\n[sync]\ncode = { channel = 9 }\n[sync.codes]\nstimulus = { by = ["motion", "method"] }\n')
         for code in "123":
             self.ok("experiment", "measured.toml", "--participant", code, "-o", "measured", "--simulate", f"seed={code},jnd=4,sigma=0.2,dprime=1")
+        self.write("thrice.toml", THRICE)
+        for code, session in itertools.product("12345", "123"):
+            self.ok("experiment", "thrice.toml", "--participant", code, "--session", session, "-o", "thrice", "--simulate", f"seed={code}")
         studies.grouped(self.dir / "compared")
         for study in ("missing", "three-by-three", "among"):
             studies.STUDIES[study](self.dir / study)
@@ -191,7 +200,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "thrice"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"), ("play", "meet.toml", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

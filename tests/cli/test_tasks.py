@@ -6,8 +6,10 @@ Run as: python3 test_tasks.py TOOL SOURCE_ROOT FOLDER_OF_SCHEMAS
 import csv
 import io
 import json
+import math
 import pathlib
 import re
+import statistics
 import sys
 
 import jsonschema
@@ -89,6 +91,36 @@ class EveryTask(ExperimentTest):
                 self.assertIn(f"**only** ({task}): ", report)
                 self.assertNotIn("not recorded", report.partition("## Stimuli")[2].partition("### As it was held")[0] + report.partition("## Data")[2])
                 self.assertRegex(report.partition("### only")[2], rf" {mean:.4g}[ ,]")
+
+    def test_figures_are_compared_between_methods_and_sessions(self):
+        self.write("desk.toml", DESK)
+        values = dict(vary="length_mm", values=[4, 8, 12, 16, 20], trials_per_value=20)
+        self.write("t.toml", measures("desk.toml", toml("run", "length", task="constant", question="?", standard=12, **values),
+                                      toml("run", "felt", task="interval", **values), toml("run", "there", task="detect", catch=0.5, trials=80),
+                                      toml("run", "same", task="same-different", trials=16), keys="gap_s = 0.1\nsessions = 2\n"))
+        for code in "1234":
+            for session in "12":
+                self.simulate(code, "--session", session, definition="t.toml", folder="study", spec=f"seed={code},jnd=3,pse={10 + int(code)}")
+        told = self.valid(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        self.assertEqual({name: (list(run.get("methods", {})), list(run["sessions"])) for name, run in told.items()},
+                         {"length": (["pse", "jnd"],) * 2, "felt": (["threshold"],) * 2, "there": (["dprime", "c"],) * 2, "same": ([], ["dprime", "c"])})
+        text = self.ok("analyze", "study", "--format", "tables").stdout
+        for run, figure in (("length", "pse"), ("length", "jnd"), ("felt", "threshold"), ("there", "dprime")):
+            with self.subTest(run=run, figure=figure):
+                # Takes the figures of METHOD:MOTION, which with one motion are those of the method.
+                kind = "dprime" if run == "there" else "psychometric"
+                of = [[p[figure] for p in told[run]["by"][f"{m}:east"][kind]["participants"].values()] for m in ("park", "soft")]
+                differences = [a - b for a, b in zip(*of)]
+                mean, sd, n = statistics.mean(differences), statistics.stdev(differences), len(differences)
+                compared = told[run]["methods"][figure]
+                self.assertEqual([compared["n"], compared["anova"], *compared["means"]], [4, None, "park", "soft"])
+                pair, = compared["pairs"]
+                self.assertEqual([pair["a"], pair["b"], pair["df"], pair["p_holm"]], ["park", "soft", 3, pair["p"]])
+                for key, expected in (("difference", mean), ("t", mean / (sd / math.sqrt(n))), ("d_z", mean / sd)):
+                    self.assertAlmostEqual(pair[key], expected, places=9)
+                self.assertAlmostEqual(pair["ci"][1] - pair["ci"][0], 2 * 3.182446305284263 * sd / math.sqrt(n), places=9)  # t(3) at 97.5 %
+                self.assertIn(f"park - soft: {mean:.2f} (", text)
+        self.assertIn("pse by session, within participants", self.ok("report", "study").stdout)
 
 
 if __name__ == "__main__":

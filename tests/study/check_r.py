@@ -226,6 +226,54 @@ def check_method_errors(tool, folder):
     return bad + ([] if at_zero > 2 * error else [f"the error at 0 is {at_zero}, at the standard {error}"])
 
 
+# Figures of three methods: R compares those of each participant.
+COMPARED = studies.measures("palm-3x3", studies.toml("method", "brush", algorithm="tactile-brush"),
+                            studies.run("values", "constant", 210, question="Which was stronger?", vary="level_dbfs",
+                                        values=[-32, -28, -24, -20, -16], standard=-24))
+COMPARE = """
+d <- read.table("figures.tsv", header = TRUE)
+for (figure in c("pse", "jnd")) {
+  y <- as.matrix(d[grep(figure, names(d))])
+  say <- function(...) cat(figure, ..., "\n")
+  p <- c()
+  for (pair in list(c(1, 2), c(1, 3), c(2, 3))) {
+    t <- t.test(y[, pair[1]], y[, pair[2]], paired = TRUE)
+    x <- y[, pair[1]] - y[, pair[2]]
+    p <- c(p, t$p.value)
+    say(sprintf("%.17g", c(t$estimate, t$conf.int, t$statistic, t$parameter, t$p.value, mean(x) / sd(x))))
+  }
+  say(sprintf("%.17g", p.adjust(p, "holm")))
+  a <- summary(car::Anova(lm(y ~ 1), idata = data.frame(m = factor(1:3)), idesign = ~m), multivariate = FALSE)
+  u <- a$univariate.tests["m", ]
+  e <- a$pval.adjustments["m", ]
+  say(sprintf("%.17g", c(u["F value"], u["num Df"], u["den Df"], u["Pr(>F)"], e["GG eps"], e["Pr(>F[GG])"], e["HF eps"])))
+}
+"""
+
+
+def check_comparisons(tool, folder):
+    """Compares the figures of three methods with what R says of the participants' figures."""
+    (folder / "compared.toml").write_text(COMPARED)
+    for code in ("01", "02", "03", "04", "05", "06", "07"):
+        run(tool, "experiment", folder / "compared.toml", "--participant", code, "-o", folder / "compared", "--simulate", "seed=1,jnd=4")
+    told = json.loads(run(tool, "analyze", folder / "compared", "--format", "json"))["runs"]["values"]
+    people = [told["by"][f"{m}:east"]["psychometric"]["participants"] for m in ("park", "soft", "brush")]
+    rows = ["\t".join(f"{figure}{i}" for figure in ("pse", "jnd") for i in range(3))]
+    rows += ["\t".join(repr(own[code][figure]) for figure in ("pse", "jnd") for own in people) for code in people[0]]
+    (folder / "figures.tsv").write_text("\n".join(rows) + "\n")
+    said = [(line.split()[0], list(map(float, line.split()[1:]))) for line in run("Rscript", "-e", COMPARE, cwd=folder).splitlines()]
+    expected = []
+    for figure in ("pse", "jnd"):
+        compared = told["methods"][figure]
+        expected += [(figure, [p["difference"], *p["ci"], p["t"], p["df"], p["p"], p["d_z"]]) for p in compared["pairs"]]
+        expected.append((figure, [p["p_holm"] for p in compared["pairs"]]))
+        expected.append((figure, [compared["anova"][k] for k in ("F", "df1", "df2", "p", "epsilon_gg", "p_gg", "epsilon_hf")]))
+    if len(said) != len(expected):
+        return [f"R said {len(said)} lines, not {len(expected)}"]
+    return [f"{figure}: {mine}, R: {r}" for (figure, mine), (_, r) in zip(expected, said)
+            if not all(abs(a - b) <= 1e-8 * max(1, abs(b)) for a, b in zip(mine, r, strict=True))]
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -243,6 +291,7 @@ def main():
                     cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
                     cases["measures, models"] = lambda: check_measures(tool, folder)
                     cases["measures, methods"] = lambda: check_method_errors(tool, folder)
+                    cases["measures, comparisons"] = lambda: check_comparisons(tool, folder)
             else:
                 print(f"SKIPPED: {name}, models: lme4 is not here")
                 skipped += 1

@@ -86,6 +86,8 @@ std::size_t widest(const std::vector<std::string>& names)
 // two at least.
 int count_decimals(const study::run_outline& run)
 {
+    if (run.values.empty())
+        return usual_decimals;
     const double range = run.values.back() - run.values.front();
     return std::max(usual_decimals, usual_decimals - static_cast<int>(std::floor(std::log10(range))));
 }
@@ -105,11 +107,11 @@ std::string test_text(const study::measured_figure& f, const std::optional<study
     return ratio ? ratio_text(*ratio) : f.test.t && f.against ? t_text(f.test) : "";
 }
 
-std::string paired_text(const study::t_test& t)
+std::string paired_text(const study::t_test& t, int decimals = usual_decimals)
 {
-    std::string text = value_text(t.mean);
+    std::string text = value_text(t.mean, decimals);
     if (t.t)
-        text += fmt::format(" ({}), {}", interval_text(t.ci), t_text(t));
+        text += fmt::format(" ({}), {}", interval_text(t.ci, decimals), t_text(t));
     if (t.p_signflip)
         text += fmt::format(", signs {}", p_text(t.p_signflip));
     if (t.d)
@@ -239,6 +241,23 @@ public:
             say(stdout, "    {:<{}} - {:<{}} {:>7} t = {:>5}, {}, Holm {}\n", v.motions[c.a], w,
                 v.motions[c.b], w, value_text(c.test.mean), value_text(c.test.t), p_clause(c.test.p),
                 p_text(c.p_holm));
+    }
+
+    void operator()(const study::figure_comparison& v) const
+    {
+        const int decimals = count_decimals(run_);
+        const std::size_t w = widest(v.levels);
+        for (std::size_t i = 0; i < v.levels.size(); ++i)
+            say(stdout, "    {:<{}} {:>8} (se {}), 95 % {}\n", v.levels[i], w,
+                value_text(v.means[i].mean, decimals), value_text(v.means[i].se, decimals),
+                interval_text(v.means[i].ci, decimals));
+        for (const study::paired_comparison& c : v.pairs)
+            say(stdout, "{}",
+                wrapped(fmt::format("    {} - {}: ", v.levels[c.a], v.levels[c.b]),
+                        paired_text(c.test, decimals) +
+                            (v.pairs.size() > 1 ? ", Holm " + p_text(c.p_holm) : "")));
+        if (v.anova && v.anova->f)
+            fmt::print("{}", wrapped(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
     }
 
     void operator()(const study::worth_list& v) const

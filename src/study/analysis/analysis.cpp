@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "study/analysis/levels.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
@@ -65,6 +66,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     r.n = people.all.size();
     r.times = summarise_times(r.run, people.all);
     r.results = task_in(r.run).analyse(r.run, people, kind);
+    add_comparisons(r.results, r.run, people, kind);
     return r;
 }
 

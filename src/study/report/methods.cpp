@@ -207,6 +207,7 @@ public:
     void operator()(const effect_list&) { kind_ = "anova"; }
     void operator()(const tukey_list&) { set_rows("tukey"); }
     void operator()(const paired_list&) { set_rows("pairs"); }
+    void operator()(const figure_comparison&) { kind_ = "compared"; }
     void operator()(const answer_counts& v)
     {
         kind_ = "confusion";

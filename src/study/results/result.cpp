@@ -105,6 +105,14 @@ public:
                     "no variance over participants, so no t test");
     }
 
+    void operator()(const figure_comparison& v)
+    {
+        for (const paired_comparison& c : v.pairs)
+            if (c.test.n > 1 && !c.test.t)
+                add(fmt::format("{}, {} - {}", v.figure, v.levels[c.a], v.levels[c.b]),
+                    "no variance over participants, so no t test");
+    }
+
     void operator()(const psychometric_functions& v) { note(v); }
     void operator()(const sensitivities& v) { note(v); }
     void operator()(const exponents& v) { note(v); }
@@ -173,6 +181,8 @@ bool has_table(const result_value& v)
         return !t->pairs.empty() && t->pairs[0].q;
     if (const auto* p = std::get_if<paired_list>(&v))
         return !p->pairs.empty();
+    if (const auto* c = std::get_if<figure_comparison>(&v))
+        return c->means.front().n != 0;
     return v.index() > 2; // not null, a text or a number
 }
 
@@ -207,6 +217,8 @@ std::vector<result_outline> outline_measured(const std::vector<result_outline>& 
         all.push_back({{"by", "*", row.at.front()}, row.value, row.or_null, true});
     }
     all.push_back({{"group_anova"}, outline_effects({"group"}), false, true});
+    for (const char* factor : {"methods", "sessions"})
+        all.push_back({{factor, "*"}, figure_comparison{}, false, true});
     return all;
 }
 

@@ -89,6 +89,16 @@ struct paired_list {
     std::vector<paired_comparison> pairs = {};
 };
 
+/// A figure compared between the levels of a factor, within participants.
+struct figure_comparison {
+    std::string factor;                        ///< method or session
+    std::string figure;                        ///< "jnd"
+    std::vector<std::string> levels = {};      ///< names
+    std::vector<t_test> means = {};            ///< by level, not tested
+    std::vector<paired_comparison> pairs = {}; ///< by level, tests with d_z
+    std::optional<effect> anova = {};          ///< with three levels or more
+};
+
 /// Worths from the trials of all participants.
 struct worth_list {
     std::vector<std::string> methods = {};
@@ -163,9 +173,10 @@ struct sensitivities : measured<std::optional<detection>> {
 
 struct exponents : measured<fitted_exponent> {};
 
-using result_value = std::variant<std::monostate, std::string, double, cell_means, interval_share,
-                                  method_difference, effect_list, tukey_list, paired_list, worth_list,
-                                  answer_counts, psychometric_functions, sensitivities, exponents>;
+using result_value =
+    std::variant<std::monostate, std::string, double, cell_means, interval_share, method_difference,
+                 effect_list, tukey_list, paired_list, figure_comparison, worth_list, answer_counts,
+                 psychometric_functions, sensitivities, exponents>;
 
 /// A row of a run's results.
 struct result {

@@ -177,6 +177,30 @@ void row_member(Io& io, const char* name, const paired_list& v)
 }
 
 template <class Io>
+void row_member(Io& io, const char* name, const figure_comparison& v)
+{
+    io.object(name, {"a figure compared within participants"}, [&v](auto& inner) {
+        inner("n", v.means.empty() ? std::size_t{} : v.means.front().n,
+              {"participants with the figure at each level"});
+        inner.named_objects("means", v.levels, v.means, {"by level"},
+                            [](auto& one, const t_test& t) { mean_members(one, t); });
+        inner.list("pairs", v.pairs, {"all pairs of levels"},
+                   [&v](auto& one, const paired_comparison& c, std::size_t) {
+                       one.fact("a", [&] { return v.levels[c.a]; }, {"the first level"});
+                       one.fact("b", [&] { return v.levels[c.b]; }, {"the second level"});
+                       one.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
+                       one.or_null("ci", list_ends(c.test.ci), {"both ends of its 95 % interval"});
+                       t_members(one, c.test, paired_test);
+                       one.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
+                       one.or_null("d_z", c.test.d, {"mean / sd of the differences"});
+                       one.or_null("d_z_ci", list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
+                   });
+        inner.object_or_null("anova", v.anova, {"effect of the levels; null with two"},
+                             [](auto& one, const effect& e) { effect_members(one, e); });
+    });
+}
+
+template <class Io>
 void row_member(Io& io, const char* name, const worth_list& v)
 {
     by_name<nullable<double>> worths;

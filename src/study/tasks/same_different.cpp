@@ -107,6 +107,8 @@ public:
         return analyse_conditions(o, people, {}, 0.0, "dprime", "Sensitivity", measure);
     }
 
+    bool has_one_method() const override { return false; }
+
     main_comparison name_comparison(const run_outline&) const override
     {
         return compare_with("dprime", "likelihood ratio", 0.0);

@@ -173,6 +173,8 @@ public:
     virtual std::vector<std::vector<result_outline>> outline_results() const = 0;
     /// Lists the methods by which response times are summarised, if a trial has one method.
     virtual std::vector<std::string> list_timed_methods(const run_outline& o) const { return o.methods; }
+    /// Returns true if a trial has one method, so that methods can be compared.
+    virtual bool has_one_method() const { return true; }
     /// Tests whether the trial has no stimulus.
     virtual bool is_silent(const trial&) const { return false; }
 

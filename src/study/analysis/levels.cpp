@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "study/analysis/levels.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "study/tasks/task.hpp"
+
+namespace tactor::study {
+namespace {
+
+// A level of a factor, with the trials that belong to it.
+struct level {
+    std::string name;
+    std::function<bool(const trial&)> has;
+};
+
+std::vector<level> split_by_method(const run_outline& run)
+{
+    std::vector<level> all;
+    for (std::size_t m = 0; m < run.methods.size(); ++m)
+        all.push_back({run.methods[m], [&own = task_in(run), m](const trial& t) {
+                           return t.method_1 == m || own.is_silent(t);
+                       }});
+    return all;
+}
+
+std::vector<level> split_by_session(const run_people& people)
+{
+    std::set<unsigned> numbers;
+    for (const person_trials& p : people.all)
+        for (const trial& t : *p.trials)
+            if (t.session)
+                numbers.insert(*t.session);
+    std::vector<level> all;
+    for (const unsigned n : numbers)
+        all.push_back({fmt::format("{}", n), [n](const trial& t) { return t.session == n; }});
+    return all;
+}
+
+// Compares a figure between levels. `values`: a row of all levels for each participant.
+figure_comparison compare_levels(std::string factor, std::string figure, const std::vector<level>& levels,
+                                 const std::vector<std::vector<double>>& values)
+{
+    figure_comparison c{std::move(factor), std::move(figure)};
+    std::vector<std::vector<double>> by_level(levels.size());
+    for (const std::vector<double>& own : values)
+        for (std::size_t i = 0; i < levels.size(); ++i)
+            by_level[i].push_back(own[i]);
+    const auto within = within_intervals(values);
+    std::vector<std::optional<double>> p;
+    for (std::size_t a = 0; a < levels.size(); ++a) {
+        const t_test t = test_mean(by_level[a], 0.0);
+        c.levels.push_back(levels[a].name);
+        c.means.push_back({.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci});
+        if (a < within.size())
+            c.means.back().ci_within = within[a];
+        for (std::size_t b = a + 1; b < levels.size(); ++b) {
+            std::vector<double> differences;
+            for (const std::vector<double>& own : values)
+                differences.push_back(own[a] - own[b]);
+            c.pairs.push_back({a, b, test_mean(differences, 0.0)});
+            p.push_back(c.pairs.back().test.p);
+        }
+    }
+    p = holm(p);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        c.pairs[i].p_holm = p[i];
+    if (levels.size() > 2)
+        c.anova = repeated_measures({values, levels.size(), 1}).first;
+    return c;
+}
+
+void add_factor(std::vector<result>& results, const run_outline& run, const run_people& people, sigmoid kind,
+                const std::string& factor, const std::vector<level>& levels)
+{
+    if (levels.size() < 2)
+        return;
+    const task& own = task_in(run);
+    const std::vector<named_value> figures = own.measure(run, {}, kind);
+    std::vector<std::vector<std::vector<double>>> values(figures.size()); // by figure and participant
+    for (const person_trials& p : people.all) {
+        std::vector<std::vector<double>> rows(figures.size());
+        for (const level& l : levels) {
+            std::vector<trial> trials;
+            std::ranges::copy_if(*p.trials, std::back_inserter(trials), l.has);
+            const std::vector<named_value> found = own.measure(run, trials, kind);
+            for (std::size_t k = 0; k < figures.size(); ++k)
+                if (found[k].value)
+                    rows[k].push_back(*found[k].value);
+        }
+        for (std::size_t k = 0; k < figures.size(); ++k)
+            if (rows[k].size() == levels.size())
+                values[k].push_back(std::move(rows[k]));
+    }
+    for (std::size_t k = 0; k < figures.size(); ++k) {
+        const std::string& name = figures[k].name.front();
+        results.push_back({{factor + "s", name},
+                           fmt::format("{} by {}, within participants", name, factor),
+                           compare_levels(factor, name, levels, values[k])});
+    }
+}
+
+} // namespace
+
+void add_comparisons(std::vector<result>& results, const run_outline& run, const run_people& people,
+                     sigmoid kind)
+{
+    const task& own = task_in(run);
+    if (own.plan_cells(run))
+        return;
+    if (own.has_one_method())
+        add_factor(results, run, people, kind, "method", split_by_method(run));
+    add_factor(results, run, people, kind, "session", split_by_session(people));
+}
+
+} // namespace tactor::study
