@@ -81,9 +81,10 @@ MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_
             + studies.run("same", "same-different", 16, methods=["park", "soft"])
             + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20]))
 
-# A task that measures, with three methods and three sessions.
+# A task that measures, with three methods, three sessions and two groups.
 THRICE = (FELT.partition("[[run]]")[0].replace("name", "sessions = 3\nname", 1) + studies.toml("method", "soft", level_dbfs=-30)
-          + studies.toml("method", "hard", level_dbfs=-10) + studies.run("there", "detect", 24, catch=0.5))
+          + studies.toml("method", "hard", level_dbfs=-10) + studies.run("there", "detect", 24, catch=0.5)
+          + '[[group]]\nname = "a"\n[[group]]\nname = "b"\n')
 
 TRACKS = studies.run("climb", "adaptive", 12, question="?", vary="length_mm", procedure="1up1down", range=[4, 8], standard=6)
 
@@ -181,8 +182,8 @@ class Schemas(ToolTest):
         for code in "123":
             self.ok("experiment", "measured.toml", "--participant", code, "-o", "measured", "--simulate", f"seed={code},jnd=4,sigma=0.2,dprime=1")
         self.write("thrice.toml", THRICE)
-        for code, session in itertools.product("12345", "123"):
-            self.ok("experiment", "thrice.toml", "--participant", code, "--session", session, "-o", "thrice", "--simulate", f"seed={code}")
+        for code, session in itertools.product("123456", "123"):
+            self.ok("experiment", "thrice.toml", "--participant", code, "--session", session, "--group", "a" if code < "4" else "b", "-o", "thrice", "--simulate", f"seed={code}")
         studies.grouped(self.dir / "compared")
         for study in ("missing", "three-by-three", "among"):
             studies.STUDIES[study](self.dir / study)

@@ -229,11 +229,15 @@ def check_method_errors(tool, folder):
 # Figures of three methods: R compares those of each participant.
 COMPARED = studies.measures("palm-3x3", studies.toml("method", "brush", algorithm="tactile-brush"),
                             studies.run("values", "constant", 210, question="Which was stronger?", vary="level_dbfs",
-                                        values=[-32, -28, -24, -20, -16], standard=-24))
+                                        values=[-32, -28, -24, -20, -16], standard=-24),
+                            studies.toml("group", "a"), studies.toml("group", "b"))
 COMPARE = """
 d <- read.table("figures.tsv", header = TRUE)
 for (figure in c("pse", "jnd")) {
   y <- as.matrix(d[grep(figure, names(d))])
+  g <- factor(d$group)
+  contrasts(g) <- contr.sum(2)
+  b <- summary(car::Anova(lm(y ~ g), idata = data.frame(m = factor(1:3)), idesign = ~m, type = 3), multivariate = FALSE)
   say <- function(...) cat(figure, ..., "\n")
   p <- c()
   for (pair in list(c(1, 2), c(1, 3), c(2, 3))) {
@@ -247,19 +251,25 @@ for (figure in c("pse", "jnd")) {
   u <- a$univariate.tests["m", ]
   e <- a$pval.adjustments["m", ]
   say(sprintf("%.17g", c(u["F value"], u["num Df"], u["den Df"], u["Pr(>F)"], e["GG eps"], e["Pr(>F[GG])"], e["HF eps"])))
+  for (effect in c("g", "m", "g:m")) {
+    u <- b$univariate.tests[effect, ]
+    say(sprintf("%.17g", c(u["F value"], u["num Df"], u["den Df"], u["Pr(>F)"])))
+  }
+  say(sprintf("%.17g", c(b$pval.adjustments["m", c("GG eps", "Pr(>F[GG])")], b$pval.adjustments["g:m", c("GG eps", "Pr(>F[GG])")])))
 }
 """
 
 
 def check_comparisons(tool, folder):
-    """Compares the figures of three methods with what R says of the participants' figures."""
+    """Compares the figures of three methods and two groups of unequal size with what R says of the participants' figures."""
     (folder / "compared.toml").write_text(COMPARED)
-    for code in ("01", "02", "03", "04", "05", "06", "07"):
-        run(tool, "experiment", folder / "compared.toml", "--participant", code, "-o", folder / "compared", "--simulate", "seed=1,jnd=4")
+    groups = {f"{i:02}": "a" if i < 5 else "b" for i in range(1, 8)}
+    for code, group in groups.items():
+        run(tool, "experiment", folder / "compared.toml", "--participant", code, "--group", group, "-o", folder / "compared", "--simulate", "seed=1,jnd=4")
     told = json.loads(run(tool, "analyze", folder / "compared", "--format", "json"))["runs"]["values"]
     people = [told["by"][f"{m}:east"]["psychometric"]["participants"] for m in ("park", "soft", "brush")]
-    rows = ["\t".join(f"{figure}{i}" for figure in ("pse", "jnd") for i in range(3))]
-    rows += ["\t".join(repr(own[code][figure]) for figure in ("pse", "jnd") for own in people) for code in people[0]]
+    rows = ["\t".join(["group", *(f"{figure}{i}" for figure in ("pse", "jnd") for i in range(3))])]
+    rows += ["\t".join([groups[code], *(repr(own[code][figure]) for figure in ("pse", "jnd") for own in people)]) for code in people[0]]
     (folder / "figures.tsv").write_text("\n".join(rows) + "\n")
     said = [(line.split()[0], list(map(float, line.split()[1:]))) for line in run("Rscript", "-e", COMPARE, cwd=folder).splitlines()]
     expected = []
@@ -268,6 +278,9 @@ def check_comparisons(tool, folder):
         expected += [(figure, [p["difference"], *p["ci"], p["t"], p["df"], p["p"], p["d_z"]]) for p in compared["pairs"]]
         expected.append((figure, [p["p_holm"] for p in compared["pairs"]]))
         expected.append((figure, [compared["anova"][k] for k in ("F", "df1", "df2", "p", "epsilon_gg", "p_gg", "epsilon_hf")]))
+        mixed = [compared["group_anova"][effect] for effect in ("group", "method", "group:method")]
+        expected += [(figure, [e[k] for k in ("F", "df1", "df2", "p")]) for e in mixed]
+        expected.append((figure, [e[k] for e in mixed[1:] for k in ("epsilon_gg", "p_gg")]))
     if len(said) != len(expected):
         return [f"R said {len(said)} lines, not {len(expected)}"]
     return [f"{figure}: {mine}, R: {r}" for (figure, mine), (_, r) in zip(expected, said)

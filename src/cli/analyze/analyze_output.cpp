@@ -258,6 +258,10 @@ public:
                             (v.pairs.size() > 1 ? ", Holm " + p_text(c.p_holm) : "")));
         if (v.anova && v.anova->f)
             fmt::print("{}", wrapped(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
+        if (v.groups && has_table(*v.groups)) {
+            fmt::print("    with the group as a factor between participants:\n");
+            (*this)(*v.groups);
+        }
     }
 
     void operator()(const study::worth_list& v) const

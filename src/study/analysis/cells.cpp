@@ -73,18 +73,6 @@ std::optional<effect> effect_if(bool varies, const effect& e)
     return varies ? std::optional(e) : std::nullopt;
 }
 
-// Compares the groups of participants by all their cells.
-mixed_anova compare_groups(const std::vector<cell_values>& all, const std::vector<std::string>& groups)
-{
-    const std::set<std::string> names(groups.begin(), groups.end());
-    if (names.size() < 2)
-        return {};
-    std::vector<std::size_t> numbers;
-    for (const std::string& g : groups)
-        numbers.push_back(static_cast<std::size_t>(std::distance(names.begin(), names.find(g))));
-    return analyse_groups(lay_out_cells(all, 0, all[0].size(), all[0][0].size()), numbers);
-}
-
 } // namespace
 
 std::optional<cell_values> compute_cells(const run_outline& run, const cell_plan& plan,
@@ -179,6 +167,17 @@ paired_list compare_in_pairs(const cell_means& means, double rounding)
     }
     list.pairs = compare_pairs(values, rounding);
     return list;
+}
+
+mixed_anova compare_groups(const std::vector<cell_values>& all, const std::vector<std::string>& groups)
+{
+    const std::set<std::string> names(groups.begin(), groups.end());
+    if (names.size() < 2)
+        return {};
+    std::vector<std::size_t> numbers;
+    for (const std::string& g : groups)
+        numbers.push_back(static_cast<std::size_t>(std::distance(names.begin(), names.find(g))));
+    return analyse_groups(lay_out_cells(all, 0, all[0].size(), all[0][0].size()), numbers);
 }
 
 void add_groups(std::vector<result>& results, const run_outline& run, const run_people& people,

@@ -55,6 +55,9 @@ tukey_list compare_by_tukey(const std::vector<cell_values>& all, std::size_t row
 /// Compares the motions of a row by paired t tests.
 paired_list compare_in_pairs(const cell_means& means, double rounding);
 
+/// Compares the groups of participants by all their cells. Effects are missing with one group.
+mixed_anova compare_groups(const std::vector<cell_values>& all, const std::vector<std::string>& groups);
+
 /// Adds the mixed analysis of variance of groups, if groups are compared. `all`: cells of `people`.
 void add_groups(std::vector<result>& results, const run_outline& run, const run_people& people,
                 const std::vector<cell_values>& all, bool methods);

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "study/analysis/cells.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
@@ -46,11 +47,37 @@ std::vector<level> split_by_session(const run_people& people)
     return all;
 }
 
-// Compares a figure between levels. `values`: a row of all levels for each participant.
-figure_comparison compare_levels(std::string factor, std::string figure, const std::vector<level>& levels,
-                                 const std::vector<std::vector<double>>& values)
+// The figure of the participants who have it at each level.
+struct level_values {
+    std::vector<std::vector<double>> rows = {}; // of all levels, by participant
+    std::vector<std::string> groups = {};       // by participant
+};
+
+// Compares the groups and the levels.
+effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v)
 {
-    figure_comparison c{std::move(factor), std::move(figure)};
+    std::vector<cell_values> cells;
+    for (const std::vector<double>& own : v.rows) {
+        cells.emplace_back();
+        for (const double value : own)
+            cells.back().push_back({value});
+    }
+    const mixed_anova m = compare_groups(cells, v.groups);
+    const auto if_several = [levels](const effect& e) {
+        return levels > 1 ? std::optional(e) : std::nullopt;
+    };
+    return {{{"group", m.group},
+             {factor, if_several(m.within.first)},
+             {"group:" + factor, if_several(m.by_group.first)}},
+            true};
+}
+
+// Compares a figure between levels.
+figure_comparison compare_levels(const std::string& factor, const std::string& figure,
+                                 const std::vector<level>& levels, const level_values& v, bool groups)
+{
+    const std::vector<std::vector<double>>& values = v.rows;
+    figure_comparison c{.factor = factor, .figure = figure};
     std::vector<std::vector<double>> by_level(levels.size());
     for (const std::vector<double>& own : values)
         for (std::size_t i = 0; i < levels.size(); ++i)
@@ -76,17 +103,19 @@ figure_comparison compare_levels(std::string factor, std::string figure, const s
         c.pairs[i].p_holm = p[i];
     if (levels.size() > 2)
         c.anova = repeated_measures({values, levels.size(), 1}).first;
+    if (groups)
+        c.groups = compare_with_groups(factor, levels.size(), v);
     return c;
 }
 
 void add_factor(std::vector<result>& results, const run_outline& run, const run_people& people, sigmoid kind,
                 const std::string& factor, const std::vector<level>& levels)
 {
-    if (levels.size() < 2)
+    if (levels.empty() || (levels.size() < 2 && !people.compares_groups))
         return;
     const task& own = task_in(run);
     const std::vector<named_value> figures = own.measure(run, {}, kind);
-    std::vector<std::vector<std::vector<double>>> values(figures.size()); // by figure and participant
+    std::vector<level_values> values(figures.size());
     for (const person_trials& p : people.all) {
         std::vector<std::vector<double>> rows(figures.size());
         for (const level& l : levels) {
@@ -98,14 +127,17 @@ void add_factor(std::vector<result>& results, const run_outline& run, const run_
                     rows[k].push_back(*found[k].value);
         }
         for (std::size_t k = 0; k < figures.size(); ++k)
-            if (rows[k].size() == levels.size())
-                values[k].push_back(std::move(rows[k]));
+            if (rows[k].size() == levels.size()) {
+                values[k].rows.push_back(std::move(rows[k]));
+                values[k].groups.push_back(p.group);
+            }
     }
     for (std::size_t k = 0; k < figures.size(); ++k) {
         const std::string& name = figures[k].name.front();
         results.push_back({{factor + "s", name},
-                           fmt::format("{} by {}, within participants", name, factor),
-                           compare_levels(factor, name, levels, values[k])});
+                           levels.size() > 1 ? fmt::format("{} by {}, within participants", name, factor)
+                                             : fmt::format("{} by group", name),
+                           compare_levels(factor, name, levels, values[k], people.compares_groups)});
     }
 }
 

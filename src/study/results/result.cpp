@@ -107,6 +107,8 @@ public:
 
     void operator()(const figure_comparison& v)
     {
+        if (v.groups && v.groups->effects.front().second && !v.groups->effects.front().second->ms_error)
+            add("groups, " + v.figure, "too few participants to compare them");
         for (const paired_comparison& c : v.pairs)
             if (c.test.n > 1 && !c.test.t)
                 add(fmt::format("{}, {} - {}", v.figure, v.levels[c.a], v.levels[c.b]),
@@ -217,8 +219,14 @@ std::vector<result_outline> outline_measured(const std::vector<result_outline>& 
         all.push_back({{"by", "*", row.at.front()}, row.value, row.or_null, true});
     }
     all.push_back({{"group_anova"}, outline_effects({"group"}), false, true});
-    for (const char* factor : {"methods", "sessions"})
-        all.push_back({{factor, "*"}, figure_comparison{}, false, true});
+    for (const char* factor : {"method", "session"})
+        all.push_back(
+            {{fmt::format("{}s", factor), "*"},
+             figure_comparison{.factor = factor,
+                               .figure = {},
+                               .groups = outline_effects({"group", factor, fmt::format("group:{}", factor)})},
+             false,
+             true});
     return all;
 }
 

@@ -97,6 +97,8 @@ struct figure_comparison {
     std::vector<t_test> means = {};            ///< by level, not tested
     std::vector<paired_comparison> pairs = {}; ///< by level, tests with d_z
     std::optional<effect> anova = {};          ///< with three levels or more
+    /// Effects of the groups, the factor and both; missing if groups are not compared.
+    std::optional<effect_list> groups = {};
 };
 
 /// Worths from the trials of all participants.

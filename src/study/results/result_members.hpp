@@ -142,13 +142,17 @@ void effect_members(Io& io, const effect& e)
 }
 
 template <class Io>
+void effects_members(Io& io, const effect_list& v)
+{
+    for (const auto& [factor, e] : v.effects)
+        io.object_or_null(factor.c_str(), e, {"an effect; null if a factor has one level"},
+                          [](auto& one, const effect& its) { effect_members(one, its); });
+}
+
+template <class Io>
 void row_member(Io& io, const char* name, const effect_list& v)
 {
-    io.object(name, {"analysis of variance"}, [&v](auto& inner) {
-        for (const auto& [factor, e] : v.effects)
-            inner.object_or_null(factor.c_str(), e, {"an effect; null if a factor has one level"},
-                                 [](auto& one, const effect& its) { effect_members(one, its); });
-    });
+    io.object(name, {"analysis of variance"}, [&v](auto& inner) { effects_members(inner, v); });
 }
 
 template <class Io>
@@ -195,8 +199,11 @@ void row_member(Io& io, const char* name, const figure_comparison& v)
                        one.or_null("d_z", c.test.d, {"mean / sd of the differences"});
                        one.or_null("d_z_ci", list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
                    });
-        inner.object_or_null("anova", v.anova, {"effect of the levels; null with two"},
+        inner.object_or_null("anova", v.anova, {"effect of the levels; null with two or one"},
                              [](auto& one, const effect& e) { effect_members(one, e); });
+        inner.object_or_null("group_anova", v.groups,
+                             {"effects of groups, levels and both; null if groups are not compared"},
+                             [&v](auto& one, const effect_list&) { effects_members(one, *v.groups); });
     });
 }
 
