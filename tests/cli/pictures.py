@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Readers of the tool's pictures: SVG by its groups and their scales, PNG pixel by pixel."""
+import contextlib
+import re
 import struct
 import xml.etree.ElementTree as ET
 import zlib
@@ -108,3 +110,13 @@ class PlotTest(ToolTest):
 
     def near(self, a, b, tolerance=0.002):
         self.assertLessEqual(abs(a - b), tolerance, f"{a} is not {b}")
+
+
+def pdf_size(data):
+    """Returns width and height of a PDF's page, in points. Newer versions of cairo compress the objects."""
+    streams = []
+    for stream in re.findall(rb"stream\r?\n(.*?)endstream", data, re.S):
+        with contextlib.suppress(zlib.error):
+            streams.append(zlib.decompressobj().decompress(stream))
+    box = re.search(rb"/MediaBox\s*\[\s*0 0 ([0-9.]+) ([0-9.]+)\s*\]", b"\n".join([data, *streams]))
+    return float(box[1]), float(box[2])

@@ -10,7 +10,7 @@ import shutil
 import subprocess
 
 from harness import ROOT, SANITIZED, main
-from pictures import BRUSH, NS, PlotTest, Png, Svg, box, number, overlap
+from pictures import BRUSH, NS, PlotTest, Png, Svg, box, number, overlap, pdf_size
 import studies
 
 SEVERAL = ROOT / "examples/strokes/several.toml"
@@ -160,6 +160,9 @@ class Files(PlotTest):
         svg = Svg(self.dir / "a.svg")
         self.assertEqual((svg.root.get("width"), svg.root.find(NS + "title").text), ("120mm", "park2016-2 on palm-3x3"))
         self.assertIn("21 bursts", svg.root.find(NS + "desc").text)
+        points = [120 / 25.4 * 72, float(svg.root.get("height").removesuffix("mm")) / 25.4 * 72]
+        for size, expected in zip(pdf_size((self.dir / "a.pdf").read_bytes()), points, strict=True):
+            self.assertAlmostEqual(size, expected, delta=1)
 
     def test_no_text_leaves_the_page_or_lies_on_another(self):
         for job in (["park2016-1"], ["park2016-3"], ["park2016-1", *BRUSH], ["park2016-3", "--algorithm", "continuous"],
