@@ -341,6 +341,23 @@ class Tasks(ExperimentTest):
         told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=["leaves the array"]).stderr
         self.assertIn(f"tasks.toml:{1 + text.splitlines().index('[[motion]]')}:", told)
 
+    def test_a_run_of_two_intervals_has_values_or_a_procedure(self):
+        head = '[experiment]\nname = "i"\narray = "palm-3x3"\nlevel = { dbfs = -18 }\n' + toml("motion", "across", path="M 2 20 H 38", duration=1) + toml("method", "a")
+        own = dict(task="interval", vary="level_dbfs", trials=8)
+        for keys, line, says in ((dict(own), "vary", "either the run has values, or a procedure chooses them (give one of the two)"),
+                                 (dict(own, values=[-30, -20], procedure="quest", range=[-30, -20]), "values", "either the run has values"),
+                                 (dict(own, values=[-30, -20], range=[-30, -20]), "range", "range does not apply to a run without a procedure"),
+                                 (dict(own, procedure="1up1down", range=[-30, -20]), "procedure", "which guesses reach (use 1up2down, 1up3down or quest)"),
+                                 (dict(own, values=[-30, -20], standard=-20), "standard", 'standard does not apply to runs with task "interval"')):
+            text = head + toml("run", "felt", **keys)
+            self.write("tasks.toml", text)
+            told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says]).stderr
+            self.assertIn(f"tasks.toml:{len(text.splitlines()) - [x.split(' =')[0] for x in text.splitlines()[::-1]].index(line)}:", told)
+        # Intervals of a trial are equally long, even where a value changes how long its stimulus is.
+        self.write("tasks.toml", head + toml("run", "felt", task="interval", vary="speed_mm_s", values=[20, 60], trials_per_value=2))
+        trials = json.loads(self.ok("experiment", "tasks.toml", "--dry-run", "--format", "json").stdout)
+        self.assertEqual({t["value"]: round(t["duration_s"], 3) for t in trials["runs"][0]["trials"]}, {20: 4.64, 60: 2.26})
+
     def test_the_dry_run_shows_values_and_counts_trials_by_value(self):
         self.write("tasks.toml", TASKS)
         told = {r["name"]: r for r in json.loads(self.ok("experiment", "tasks.toml", "--dry-run", "--format", "json").stdout)["runs"]}

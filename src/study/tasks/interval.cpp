@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include "study/analysis/measures.hpp"
 #include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
@@ -27,6 +29,16 @@ std::vector<std::string_view> list_keys()
     return all;
 }
 
+// Reads the values of a run without a procedure. Refuses keys that only a procedure has.
+void read_values_alone(const detail::toml_table& t, run_outline& o, const detail::bounds& b)
+{
+    for (const std::string_view key : procedure_keys)
+        if (t.has(key))
+            t.fail(key, fmt::format("{} does not apply to a run without a procedure", key),
+                   "leave it out, or add procedure in place of values");
+    read_values(t, o, b);
+}
+
 class interval_choice final : public task {
 public:
     interval_choice()
@@ -45,12 +57,13 @@ public:
         r.has_silences = true;
         refuse_method_name(t, r.outline, catch_name);
         const detail::bounds b = read_vary(t, r.outline);
-        if (!t.has("procedure"))
-            read_values(t, r.outline, b);
-        else if (t.has("values"))
-            t.fail("values", "the procedure chooses the values", "leave out one of the two");
-        else
+        if (t.has("procedure") == t.has("values"))
+            t.fail(t.has("values") ? "values" : "vary",
+                   "either the run has values, or a procedure chooses them", "give one of the two");
+        if (t.has("procedure"))
             read_procedure(t, r, b, false);
+        else
+            read_values_alone(t, r.outline, b);
         read_trials(t, r.outline);
     }
 
