@@ -410,40 +410,41 @@ std::vector<trial> hold_signals(second_observer& who, const task* task, double d
     return all;
 }
 
-// Returns a participant's trials of two intervals. The observer never guesses: it feels noise in both, and
-// d' grows with the square of the amplitude. At 0 dB it is right in 75 % of the trials.
+// Answers a trial of two intervals. The observer never guesses: it feels noise in both, and d' grows with the
+// square of the amplitude. At 0 dB it is right in 75 % of the trials. `part`: as in presses_second().
+trial hold_intervals(second_observer& who, double db, double part)
+{
+    constexpr double at_75_percent = 0.6744897501960817;
+    const double felt = at_75_percent * std::pow(10.0, db / 10.0); // d' over the root of 2
+    const bool second = who.unit() < 0.5;
+    return {.value = db, .positive = who.presses_second(second ? felt : -felt, part, 0.0) == second};
+}
+
+// Returns a participant's trials at seven levels.
 std::vector<trial> hold_intervals(second_observer& who)
 {
     constexpr std::size_t trials = 140;
-    constexpr double at_75_percent = 0.6744897501960817;
     std::vector<trial> all;
-    for (std::size_t k = 0; k < trials; ++k) {
-        const double db = std::array{-9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0}[k % 7];
-        const double felt = at_75_percent * std::pow(10.0, db / 10.0); // d' over the root of 2
-        const bool second = who.unit() < 0.5;
-        const bool pressed =
-            who.presses_second(second ? felt : -felt, static_cast<double>(k) / (trials - 1), 0.0);
-        all.push_back({.value = db, .positive = pressed == second});
-    }
+    for (std::size_t k = 0; k < trials; ++k)
+        all.push_back(hold_intervals(who, std::array{-9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0}[k % 7],
+                                     static_cast<double>(k) / (trials - 1)));
     return all;
 }
 
 // Runs a track of an adaptive run of two intervals; returns the estimated threshold, dB.
 std::optional<double> track_intervals(second_observer& who, unsigned down)
 {
+    constexpr int trials = 80;
     run_definition r = make_adaptive(down, 1);
     r.adaptive.two_sided = false;
     for (double& v : r.outline.values)
         v -= pse; // dB about the level of 75 %
     adaptive_tracks tracks(r, {.kind = sigmoid::normal, .guess = 0.5});
     std::vector<trial> all;
-    for (int k = 0; k < 80; ++k) {
-        const double db = r.outline.values[tracks.next(1)];
-        const double felt = 0.6744897501960817 * std::pow(10.0, db / 10.0);
-        const bool second = who.unit() < 0.5;
-        const bool right = who.presses_second(second ? felt : -felt, k / 79.0, 0.0) == second;
-        tracks.answer(1, right);
-        all.push_back({.value = db, .positive = right});
+    for (int k = 0; k < trials; ++k) {
+        all.push_back(
+            hold_intervals(who, r.outline.values[tracks.next(1)], static_cast<double>(k) / (trials - 1)));
+        tracks.answer(1, all.back().positive);
     }
     const auto fit = fit_answers(all, {.kind = sigmoid::normal, .guess = 0.5}, "").fit;
     return fit ? std::optional(fit->parameters.threshold) : std::nullopt;

@@ -53,6 +53,13 @@ std::string interval_text(const std::optional<study::interval>& i, const study::
     return i ? interval_text(study::cut_to(*i, possible)) : "-";
 }
 
+// Returns mean, standard error and 95 % interval for a column.
+std::string mean_text(const study::t_test& t, int decimals)
+{
+    return fmt::format("{:>8} (se {}), 95 % {}", value_text(t.mean, decimals), value_text(t.se, decimals),
+                       interval_text(t.ci, decimals));
+}
+
 // Needs a test that has a t.
 std::string t_text(const study::t_test& t)
 {
@@ -248,9 +255,7 @@ public:
         const int decimals = count_decimals(run_);
         const std::size_t w = widest(v.levels);
         for (std::size_t i = 0; i < v.levels.size(); ++i)
-            say(stdout, "    {:<{}} {:>8} (se {}), 95 % {}\n", v.levels[i], w,
-                value_text(v.means[i].mean, decimals), value_text(v.means[i].se, decimals),
-                interval_text(v.means[i].ci, decimals));
+            say(stdout, "    {:<{}} {}\n", v.levels[i], w, mean_text(v.means[i], decimals));
         for (const study::paired_comparison& c : v.pairs)
             say(stdout, "{}",
                 wrapped(fmt::format("    {} - {}: ", v.levels[c.a], v.levels[c.b]),
@@ -314,8 +319,7 @@ private:
             const std::string name =
                 f.against ? fmt::format("{} against {}", figure_name(f), *f.against) : figure_name(f);
             const std::string test = test_text(f, std::exchange(ratio, {}));
-            say(stdout, "    {:<20} {:>8} (se {}), 95 % {}{}{}\n", name, value_text(f.test.mean, decimals),
-                value_text(f.test.se, decimals), interval_text(f.test.ci, decimals), test.empty() ? "" : ", ",
+            say(stdout, "    {:<20} {}{}{}\n", name, mean_text(f.test, decimals), test.empty() ? "" : ", ",
                 test);
         }
     }

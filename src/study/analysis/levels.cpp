@@ -83,24 +83,16 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
         for (std::size_t i = 0; i < levels.size(); ++i)
             by_level[i].push_back(own[i]);
     const auto within = within_intervals(values);
-    std::vector<std::optional<double>> p;
-    for (std::size_t a = 0; a < levels.size(); ++a) {
-        const t_test t = test_mean(by_level[a], 0.0);
-        c.levels.push_back(levels[a].name);
-        c.means.push_back({.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci});
-        if (a < within.size())
-            c.means.back().ci_within = within[a];
-        for (std::size_t b = a + 1; b < levels.size(); ++b) {
-            std::vector<double> differences;
-            for (const std::vector<double>& own : values)
-                differences.push_back(own[a] - own[b]);
-            c.pairs.push_back({a, b, test_mean(differences, 0.0)});
-            p.push_back(c.pairs.back().test.p);
-        }
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const t_test t = test_mean(by_level[i], 0.0);
+        c.levels.push_back(levels[i].name);
+        c.means.push_back({.n = t.n,
+                           .mean = t.mean,
+                           .se = t.se,
+                           .ci = t.ci,
+                           .ci_within = values.empty() ? std::nullopt : within[i]});
     }
-    p = holm(p);
-    for (std::size_t i = 0; i < p.size(); ++i)
-        c.pairs[i].p_holm = p[i];
+    c.pairs = compare_pairs(by_level, 0.0, test_mean);
     if (levels.size() > 2)
         c.anova = repeated_measures({values, levels.size(), 1}).first;
     if (groups)

@@ -133,7 +133,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
         };
         if (r.catch_share > 0.0)
             v.silent = silence(methods[i]);
-        if (r.has_silences)
+        if (task_in(o).about().has_silences)
             for (const std::size_t of : v.values)
                 v.silences.push_back(silence(more[of - methods.size()]));
     }
@@ -165,9 +165,9 @@ void set_value(planned_trial& t, const run_definition& r, std::size_t place)
 {
     const auto set = [&](std::size_t& played) {
         for (const auto& [method, v] : r.variants)
-            for (const std::vector<std::size_t>& all : {v.values, v.silences})
-                if (std::ranges::count(all, played) != 0) {
-                    played = all[place];
+            for (const std::vector<std::size_t>* all : {&v.values, &v.silences})
+                if (std::ranges::count(*all, played) != 0) {
+                    played = (*all)[place];
                     return;
                 }
     };

@@ -97,22 +97,13 @@ public:
             add(v.method.empty() ? "motion" : v.method, "the error has no variance, so no Tukey");
     }
 
-    void operator()(const paired_list& v)
-    {
-        for (const paired_comparison& c : v.pairs)
-            if (c.test.n > 1 && !c.test.t)
-                add(fmt::format("{}, {} - {}", v.method, v.motions[c.a], v.motions[c.b]),
-                    "no variance over participants, so no t test");
-    }
+    void operator()(const paired_list& v) { explain_pairs(v.method, v.motions, v.pairs); }
 
     void operator()(const figure_comparison& v)
     {
         if (v.groups && v.groups->effects.front().second && !v.groups->effects.front().second->ms_error)
             add("groups, " + v.figure, "too few participants to compare them");
-        for (const paired_comparison& c : v.pairs)
-            if (c.test.n > 1 && !c.test.t)
-                add(fmt::format("{}, {} - {}", v.figure, v.levels[c.a], v.levels[c.b]),
-                    "no variance over participants, so no t test");
+        explain_pairs(v.figure, v.levels, v.pairs);
     }
 
     void operator()(const psychometric_functions& v) { note(v); }
@@ -142,6 +133,15 @@ private:
             add(figure, "the effect is too large for an interval");
         if (!t.p_signflip)
             add(figure, "too many participants for the exact test");
+    }
+
+    void explain_pairs(std::string_view of, const std::vector<std::string>& levels,
+                       const std::vector<paired_comparison>& pairs)
+    {
+        for (const paired_comparison& c : pairs)
+            if (c.test.n > 1 && !c.test.t)
+                add(fmt::format("{}, {} - {}", of, levels[c.a], levels[c.b]),
+                    "no variance over participants, so no t test");
     }
 
     // Notes the participants who lack a figure, so that one text covers all conditions.

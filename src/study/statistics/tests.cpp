@@ -609,7 +609,8 @@ std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, s
     return all;
 }
 
-std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding)
+std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding,
+                                             t_test (*test)(std::span<const double>, double, double))
 {
     std::vector<paired_comparison> all;
     std::vector<std::optional<double>> p;
@@ -618,7 +619,7 @@ std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<doubl
             std::vector<double> differences;
             for (std::size_t i = 0; i < levels[a].size(); ++i)
                 differences.push_back(levels[a][i] - levels[b][i]);
-            all.push_back({a, b, quick_test_mean(differences, 0.0, rounding)});
+            all.push_back({a, b, test(differences, 0.0, rounding)});
             p.push_back(all.back().test.p);
         }
     const std::vector<std::optional<double>> adjusted = holm(p);

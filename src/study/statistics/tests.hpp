@@ -174,12 +174,14 @@ std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, s
 struct paired_comparison {
     std::size_t a;
     std::size_t b;                     ///< after a
-    t_test test = {};                  ///< of a less b, against 0: quick_test_mean()
+    t_test test = {};                  ///< of a less b, against 0
     std::optional<double> p_holm = {}; ///< adjusted for all pairs
 };
 
 /// Compares all pairs of levels, in order. Returns nothing without participants. `levels`: the participants'
-/// values at each level; `rounding` as in varies().
-std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding);
+/// values at each level; `rounding` as in varies(); `test`: test_mean() or quick_test_mean().
+std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding,
+                                             t_test (*test)(std::span<const double>, double against,
+                                                            double rounding) = quick_test_mean);
 
 } // namespace tactor::study

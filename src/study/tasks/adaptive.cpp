@@ -109,8 +109,7 @@ public:
                                "One stimulus to judge, or a standard and a comparison to choose from; the "
                                "previous answers choose the values",
                            .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
-                           .keys = {"choices", "vary", "standard", "procedure", "start", "steps", "range",
-                                    "tracks", "slope", "lapse"},
+                           .keys = add_procedure_keys({"choices", "vary", "standard"}),
                            .column = "track"})
     {
     }
@@ -123,15 +122,7 @@ public:
 
     std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
-        std::vector<planned_trial> cells;
-        unsigned track = 0;
-        for (const std::size_t motion : r.motions)
-            for (const std::size_t method : r.methods) {
-                const method_variants& v = r.variants.at(method);
-                for (const std::size_t start : r.adaptive.start)
-                    add_comparison(cells, {motion, v.values[start], {}, 0.0, ++track}, v, false);
-            }
-        return cells;
+        return list_track_cells(r);
     }
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {
@@ -237,6 +228,23 @@ std::string describe_adaptive(const run_definition& r, std::string_view& section
                               "sizes of {}, the next one after every second reversal",
                               list_numbers(start), counted(a.down, positive), led_to, positive,
                               a.is_mirrored() ? mirrored : "", list_numbers(steps));
+}
+
+std::vector<std::string_view> add_procedure_keys(std::vector<std::string_view> keys)
+{
+    keys.insert(keys.end(), procedure_keys.begin(), procedure_keys.end());
+    return keys;
+}
+
+std::vector<planned_trial> list_track_cells(const run_definition& r)
+{
+    std::vector<planned_trial> cells;
+    unsigned track = 0;
+    for (const std::size_t motion : r.motions)
+        for (const std::size_t method : r.methods)
+            for (const std::size_t start : r.adaptive.start)
+                add_comparison(cells, motion, r.variants.at(method), start, false, ++track);
+    return cells;
 }
 
 std::string describe_range(const task& of, const run_outline& o)

@@ -55,6 +55,12 @@ void read_procedure(const detail::toml_table& t, run_definition& r, const detail
 inline constexpr std::array<std::string_view, 7> procedure_keys{"procedure", "start", "steps", "range",
                                                                 "tracks",    "slope", "lapse"};
 
+/// Returns these keys after `keys`.
+std::vector<std::string_view> add_procedure_keys(std::vector<std::string_view> keys);
+
+/// Lists the trials of each motion and method at the first value of each track.
+std::vector<planned_trial> list_track_cells(const run_definition& r);
+
 /// Describes a trial and the range of its values in the methods section, as task::describe() does.
 std::string describe_range(const task& of, const run_outline& o);
 /// Describes the procedure in the methods section, as task::describe_procedure() does.

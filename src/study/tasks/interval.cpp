@@ -22,13 +22,6 @@ bool is_right(const run_outline&, std::string_view method_1, unsigned response)
     return (response == 2) == (method_1 == catch_name);
 }
 
-std::vector<std::string_view> list_keys()
-{
-    std::vector<std::string_view> all{"vary", "values", "trials_per_value"};
-    all.insert(all.end(), procedure_keys.begin(), procedure_keys.end());
-    return all;
-}
-
 // Reads the values of a run without a procedure. Refuses keys that only a procedure has.
 void read_values_alone(const detail::toml_table& t, run_outline& o, const detail::bounds& b)
 {
@@ -47,14 +40,14 @@ public:
                 .response = "Interval in which the participant felt the stimulus: 1 or 2",
                 .questions = {"In which interval did you feel it?", "In which interval did you feel it?",
                               "In which interval did you feel it?"},
-                .keys = list_keys(),
-                .column = "track"})
+                .keys = add_procedure_keys({"vary", "values", "trials_per_value"}),
+                .column = "track",
+                .has_silences = true})
     {
     }
 
     void read_outline(const detail::toml_table& t, run_definition& r) const override
     {
-        r.has_silences = true;
         refuse_method_name(t, r.outline, catch_name);
         const detail::bounds b = read_vary(t, r.outline);
         if (t.has("procedure") == t.has("values"))
@@ -69,21 +62,7 @@ public:
 
     std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
-        std::vector<planned_trial> cells;
-        unsigned track = 0;
-        for (const std::size_t motion : r.motions)
-            for (const std::size_t method : r.methods) {
-                const method_variants& v = r.variants.at(method);
-                const auto add = [&](std::size_t place, unsigned of_track) {
-                    cells.push_back({motion, v.values[place], v.silences[place], 0.0, of_track});
-                    cells.push_back({motion, v.silences[place], v.values[place], 0.0, of_track});
-                };
-                for (const std::size_t start : r.adaptive.start)
-                    add(start, ++track);
-                for (std::size_t i = 0; i < v.values.size() && !r.outline.is_adaptive; ++i)
-                    add(i, 0);
-            }
-        return cells;
+        return r.outline.is_adaptive ? list_track_cells(r) : list_value_cells(r, false);
     }
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {

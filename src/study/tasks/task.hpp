@@ -101,6 +101,7 @@ public:
         std::array<std::string_view, 3> questions = {};
         std::vector<std::string_view> keys = {}; ///< keys of [[run]] that only some tasks have
         std::string_view column = {};            ///< column that only its tables have; empty if none
+        bool has_silences = false;               ///< true if one of a trial's two stimuli is silence
     };
 
     virtual ~task() = default;

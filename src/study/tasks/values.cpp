@@ -101,21 +101,21 @@ void need_words(const toml_table& t, const run_outline& o)
                "add choices = [\"one\", \"two\"], or standard");
 }
 
-void add_comparison(std::vector<planned_trial>& cells, planned_trial t, const method_variants& v,
-                    bool standard_first)
+void add_comparison(std::vector<planned_trial>& cells, std::size_t motion, const method_variants& v,
+                    std::size_t place, bool other_first, unsigned track)
 {
-    if (v.standard && !standard_first) {
-        t.method_2 = v.standard;
+    planned_trial t{motion, v.values[place], v.standard, 0.0, track};
+    if (!v.silences.empty())
+        t.method_2 = v.silences[place];
+    if (!t.method_2 || !other_first)
+        cells.push_back(t);
+    if (t.method_2) {
+        std::swap(t.method_1, *t.method_2);
         cells.push_back(t);
     }
-    if (v.standard) {
-        t.method_2 = t.method_1;
-        t.method_1 = *v.standard;
-    }
-    cells.push_back(t);
 }
 
-std::vector<planned_trial> list_value_cells(const run_definition& r, bool standard_first)
+std::vector<planned_trial> list_value_cells(const run_definition& r, bool other_first)
 {
     std::vector<planned_trial> cells;
     for (const std::size_t motion : r.motions)
@@ -123,8 +123,8 @@ std::vector<planned_trial> list_value_cells(const run_definition& r, bool standa
             const method_variants& v = r.variants.at(method);
             if (v.values.empty())
                 cells.push_back({motion, method});
-            for (const std::size_t value : v.values)
-                add_comparison(cells, {motion, value}, v, standard_first);
+            for (std::size_t place = 0; place < v.values.size(); ++place)
+                add_comparison(cells, motion, v, place, other_first);
         }
     return cells;
 }

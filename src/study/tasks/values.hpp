@@ -36,12 +36,12 @@ void refuse_method_name(const detail::toml_table& t, const run_outline& o, std::
 /// Throws if a run has neither words for both answers nor a standard.
 void need_words(const detail::toml_table& t, const run_outline& o);
 
-/// Lists a trial for each motion, method and value. With a standard lists both orders, or only the standard
-/// first.
-std::vector<planned_trial> list_value_cells(const run_definition& r, bool standard_first);
-/// Adds a trial with the comparison alone, or two trials with the standard before and after it.
-void add_comparison(std::vector<planned_trial>& cells, planned_trial t, const method_variants& v,
-                    bool standard_first);
+/// Lists a trial for each motion, method and value. With a standard or silence as the other stimulus lists
+/// both orders, or only the other one first.
+std::vector<planned_trial> list_value_cells(const run_definition& r, bool other_first);
+/// Adds a trial with the value at `place` alone, or two trials with the other stimulus before and after it.
+void add_comparison(std::vector<planned_trial>& cells, std::size_t motion, const method_variants& v,
+                    std::size_t place, bool other_first, unsigned track = 0);
 
 // Read rows of tables. All throw error (bad_input) with file and line.
 
