@@ -272,6 +272,27 @@ class ParticipantPage(BrowserTest, PageTest):
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([r["response"] for r in self.rows("01", "what") if r["void"] == "false"], ["both", "both"])
 
+    def test_two_intervals_are_marked_alike_and_answered_by_keys(self):
+        self.write("felt.toml", BARE + toml("run", "felt", task="interval", vary="level_dbfs", values=[-40, -20], trials=4, motions=["east"], methods=["Birch"]))
+        s = self.start(definition="felt.toml")
+        p = self.open(s)
+        ask = self.click(p, "introduce", 1, self.walk(p))
+        for answer in "1221":
+            for playing in (1, 2):
+                p.until(f"document.querySelector('#stimuli .on')?.textContent === '{playing}'")
+            ask = self.asked(p, "question", ask)
+            self.assertEqual(p.value("[document.querySelector('#question').textContent, ...[...document.querySelectorAll('#answers button')].map(b => b.textContent)]"),
+                             ["In which interval did you feel it?", "1", "2"])
+            if answer == "1":
+                self.picture(p, "two-intervals")
+            ask = self.key(p, "question", answer, ask - 1)
+        self.assertEqual(s.end(), 0, s.said)
+        rows = self.rows("01", "felt")
+        self.assertEqual([r["response"] for r in rows], list("1221"))
+        self.assertEqual({tuple(sorted((r["method_1"], r["method_2"]))) for r in rows}, {("Birch", "none")})
+        right = sum((r["response"] == "2") == (r["method_1"] == "none") for r in rows)
+        self.assertEqual([r["positive"] for r in self.trials()[1]].count("1"), right)
+
     def test_scales_with_words_at_their_ends_and_names(self):
         self.write("many.toml", BARE + toml("run", "marks", task="rate", attribute="similarity", trials=1, scale=9, labels=["very uneven", "very even"])
                    + IDENTIFY.replace("trials = 2", "trials = 1"))

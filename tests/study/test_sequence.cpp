@@ -489,6 +489,35 @@ TEST_CASE("each stimulus of a pair sounds as its stroke with the options of its 
     CHECK(samples(pair) == both);
 }
 
+TEST_CASE("of two intervals one sounds, and the other is silence that is as long")
+{
+    const experiment_definition d =
+        read_definition("[experiment]\nname = \"x\"\ngap_s = 0.01\n"
+                        "[[motion]]\nname = \"m\"\npath = \"M0 20H40\"\n[[method]]\nname = \"a\"\n"
+                        "[[run]]\nname = \"r\"\ntask = \"interval\"\nvary = \"speed_mm_s\"\n"
+                        "values = [40, 80]\ntrials_per_value = 2\n",
+                        "x.toml", {});
+    const stimulus_set all(d, felt_array(), {});
+    std::set<std::pair<double, bool>> played; // value, and whether the silence comes first
+    for (const planned_trial& t : make_run(d, 0, "01", 1).trials) {
+        const std::uint64_t length = all.at(t.motion, t.method_1).frames;
+        CHECK(all.at(t.motion, *t.method_2).frames == length);
+        const score s = all.make_score(t);
+        const std::vector<std::byte> bytes = samples(s);
+        const std::size_t frame = bytes.size() / s.frames();
+        const auto sounds = [&](std::uint64_t from) {
+            const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(from * frame);
+            return std::any_of(begin, begin + static_cast<std::ptrdiff_t>(length * frame),
+                               [](std::byte b) { return b != std::byte{0}; });
+        };
+        const bool silence_first = d.methods[t.method_1].name == "none";
+        CHECK(sounds(0) == !silence_first);
+        CHECK(sounds(all.second(t)) == silence_first);
+        played.emplace(*find_value(d, t), silence_first);
+    }
+    CHECK(played.size() == 4);
+}
+
 TEST_CASE("a stimulus is compared with its motion in the time of the stroke that is played")
 {
     const experiment_definition d = with_methods("path = \"M0 20H40\"\nduration = 0.7\n",
