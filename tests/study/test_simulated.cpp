@@ -171,6 +171,9 @@ TEST_CASE("impossible simulations are refused")
     has(refusal("sigma=-1"), "sigma is \"-1\"");
     has(refusal("sigma=nan"), "sigma is \"nan\"");
     has(refusal("noise=1"), "\"noise\" is unknown");
+    for (const char* seed : {"1e3", "1.0", "-1", "0.5", "9007199254740992"})
+        has(refusal(("seed=" + std::string(seed)).c_str()),
+            "\", not a whole number from 0 to 9007199254740991");
     has(refusal("seed=1,seed=2"), "occurs twice");
     has(refusal("seed=1,"), "\"\" has no =");
     CHECK(parse_simulation("sigma=2") == simulation{1, 2.0, 0.0});

@@ -2,7 +2,7 @@
 #include "study/experiment/observer_text.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,7 +36,8 @@ void read_observer(std::string_view text, std::span<const observer_key> keys, st
         }
         const observer_key& key = *seen.back();
         const auto v = detail::number_in<double>(item);
-        if (!v || !(*v >= key.low && *v <= key.high) || (key.is_whole && *v != std::floor(*v)))
+        const bool has_digits = !key.is_whole || detail::number_in<std::uint64_t>(item);
+        if (!v || !has_digits || !(*v >= key.low && *v <= key.high))
             refuse(fmt::format("{} is \"{}\", not a {}number from {} to {}", key.name, item,
                                key.is_whole ? "whole " : "", key.low, key.high));
         key.set(*v);

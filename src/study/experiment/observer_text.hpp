@@ -16,8 +16,8 @@ struct observer_key {
     double low;  ///< least value
     double high; ///< greatest value
     std::function<void(double)> set;
-    bool is_whole = false;
-    bool is_list = false; ///< further values may follow it, without the key
+    bool is_whole = false; ///< true if only digits are allowed
+    bool is_list = false;  ///< further values may follow it, without the key
 };
 
 /// Reads a text, and calls `set` for each value in it. `example`: a text for the hint. \throws error
