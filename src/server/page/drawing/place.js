@@ -5,12 +5,13 @@ import {by_id, make, on_click, listen} from "../../../net/page/dom.js";
 import {plain_name} from "../words.js";
 import {choice, button} from "../settings/controls.js";
 import {array, view, to_px, handle_px, look_at_all, outdated, ARROWS} from "./view.js";
-import {PARTS, body, part, mirror, outline_mm, usual_place, is_in_file, set_body, up_word, place_name} from "./body.js";
+import {PARTS, mirror, usual_place} from "../../../net/page/body_parts.js";
+import {body, part, outline_mm, is_in_file, set_body, up_word, place_name} from "./body.js";
 
 const TURN_STEP = 15, REACH_OF_HANDLE_PX = 26;
 const skin = by_id("field"), title = make("h2"), length = make("output"), angle = make("span"), lines = make("code", {id: "array-lines"});
 const part_picture = (p, ...more) => make("svg", {class: "outline", viewBox: p.box.join(" ")},
-  make("path", {d: p.outline, transform: `scale(${mirror(p)} 1)`}), ...more);
+  make("path", {d: p.outline, transform: `scale(${mirror(p, body.right)} 1)`}), ...more);
 const set_and_fit = values => { set_body(values); look_at_all(); };
 const turn_to = v => set_body({turn: 180 - (540 - Math.round(v)) % 360}); // -179 to 180
 const tiles = choice({label: "Part of the body", shape: "parts", visible_label: false, get: () => body.part,
