@@ -96,7 +96,7 @@ struct curve {
     std::string name = {};       ///< empty: not in the legend
     std::size_t colour = 0;      ///< see stroke_colour()
     bool thick = false;          ///< a mean; else a line among others
-    std::vector<spot> line = {}; ///< in units of the axes, by x
+    std::vector<spot> line = {}; ///< in units of the axes
     std::vector<weighted_dot> dots = {};
 };
 
@@ -115,6 +115,7 @@ struct curve_panel {
     curve_axis y = {};
     std::vector<curve> curves = {}; ///< drawn in order: the first one is lowest
     std::string key = {};           ///< next to the title, such as what the largest dot means
+    bool to_scale = false;          ///< true: both axes have the same unit, and y points down, as in arrays
 };
 
 struct panel_figure {

@@ -231,6 +231,20 @@ void draw_curves(canvas& c, const curve_panel& p, const scale& x, const scale& y
     }
 }
 
+// Makes the axes of a panel. A panel to scale widens one of its ranges around the middle.
+std::pair<scale, scale> make_scales(const curve_panel& p, box inside)
+{
+    if (!p.to_scale)
+        return {{p.x.from, p.x.to, inside.x, inside.right()}, {p.y.from, p.y.to, inside.bottom(), inside.y}};
+    const double per_pt = std::max((p.x.to - p.x.from) / inside.width, (p.y.to - p.y.from) / inside.height);
+    const double x = 0.5 * (p.x.from + p.x.to);
+    const double y = 0.5 * (p.y.from + p.y.to);
+    const double half_width = 0.5 * per_pt * inside.width;
+    const double half_height = 0.5 * per_pt * inside.height;
+    return {{x - half_width, x + half_width, inside.x, inside.right()},
+            {y - half_height, y + half_height, inside.y, inside.bottom()}};
+}
+
 void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across, box where)
 {
     std::vector<series> named;
@@ -241,8 +255,7 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
     const double top = 14.0 + legend;
     const box inside{where.x + 28.0, where.y + top, where.width - 30.0,
                      where.height - top - axis_height - 2.0};
-    const scale x{p.x.from, p.x.to, inside.x, inside.right()};
-    const scale y{p.y.from, p.y.to, inside.bottom(), inside.y};
+    const auto [x, y] = make_scales(p, inside);
     const group one(c, {.kind = "curves",
                         .data = {{"title", clean(p.title)},
                                  {"x0", fmt::format("{:.9g}", x(0.0))},

@@ -36,6 +36,9 @@ SHORT = (WITH_CONSENT + toml("run", "pairs", task="choose", attribute="similarit
 LINE = WITH_CONSENT + toml("run", "marks", task="rate", attribute="uniformity", question="How even?", trials=4, scale="vas", labels=["not", "all"])
 # Estimates of any positive number.
 ESTIMATES = BARE + toml("run", "size", task="estimate", question="How strong?", methods=["Birch"], motions=["east"], vary="level_dbfs", values=[-30, -20], trials=4)
+# A place, and then a path, that the participant draws.
+DRAWINGS = (BARE + toml("run", "where", task="locate", motions=["east"], methods=["Birch"], trials=3)
+            + toml("run", "how", task="trace", motions=["east"], methods=["Birch"], trials=2))
 IDENTIFY = toml("run", "what", task="identify", trials=2, methods=["Birch"])
 
 

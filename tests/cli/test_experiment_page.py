@@ -2,12 +2,14 @@
 """The participant's page of tactor experiment on the wire: the messages, the answers that count, and the clients that may.
 tests/study has the dialogue, tests/cli/test_serve_web.py the server of a page."""
 import json
+import math
 import re
 import signal
 import socket
+import statistics
 import urllib.request
 
-from experiments import ESTIMATES, IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
+from experiments import DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
 from harness import main
 from pages import PageTest, Session
 from studies import toml
@@ -84,6 +86,52 @@ class Sessions(PageTest):
             p.say(ask=asked["ask"], text=number)
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([r["intensity_estimate"] for r in self.rows("01", "size")], ["0.5", "12.5", "1500", "0.25"])
+
+    def test_a_drawing_is_kept_as_it_was_drawn(self):
+        self.write("drawn.toml", DRAWINGS)
+        s, p = self.start_both(definition="drawn.toml")
+        p.begin(agrees=False)
+        path = [[0, 0, 1.234], [0.0104, 5, 1.5], [0.0104, 5.25, -0.001], [1.5, 20, 2]]
+        for kind, good in (("place", [[0, 9.875, -3]]), ("place", [[0, 0, 0]]), ("place", [[0, 1e4, 1]]), ("path", path), ("path", [[0, 1, 1]])):
+            asked = p.until("question")
+            self.assertEqual(asked["entry"], {"draw": kind, "most": 600})
+            for bad in ([], {}, None, [[0, 1]], [[0, 1, 2, 3]], [[0, "1", 2]], [[0, None, 2]], [[-1, 1, 2]], [[0, 1e5, 2]], [[1, 0, 0], [0, 0, 0]],
+                        [[0, 0, 0]] * 601, *([path] if kind == "place" else [])):
+                p.say(ask=asked["ask"], drawing=bad)
+                self.assertEqual(p.until("question")["ask"], asked["ask"])
+            p.say(ask=asked["ask"], answer=1)
+            self.assertEqual(p.until("question")["ask"], asked["ask"])
+            p.say(ask=asked["ask"], drawing=good)
+            if (kind, good[0][1]) == ("place", 1e4):
+                p.answer("introduce", 1)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([(r["response"], r["target"]) for r in self.rows("01", "where")],
+                         [(place, "0 10 0") for place in ("0 9.88 -3", "0 0 0", "0 10000 1")])
+        rows = self.rows("01", "how")
+        self.assertEqual([r["response"] for r in rows], ["0 0 1.23;0.01 5 1.5;0.01 5.25 0;1.5 20 2", "0 1 1"])
+        for r in rows:
+            points = [tuple(map(float, p.split())) for p in r["target"].split(";")]
+            self.assertEqual((points[0], points[25], points[-1], len(points)), ((0, 0, 0), (0.1, 10, 0), (0.2, 20, 0), 51))
+        told = self.analysis()["runs"]
+        # By hand: the middle is 10, 0.
+        at = [(9.88, -3), (0, 0), (10000, 1)]
+        person = told["where"]["drawings"]["participants"]["01"]
+        self.assertAlmostEqual(person["error"], sum(math.hypot(x - 10, y) for x, y in at) / 3, 9)
+        self.assertAlmostEqual(person["constant_across"], sum(x - 10 for x, _ in at) / 3, 9)
+        self.assertAlmostEqual(person["variable_along"], statistics.stdev(y for _, y in at), 9)
+        self.assertEqual(told["where"]["drawings"]["target"], [[10, 0]])
+        # A drawing of one point has no direction; the mean is over those that have one.
+        self.assertAlmostEqual(told["how"]["drawings"]["participants"]["01"]["direction"], math.degrees(math.atan2(2 - 1.23, 20)), 9)
+        self.assertEqual(len(told["how"]["drawings"]["mean"]), 51)
+        self.write_row("how", 0, "response", "0 1 1;x")
+        self.assertIn('sub-01_task-how_beh.tsv:2: response is not a drawn path', self.refused(2, "analyze", "study").stderr)
+        self.assertIn("participants can draw only on the page", self.refused(2, *self.args(code="02", definition="drawn.toml")).stderr)
+
+    def write_row(self, task, row, column, text):
+        file = self.dir / f"study/sub-01/beh/sub-01_task-{task}_beh.tsv"
+        lines = [line.split("\t") for line in file.read_text().splitlines()]
+        lines[row + 1][lines[0].index(column)] = text
+        file.write_text("".join("\t".join(line) + "\n" for line in lines))
 
     def test_motions_to_name_have_pictures_and_words_are_in_the_participant_s_language(self):
         words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'

@@ -10,7 +10,7 @@ import shutil
 import time
 import unittest
 
-from experiments import BARE, ESTIMATES, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
+from experiments import BARE, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
 from harness import PATIENCE_S, main
 from studies import toml
 
@@ -109,6 +109,18 @@ class AtTheTerminal(PersonTest):
         self.assertEqual([row[3] for row in self.answers("marks", "rating")], ["0", "55", "11", "100"])
         self.assertIn("57\b \b5", t.all)
         self.assertNotIn("held down", t.said())
+
+    def test_a_place_is_the_number_of_a_tactor_at_a_terminal(self):
+        self.write("short.toml", DRAWINGS.partition('[[run]]\nname = "how"')[0])
+        t = self.start()
+        t.begin(agrees=False)
+        asked = "Where was it\\? 1 to 2: "
+        t.answer(asked, "32")  # there is no tactor 3
+        t.answer(asked, "1")
+        t.answer(asked, "2")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertEqual([r["response"] for r in self.rows("01", "where")], ["0 20 0", "0 0 0", "0 20 0"])
 
     def test_any_positive_number_is_an_estimate(self):
         self.write("short.toml", ESTIMATES)

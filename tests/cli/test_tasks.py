@@ -32,6 +32,8 @@ TASKS = {
     "constant": (dict(question="?", vary="length_mm", values=[4, 8, 12, 16, 20], standard=12, trials_per_value=8), "psychometric.mean.pse", "value"),
     "adaptive": (dict(question="?", vary="length_mm", procedure="quest", range=[4, 20], standard=12, trials=40), "psychometric.mean.pse", "value"),
     "interval": (dict(vary="length_mm", procedure="1up3down", range=[4, 20], trials=60), "psychometric.tests.threshold.mean", "value"),
+    "locate": (dict(trials=8), "drawings.means.error.mean", "error"),
+    "trace": (dict(trials=8), "drawings.means.distance.mean", "distance"),
 }
 WEST = toml("motion", "west", path="M20 0H0", duration=0.2)
 
@@ -58,7 +60,7 @@ class EveryTask(ExperimentTest):
         for name, make in STUDIES.items():
             make(self.dir / name)
         texts = [json.loads(p.read_text())["experiment"]["text"] for p in self.dir.glob("*/sourcedata/sub-*/session.json")]
-        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, *texts]), re.M))
+        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, check_r.DRAWN, *texts]), re.M))
         self.assertEqual(checked, set(TASKS))
 
     def test_from_definition_to_report(self):
@@ -69,7 +71,7 @@ class EveryTask(ExperimentTest):
                 dry = self.valid(self.ok("experiment", "t.toml", "--dry-run", "--format", "json").stdout)
                 self.assertEqual([r["task"] for r in dry["runs"]], [task])
                 power = self.valid(self.ok("experiment", "t.toml", "--power", "3", "--studies", "2", "--simulate", "jnd=3", "--format", "json").stdout)
-                self.assertEqual(len(power["runs"][0]["power"]), task != "interval")  # a threshold has nothing to compare with
+                self.assertEqual(len(power["runs"][0]["power"]), task not in ("interval", "locate", "trace"))  # they have nothing to compare with
                 for code in "123":
                     self.simulate(code, definition="t.toml", folder=task, spec=f"seed={code},jnd=3,dprime=2,sigma=0.3")
                 told = self.valid(self.ok("analyze", task, "--format", "json").stdout)["runs"]["only"]

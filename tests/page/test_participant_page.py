@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The participant's page of tactor experiment and calibrate in a real Chromium: a simulated participant clicks, types and
 taps through sessions. Usage: test_participant_page.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
+import math
 import pathlib
 import re
 import sys
@@ -8,7 +9,7 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import BARE, ESTIMATES, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
+from experiments import BARE, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
 from harness import main  # noqa: E402
 from pages import PageTest, Session  # noqa: E402
 from studies import toml  # noqa: E402
@@ -292,6 +293,78 @@ class ParticipantPage(BrowserTest, PageTest):
         self.assertEqual({tuple(sorted((r["method_1"], r["method_2"]))) for r in rows}, {("Birch", "none")})
         right = sum((r["response"] == "2") == (r["method_1"] == "none") for r in rows)
         self.assertEqual([r["positive"] for r in self.trials()[1]].count("1"), right)
+
+    def test_places_and_paths_are_drawn_by_mouse_finger_and_keys(self):
+        self.write("drawn.toml", DRAWINGS)
+        s = self.start(definition="drawn.toml")
+        p = self.open(s)
+        ask = self.click(p, "introduce", 1, self.walk(p))
+
+        def asked():
+            return p.until(f"state.screen === 'question' && state.ask > {ask} && document.querySelector('#hand:not(.closed)') && state.ask")
+
+        def to_px(x, y):
+            return p.value("(m => [m.a * %g + m.e, m.d * %g + m.f])(document.querySelector('#hand').getScreenCTM())" % (x, y))
+
+        def confirm():
+            p.click("#answers button")
+
+        ask = asked()
+        self.picture(p, "place")
+        p.resize(SIZES[0])
+        p.key("Enter")  # nothing is shown yet
+        self.assertEqual(p.value("[state.ask, document.querySelector('#answers button').disabled]"), [ask, True])
+        p.tap(*to_px(4, 1))
+        p.tap(*to_px(12, -2))  # replaces it
+        self.picture(p, "place-shown")
+        p.resize(SIZES[0])
+        confirm()
+        ask = asked()
+        x, y = to_px(3, 2)
+        p.touch("touchStart", (1, x, y))
+        p.touch("touchEnd")
+        confirm()
+        ask = asked()
+        for key in ("ArrowRight", "ArrowDown", "ArrowDown"):  # from the middle of the array
+            p.key(key)
+        p.key("Enter")
+        ask = self.click(p, "introduce", 1, ask)
+        ask = asked()
+        self.assertTrue(p.value("document.querySelector('#answers button').disabled"))
+        corners = [(0, 0), (10, 5), (20, 0)]
+        for corner in ((5, 9), (6, 9)):  # a first try, which the next replaces
+            p.mouse("mousePressed" if corner[0] == 5 else "mouseMoved", *to_px(*corner))
+        p.mouse("mouseReleased", *to_px(6, 9))
+        for i, corner in enumerate(corners):
+            p.mouse("mouseMoved" if i else "mousePressed", *to_px(*corner))
+        self.assertTrue(p.value("document.querySelector('#answers button').disabled"))  # while it is drawn
+        p.mouse("mouseReleased", *to_px(20, 0))
+        self.picture(p, "path-drawn")
+        p.resize(SIZES[0])
+        confirm()
+        ask = asked()
+        p.resize(PHONE)
+        # A drawing that is longer than a message keeps its shape and its end.
+        count = p.value("""(async () => {
+            const hand = document.querySelector('#hand'), m = hand.getScreenCTM(), say = (type, x, y) => hand.dispatchEvent(new PointerEvent(type,
+              {pointerId: 7, isPrimary: true, clientX: m.a * x + m.e, clientY: m.d * y + m.f, bubbles: true, cancelable: true}));
+            hand.setPointerCapture = () => {};
+            say('pointerdown', 0, 0);
+            for (let i = 1; i <= 2000; i++) say('pointermove', i / 100, i % 2 ? 2 : 0);
+            say('pointerup', 20, 0);
+            return document.querySelector('#hand .drawn').getAttribute('points').split(' ').length / 2; })()""")
+        self.assertTrue(300 <= count <= 600, count)
+        confirm()
+        self.assertEqual(s.end(), 0, s.said)
+        drawn = [[tuple(map(float, q.split())) for q in r["response"].split(";")] for r in self.rows("01", "where") + self.rows("01", "how")]
+        for [(_, x, y)], expected in zip(drawn[:3], ((12, -2), (3, 2), (11, 2))):
+            self.assertLess(max(abs(x - expected[0]), abs(y - expected[1])), 0.3)
+        self.assertEqual(len(drawn[3]), 3)
+        for (_, x, y), expected in zip(drawn[3], corners):
+            self.assertLess(max(abs(x - expected[0]), abs(y - expected[1])), 0.3)
+        self.assertEqual(drawn[3][0][0], 0)
+        self.assertLess(math.dist(drawn[4][-1][1:], (20, 0)), 0.5)
+        self.assertEqual(p.faults(), [])
 
     def test_scales_with_words_at_their_ends_and_names(self):
         self.write("many.toml", BARE + toml("run", "marks", task="rate", attribute="similarity", trials=1, scale=9, labels=["very uneven", "very even"])

@@ -287,6 +287,66 @@ def check_comparisons(tool, folder):
             if not all(abs(a - b) <= 1e-8 * max(1, abs(b)) for a, b in zip(mine, r, strict=True))]
 
 
+# Places and paths. R divides a path by interpolation over its length, and finds the Frechet distance by a table of all pairs.
+DRAWN = studies.measures("palm-3x3", studies.toml("motion", "bend", path="M10 5Q30 5 30 35", duration=1.0),
+                         studies.run("place", "locate", 24, max_in_a_row=9), studies.run("path", "trace", 24, max_in_a_row=9))
+DRAW = """
+points <- function(cell) matrix(as.numeric(unlist(strsplit(strsplit(cell, ";")[[1]], " "))), ncol = 3, byrow = TRUE)[, 2:3, drop = FALSE]
+steps <- function(p) sqrt(rowSums(diff(p)^2))
+along <- function(p, n) {
+  s <- c(0, cumsum(steps(p)))
+  sapply(1:2, function(k) approx(s, p[, k], seq(0, max(s), length.out = n + 1), ties = mean)$y)
+}
+frechet <- function(a, b) {
+  d <- outer(1:nrow(a), 1:nrow(b), Vectorize(function(i, k) sqrt(sum((a[i, ] - b[k, ])^2))))
+  f <- d
+  for (i in 1:nrow(d)) for (k in 1:ncol(d)) {
+    before <- c(if (i > 1) f[i - 1, k], if (k > 1) f[i, k - 1], if (i > 1 && k > 1) f[i - 1, k - 1])
+    f[i, k] <- max(d[i, k], if (length(before)) min(before))
+  }
+  f[nrow(d), ncol(d)]
+}
+angle <- function(v) Arg(complex(real = v[1], imaginary = v[2]))
+turns <- function(p) {
+  q <- diff(along(p, 5))
+  z <- complex(real = q[, 1], imaginary = q[, 2])
+  sum(Arg(z[-1] / z[-5])) / (0.8 * sum(steps(p))) * 1000
+}
+say <- function(...) cat(sprintf("%.17g", c(...)), "\n")
+for (code in c("01", "02", "03")) {
+  read <- function(run) {
+    d <- read.delim(sprintf("drawn/sub-%s/beh/sub-%s_task-%s_beh.tsv", code, code, run), na.strings = "n/a")
+    d[d$void == "false", ]
+  }
+  d <- read("place")
+  e <- t(mapply(function(r, t) points(r) - points(t), d$response, d$target))
+  within <- function(x) sqrt(sum(sapply(split(x, d$motion), function(v) sum((v - mean(v))^2))) / (nrow(d) - length(unique(d$motion))))
+  constant <- function(x) mean(sapply(split(x, d$motion), mean))
+  say(mean(sqrt(rowSums(e^2))), constant(e[, 2]), constant(e[, 1]), within(e[, 2]), within(e[, 1]))
+  d <- read("path")
+  all <- mapply(function(r, t) {
+    a <- points(r); b <- points(t)
+    p <- along(a, 50); q <- along(b, 50)
+    turn <- angle(a[nrow(a), ] - a[1, ]) - angle(b[nrow(b), ] - b[1, ])
+    c(mean(sqrt(rowSums((p - q)^2))), frechet(p, q), sum(steps(a)) / sum(steps(b)), turn, turns(a) - turns(b))
+  }, d$response, d$target)
+  say(rowMeans(all[1:3, ]), Arg(mean(complex(argument = all[4, ]))) * 180 / pi, mean(all[5, ]))
+}
+"""
+
+
+def check_drawings(tool, folder):
+    """Compares the figures of places and paths with what R finds in the tables."""
+    (folder / "drawn.toml").write_text(DRAWN)
+    for code in ("01", "02", "03"):
+        run(tool, "experiment", folder / "drawn.toml", "--participant", code, "-o", folder / "drawn", "--simulate", "seed=1,sigma=2,void=0.1")
+    told = json.loads(run(tool, "analyze", folder / "drawn", "--format", "json"))["runs"]
+    said = [list(map(float, line.split())) for line in run("Rscript", "-e", DRAW, cwd=folder).splitlines()]
+    mine = [list(told[name]["drawings"]["participants"][code].values()) for code in ("01", "02", "03") for name in ("place", "path")]
+    return [f"{m}, R: {r}" for m, r in zip(mine, said, strict=True)
+            if not all(abs(a - b) <= 1e-8 * max(1, abs(b)) for a, b in zip(m, r, strict=True))]
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -304,6 +364,7 @@ def main():
                     cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
                     cases["measures, models"] = lambda: check_measures(tool, folder)
                     cases["measures, methods"] = lambda: check_method_errors(tool, folder)
+                    cases["drawings"] = lambda: check_drawings(tool, folder)
                     cases["measures, comparisons"] = lambda: check_comparisons(tool, folder)
             else:
                 print(f"SKIPPED: {name}, models: lme4 is not here")

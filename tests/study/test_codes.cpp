@@ -169,7 +169,7 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
     }
 
     study::run_table table(c.store, c.p.definition.runs[0], false);
-    study::trial_row row = study::planned_row(c.p, t, {1, 1});
+    study::trial_row row = study::planned_row(c.p, c.p.definition.runs[0], t, {1, 1});
     row.stream = 1;
     row.frame_1 = first;
     table.add(row, 0, rate);
@@ -202,7 +202,7 @@ TEST_CASE("a code that an xrun cuts has an event, because the recorder may have 
         CHECK_FALSE(g.first_frame);
     }
     study::run_table table(c.store, c.p.definition.runs[0], false);
-    study::trial_row row = study::planned_row(c.p, t, {1, 1});
+    study::trial_row row = study::planned_row(c.p, c.p.definition.runs[0], t, {1, 1});
     row.is_void = true;
     table.add(row, 0, rate);
     codes.write(c.p.definition.runs[0], row, table);
@@ -386,7 +386,7 @@ TEST_CASE("a session goes on with the stimuli that its table names, the second o
 {
     const coded_session c(coded_array);
     const study::run_sequence& run = c.p.runs[0];
-    study::trial_row row = study::planned_row(c.p, run.trials[0], {1, 1});
+    study::trial_row row = study::planned_row(c.p, c.p.definition.runs[0], run.trials[0], {1, 1});
     row.response = "1";
     CHECK_FALSE(study::replay(c.p, run, {row}).done());
     for (std::string study::trial_row::*plan : {&study::trial_row::plan_1, &study::trial_row::plan_2}) {
@@ -409,7 +409,7 @@ TEST_CASE("a trial that became void does not move its track, and its answer coun
     const auto next = [&](unsigned trial, unsigned attempt) { return held.find_trial(step(trial, attempt)); };
     const auto add = [&](unsigned trial, unsigned attempt, bool is_void) {
         const study::planned_trial t = next(trial, attempt);
-        study::trial_row row = study::planned_row(c.p, t, {trial, attempt});
+        study::trial_row row = study::planned_row(c.p, c.p.definition.runs[0], t, {trial, attempt});
         // The value under test, not its standard, was the stronger one.
         study::set_response(row, r, row.method_1 == "a" ? 1 : 2, 0.5);
         row.is_void = is_void;

@@ -52,7 +52,7 @@ TEST_CASE("a choice takes the larger -ln cost plus noise, as often as the normal
     constexpr unsigned n = 20000;
     unsigned chosen = 0;
     for (unsigned i = 1; i <= n; ++i)
-        chosen += o.answer({0, 0, 1}, i, 1, false).response == 2 ? 1 : 0;
+        chosen += o.answer({0, 0, 1}, i, 1, false).response.number == 2 ? 1 : 0;
     CHECK(chosen / static_cast<double>(n) == doctest::Approx(p).epsilon(0.03));
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("an observer judges what simulate_as says, and refuses an attribute th
     r.d.runs[0].simulate_as = "uniformity";
     r.d.runs[0].outline.name = r.d.runs[1].outline.name; // a part of the seed
     const auto answer = [&](std::size_t run) {
-        return r.observer(run, "sigma=0").answer({0, 0, 1}, 1, 1, false).response;
+        return r.observer(run, "sigma=0").answer({0, 0, 1}, 1, 1, false).response.number;
     };
     CHECK(answer(0) == answer(1));
     r.d.runs[0].simulate_as.clear();
@@ -75,8 +75,8 @@ TEST_CASE("without noise the better one is chosen, in either place")
     const rig r;
     const simulated_observer o = r.observer(1, "sigma=0");
     const bool second = *r.stimuli.at(0, 1).felt.speed_cv < *r.stimuli.at(0, 0).felt.speed_cv;
-    CHECK(o.answer({0, 0, 1}, 1, 1, false).response == (second ? 2 : 1));
-    CHECK(o.answer({0, 1, 0}, 1, 1, false).response == (second ? 1 : 2));
+    CHECK(o.answer({0, 0, 1}, 1, 1, false).response.number == (second ? 2 : 1));
+    CHECK(o.answer({0, 1, 0}, 1, 1, false).response.number == (second ? 1 : 2));
 }
 
 TEST_CASE("without noise a rating is the middle plus the advantage of the cost over the mean")
@@ -91,7 +91,7 @@ TEST_CASE("without noise a rating is the middle plus the advantage of the cost o
         for (std::size_t k = 0; k < 2; ++k) {
             const double u = -std::log(*r.stimuli.at(m, k).felt.rms_error_mm);
             const double rating = std::min(5.0, std::max(1.0, std::round(3.0 + u - mean)));
-            CHECK(o.answer({m, k}, 1, 1, false).response == static_cast<unsigned>(rating));
+            CHECK(o.answer({m, k}, 1, 1, false).response.number == static_cast<unsigned>(rating));
         }
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("ratings stay on the scale, and noise uses all of it")
         unsigned low = 1000;
         unsigned high = 0;
         for (unsigned i = 1; i <= 500; ++i) {
-            const unsigned a = o.answer({0, 0}, i, 1, false).response;
+            const unsigned a = o.answer({0, 0}, i, 1, false).response.number;
             low = std::min(low, a);
             high = std::max(high, a);
         }
@@ -132,8 +132,8 @@ TEST_CASE("an identification names the nearest target: the right one without noi
     unsigned right = 0;
     for (std::size_t m = 0; m < 3; ++m)
         for (unsigned i = 1; i <= 100; ++i) {
-            CHECK(sharp.answer({m, 0}, i, 1, false).response == m + 1);
-            right += dull.answer({m, 0}, i, 1, false).response == m + 1 ? 1 : 0;
+            CHECK(sharp.answer({m, 0}, i, 1, false).response.number == m + 1);
+            right += dull.answer({m, 0}, i, 1, false).response.number == m + 1 ? 1 : 0;
         }
     CHECK(right > 50);
     CHECK(right < 250);
@@ -146,7 +146,7 @@ TEST_CASE("an answer depends on its place and attempt alone")
     const simulated_answer a = o.answer({0, 0, 1}, 7, 1, false);
     o.answer({1, 1, 0}, 8, 1, false);
     const simulated_answer b = o.answer({0, 0, 1}, 7, 1, false);
-    CHECK(a.response == b.response);
+    CHECK(a.response.number == b.response.number);
     CHECK(a.response_time_ms == b.response_time_ms);
     CHECK(o.answer({0, 0, 1}, 7, 2, false).response_time_ms != a.response_time_ms);
     CHECK(o.answer({0, 0, 1}, 7, 1, true).response_time_ms != a.response_time_ms);
@@ -236,7 +236,7 @@ TEST_CASE("choices among three methods have the worths that their costs imply")
                  .motion = t.motion,
                  .method_1 = t.method_1,
                  .method_2 = *t.method_2,
-                 .response = static_cast<unsigned>(who.answer(t, place, 1, false).response)});
+                 .response = static_cast<unsigned>(who.answer(t, place, 1, false).response.number)});
         }
         all.data.push_back({data});
     }

@@ -283,6 +283,60 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
     f.curves.insert(f.curves.end(), panels.begin(), panels.end());
 }
 
+// Draws the places or paths of each condition to scale: the target under the participants' drawings, and
+// their mean over them.
+void add_drawings(plot::panel_figure& f, const study::run_analysis& r)
+{
+    const auto to_line = [](const std::vector<point>& points) {
+        std::vector<plot::spot> line;
+        for (const point& p : points)
+            line.push_back({p.x_mm, p.y_mm});
+        return line;
+    };
+    for (const study::drawn_answers* v : study::list_values<study::drawn_answers>(r.results)) {
+        if (v->target.empty())
+            continue;
+        const bool is_place = v->kind == study::drawing_kind::place;
+        const auto make = [&](const std::vector<point>& points, double weight) {
+            plot::curve one{.line = to_line(points)};
+            if (is_place)
+                one.dots = {{one.line.front(), weight}};
+            return one;
+        };
+        constexpr double large = 6.0; // so that the target and the mean stand out
+        plot::curve_panel p{
+            fmt::format("{} ({}, n = {})", v->condition.empty() ? r.run.name : v->condition, r.run.name, r.n),
+            {"x (mm)"},
+            {"y (mm)"}};
+        p.to_scale = true;
+        plot::curve target = make(v->target, large);
+        target.name = "target";
+        target.thick = true;
+        target.colour = 1;
+        p.curves.push_back(std::move(target));
+        for (const study::drawn_by_person& person : v->people)
+            for (const std::vector<point>& drawing : person.drawings)
+                p.curves.push_back(make(drawing, 1.0));
+        plot::curve mean = make(v->mean, large);
+        mean.name = "mean";
+        mean.thick = true;
+        p.curves.push_back(std::move(mean));
+        for (const auto& [axis, of] : {std::pair(&p.x, &plot::spot::x), {&p.y, &plot::spot::y}}) {
+            axis->from = std::numeric_limits<double>::infinity();
+            axis->to = -axis->from;
+            for (const plot::curve& one : p.curves)
+                for (const plot::spot& at : one.line) {
+                    axis->from = std::min(axis->from, at.*of);
+                    axis->to = std::max(axis->to, at.*of);
+                }
+            constexpr double edge_mm = 3.0;
+            axis->from -= edge_mm;
+            axis->to += edge_mm;
+        }
+        f.curves.push_back(std::move(p));
+    }
+}
+
 // Says what is drawn.
 std::string describe_panels(const plot::panel_figure& f, const study::analysis& a, error_bars kind)
 {
@@ -301,9 +355,13 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
             for (const study::fitted_exponent& one : v->people)
                 estimates = estimates || !one.estimates.empty();
     }
-    if (!f.curves.empty())
+    const auto is_drawn = [](const plot::curve_panel& p) { return p.to_scale; };
+    if (std::ranges::any_of(f.curves, is_drawn))
+        notes.emplace_back("To scale: each drawing of each participant, their mean, and the target.");
+    if (!std::ranges::all_of(f.curves, is_drawn))
         notes.emplace_back("Thin lines and points: participants; the area of a point grows with its trials.");
-    if (std::ranges::any_of(f.curves, [](const plot::curve_panel& p) { return p.curves.back().thick; }))
+    if (std::ranges::any_of(f.curves,
+                            [](const plot::curve_panel& p) { return !p.to_scale && p.curves.back().thick; }))
         notes.emplace_back("Thick: functions of the means of the participants' figures.");
     if (without_function)
         notes.emplace_back("Points without a line: answers that determine no function.");
@@ -328,6 +386,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
             continue;
         add_curves<study::psychometric_functions>(f, r);
         add_curves<study::exponents>(f, r);
+        add_drawings(f, r);
         std::optional<plot::bar_panel> p = make_panel(r, kind);
         if (!p && r.run.vary.empty())
             p = make_sensitivity_panel(r, kind);

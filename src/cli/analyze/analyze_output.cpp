@@ -155,6 +155,10 @@ public:
     {
         return join(v.figures.front(), usual_decimals);
     }
+    std::string operator()(const study::drawn_answers& v) const
+    {
+        return join(v.figures.front(), usual_decimals);
+    }
     template <class T>
     std::string operator()(const T&) const // never main
     {
@@ -305,6 +309,11 @@ public:
         print_figures(v, usual_decimals);
         print_people(v, usual_decimals, [](const auto&) { return std::string(); });
     }
+    void operator()(const study::drawn_answers& v) const
+    {
+        print_figures(v, usual_decimals);
+        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
+    }
     template <class T>
     void operator()(const T&) const // has no table
     {
@@ -423,6 +432,16 @@ constexpr trial_column trial_columns[] = {
     {"signal", nullptr, false},
     {"positive", nullptr, false},
     {"estimate", nullptr, false},
+    {"x", nullptr, false},
+    {"y", nullptr, false},
+    {"target_x", nullptr, false},
+    {"target_y", nullptr, false},
+    {"error", nullptr, false},
+    {"distance", nullptr, false},
+    {"frechet", nullptr, false},
+    {"length", nullptr, false},
+    {"direction", nullptr, false},
+    {"curvature", nullptr, false},
     {"response_time",
      [](const auto& t, const auto&) {
          return t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a";

@@ -34,15 +34,21 @@ namespace {
 
 constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
 
-void check_keys(const study::prepared_experiment& p)
+// Refuses runs whose answers the participant cannot give.
+void check_answers(const study::prepared_experiment& p, bool on_page)
 {
-    for (const study::run_definition& r : p.definition.runs)
-        if (const auto answers = study::find_answers(p.definition, r);
-            answers.shows_motions && answers.labels.size() > study::most_keys)
+    for (const study::run_definition& r : p.definition.runs) {
+        const study::trial_answers answers = study::find_answers(p.definition, r);
+        if (answers.shows_motions && answers.labels.size() > study::most_keys)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, but the terminal has only the keys 1 to {}",
                                     r.outline.name, answers.labels.size(), study::most_keys),
                         "name fewer in motions = [...]");
+        if (answers.draws == study::drawing_kind::path && !on_page)
+            throw error(error_kind::bad_input, r.where,
+                        fmt::format("run \"{}\": participants can draw only on the page", r.outline.name),
+                        "use --display page");
+    }
 }
 
 void check_noise(const study::prepared_experiment& p, const experiment_options& o)
@@ -114,7 +120,7 @@ study::session_devices check_real_session(const study::prepared_experiment& p, c
     if (!session::names_device(s, p.where))
         throw error(error_kind::bad_input, "-D", "no device is configured",
                     "give -D PCM, or --simulate SPEC");
-    check_keys(p);
+    check_answers(p, o.page.shown());
     check_noise(p, o);
     study::session_devices devices{p.pcm, check_server(p.pcm, session::server_cure, o), o.masker, {}};
     if (!o.masker.empty())

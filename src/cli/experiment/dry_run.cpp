@@ -209,12 +209,12 @@ void members(Io& io, Run& v)
     io("warnings", v.warnings, {"warnings: unusual values that were accepted"});
 }
 
-std::vector<listed_trial> list_trials(const study::prepared_experiment& p,
+std::vector<listed_trial> list_trials(const study::prepared_experiment& p, const study::run_definition& r,
                                       const std::vector<study::planned_trial>& trials)
 {
     std::vector<listed_trial> all;
     for (const study::planned_trial& t : trials) {
-        all.push_back({study::planned_row(p, t, {static_cast<unsigned>(all.size() + 1)}), t.rest_s});
+        all.push_back({study::planned_row(p, r, t, {static_cast<unsigned>(all.size() + 1)}), t.rest_s});
         all.back().row.value = find_planned_value(p, t);
     }
     return all;
@@ -237,8 +237,8 @@ listed_run list_run(const study::prepared_experiment& p, const study::run_sequen
                    t};
     for (const auto& [value, trials] : count_values(p, s))
         all.values.push_back({value, trials});
-    all.practice = list_trials(p, s.practice);
-    all.trials = list_trials(p, s.trials);
+    all.practice = list_trials(p, r, s.practice);
+    all.trials = list_trials(p, r, s.trials);
     return all;
 }
 
@@ -323,8 +323,9 @@ void print_dry_run_text(const study::prepared_experiment& p)
             counted(q.items.size(), "item"));
     for (const auto& [number, meanings] : p.codes.meanings())
         say(stdout, "code {}: {}\n", number, fmt::join(meanings, "; "));
-    const auto row = [&](const study::planned_trial& t, const std::string& place) {
-        const study::trial_row r = study::planned_row(p, t, {});
+    const auto row = [&](const study::run_definition& run, const study::planned_trial& t,
+                         const std::string& place) {
+        const study::trial_row r = study::planned_row(p, run, t, {});
         const std::optional<double> v = find_planned_value(p, t);
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>8} {:>7.3f}\n", place, r.motion, r.method_1,
             r.method_2.empty() ? "-" : r.method_2,
@@ -349,9 +350,9 @@ void print_dry_run_text(const study::prepared_experiment& p)
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>8} {:>7}\n", "trial", "motion", "method_1", "method_2",
             "value", "s");
         for (const study::planned_trial& t : s.practice)
-            row(t, "practice");
+            row(r, t, "practice");
         for (std::size_t k = 0; k < s.trials.size(); ++k)
-            row(s.trials[k], fmt::format("{}", k + 1));
+            row(r, s.trials[k], fmt::format("{}", k + 1));
     }
 }
 

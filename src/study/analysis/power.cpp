@@ -66,9 +66,11 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
             a = who.answer(t, p.trials[i].place, ++attempt, false);
         while (a.is_void);
         p.trials[i].value = find_value(d, t).value_or(0.0);
+        if (const auto target = read_drawing(own.write_target(d.motions[t.motion])))
+            p.trials[i].target = *target;
         const std::string& method_1 = d.methods[t.method_1].name;
         own.score(p.trials[i], r.outline, method_1, a.response);
-        values->take(t.track, method_1, static_cast<unsigned>(a.response));
+        values->take(t.track, method_1, static_cast<unsigned>(a.response.number));
     }
 }
 

@@ -26,6 +26,7 @@
 #include <variant>
 #include <vector>
 
+#include "study/data/drawing.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/questionnaire.hpp"
 
@@ -148,6 +149,7 @@ struct trial_row {
     std::string method_1 = {};
     std::string method_2 = {};
     std::string response = {};
+    std::string target = {}; ///< target that the task compares the answer with; usually empty
     std::optional<double> response_time_s = {};
     std::optional<bool> early = {}; ///< missing without an answer, and if an older version wrote the data
     std::optional<unsigned> rating = {};
@@ -187,7 +189,7 @@ struct trial_column {
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 23> trial_columns;
+extern const std::array<trial_column, 24> trial_columns;
 
 /// Returns true if tables of the run have the column or may have it.
 bool has_column(const run_outline& run, const trial_column& c);
@@ -215,6 +217,8 @@ struct trial {
     std::size_t method_2 = 0; ///< second method, only in choose
     unsigned response = 0;    ///< answer as in the table (identify: index of the motion); unused in estimate
     double estimate = 0.0;    ///< estimate: number that the participant gave
+    drawing drawn = {};       ///< locate, trace: answer
+    drawing target = {};      ///< locate, trace: see task::write_target()
     double value = 0.0;       ///< value of what the run varies
     bool positive = false;    ///< true for the answer felt, different or more (comparison or second word)
     bool signal = true;       ///< detect: there was a stimulus; same-different: the stimuli differed

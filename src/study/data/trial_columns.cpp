@@ -103,7 +103,7 @@ void add_cells(trial_cells& into, const text_table& t, std::size_t row)
 
 } // namespace
 
-const std::array<trial_column, 23> trial_columns{{
+const std::array<trial_column, 24> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration",
@@ -129,6 +129,7 @@ const std::array<trial_column, 23> trial_columns{{
     {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::own, 1},
     {"intensity_estimate", "The number above 0 that the participant gave", "", &trial_row::intensity_estimate,
      column_use::own},
+    {"target", "The target in the same form as the response", "", &trial_row::target, column_use::own},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void, column_use::analysis},
     {"xruns", "Gaps in the sound while the stimuli played, as the device reports them", "",

@@ -20,7 +20,8 @@ namespace tactor::study {
 
 struct simulation {
     std::uint64_t seed = 1;
-    double sigma = 1.0; ///< sd of the noise, in -ln cost (choose, rate) or mm (identify)
+    double sigma = 1.0; ///< sd of the noise, in -ln cost (choose, rate) or mm (identify,
+                        ///< locate, trace)
     double voids = 0.0; ///< share of trials that are void, as after an xrun
     // True values for tasks that measure.
     std::optional<double> pse = {}; ///< value felt as equal; if missing, the standard or the middle value
@@ -38,7 +39,7 @@ std::string to_text(const simulation& s);
 
 struct simulated_answer {
     bool is_void = false;
-    double response = 0.0;         ///< value of task::simulate()
+    trial_answer response = 0.0;   ///< value of task::simulate()
     unsigned response_time_ms = 0; ///< random, only to fill the column
 };
 

@@ -234,6 +234,7 @@ public:
     }
     void operator()(const sensitivities&) { kind_ = "dprime"; }
     void operator()(const exponents&) { kind_ = "exponent"; }
+    void operator()(const drawn_answers&) { kind_ = "drawings"; }
 
 private:
     void set_rows(const char* kind)

@@ -109,6 +109,7 @@ public:
     void operator()(const psychometric_functions& v) { note(v); }
     void operator()(const sensitivities& v) { note(v); }
     void operator()(const exponents& v) { note(v); }
+    void operator()(const drawn_answers& v) { note(v); }
 
 private:
     // A figure that some answers do not determine, with the conditions that lack it for each participant.

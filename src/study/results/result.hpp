@@ -175,10 +175,26 @@ struct sensitivities : measured<std::optional<detection>> {
 
 struct exponents : measured<fitted_exponent> {};
 
+/// Number of equal parts of their lengths at which drawn paths are compared.
+inline constexpr std::size_t drawn_parts = 50;
+
+/// A participant's drawings, each divided into drawn_parts, and their figures.
+struct drawn_by_person {
+    std::vector<std::vector<point>> drawings = {};
+    std::vector<named_value> figures = {};
+};
+
+/// Places or paths that participants drew.
+struct drawn_answers : measured<drawn_by_person> {
+    drawing_kind kind = drawing_kind::place;
+    std::vector<point> target = {}; ///< divided in the same way; empty if there are several motions
+    std::vector<point> mean = {};   ///< mean over participants of their mean drawings, or empty
+};
+
 using result_value =
     std::variant<std::monostate, std::string, double, cell_means, interval_share, method_difference,
                  effect_list, tukey_list, paired_list, figure_comparison, worth_list, answer_counts,
-                 psychometric_functions, sensitivities, exponents>;
+                 psychometric_functions, sensitivities, exponents, drawn_answers>;
 
 /// A row of a run's results.
 struct result {

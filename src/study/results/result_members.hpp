@@ -324,6 +324,41 @@ void row_member(Io& io, const char* name, const exponents& v)
     });
 }
 
+/// Returns the places, or only the first, as lists of x and y.
+inline std::optional<std::vector<std::array<double, 2>>> list_points(const std::vector<point>& all,
+                                                                     drawing_kind kind)
+{
+    if (all.empty())
+        return {};
+    std::vector<std::array<double, 2>> listed;
+    for (const point& p : all) {
+        listed.push_back({p.x_mm, p.y_mm});
+        if (kind == drawing_kind::place)
+            break;
+    }
+    return listed;
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const drawn_answers& v)
+{
+    by_name<by_name<nullable<double>>> people;
+    for (std::size_t i = 0; i < v.codes.size(); ++i) {
+        by_name<nullable<double>>& own =
+            people.all.emplace_back(v.codes[i], by_name<nullable<double>>()).second;
+        for (std::size_t k = 0; k < v.figures.size(); ++k)
+            own.all.push_back({v.figures[k].name, {v.values[i][k]}});
+    }
+    io.object(name, {"figures of drawings"}, [&](auto& inner) {
+        inner("participants", people, {"figures by code"});
+        inner.named_objects("means", v.figures, {"means of the figures over participants"},
+                            [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
+        constexpr about points{"points at equal parts of the length, mm; null with several motions"};
+        inner.or_null("target", list_points(v.target, v.kind), points);
+        inner.or_null("mean", list_points(v.mean, v.kind), points);
+    });
+}
+
 template <class Io, detail::either<response_times> Times>
 void members(Io& io, Times& v)
 {

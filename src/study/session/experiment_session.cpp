@@ -447,7 +447,8 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     return j;
 }
 
-trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which)
+trial_row planned_row(const prepared_experiment& p, const run_definition& r, const planned_trial& t,
+                      const pending_trial& which)
 {
     const experiment_definition& d = p.definition;
     trial_row row;
@@ -457,6 +458,7 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     row.session = d.session;
     row.duration_s = static_cast<double>(p.stimuli.frames(t)) / p.render.rate;
     row.motion = d.motions[t.motion].name;
+    row.target = task_in(r.outline).write_target(d.motions[t.motion]);
     row.method_1 = d.methods[t.method_1].name;
     row.plan_1 = p.stimuli.at(t.motion, t.method_1).hash;
     row.value = find_value(d, t);
@@ -469,7 +471,7 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     return row;
 }
 
-void set_response(trial_row& row, const run_definition& r, double response, double time_s)
+void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s)
 {
     task_in(r.outline).take(row, r, response);
     row.response_time_s = time_s;
@@ -488,7 +490,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             const pending_trial next = queue.next();
             planned_trial t = s.trials[next.trial - 1];
             values->choose(t);
-            const trial_row planned = planned_row(p, t, next);
+            const trial_row planned = planned_row(p, r, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
                    row.plan_1 == planned.plan_1 && row.plan_2 == planned.plan_2;
         }

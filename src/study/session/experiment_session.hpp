@@ -99,10 +99,11 @@ nlohmann::ordered_json describe_session(const prepared_experiment& p,
                                         const std::optional<simulation>& simulate, const std::string& masker);
 
 /// Returns a trial's line with the cells that are known before the trial.
-trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which);
+trial_row planned_row(const prepared_experiment& p, const run_definition& r, const planned_trial& t,
+                      const pending_trial& which);
 
 /// Sets the response of a line, its time, and whether it came early.
-void set_response(trial_row& row, const run_definition& r, double response, double time_s);
+void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s);
 
 /// Returns the trials of a run that remain after the lines in its table. \throws error (bad_input) if a line
 /// does not belong to this session.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/participant_page.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <boost/locale/utf.hpp>
@@ -39,13 +40,28 @@ ordered paths_list(const std::vector<Points>& paths)
     return all;
 }
 
+// Reads the points of a drawing: time, s, and place, mm.
+std::optional<drawing> read_points(const ordered& j)
+{
+    if (!j.is_array() || j.size() > most_drawn_points)
+        return {};
+    drawing d;
+    for (const ordered& p : j) {
+        if (!p.is_array() || p.size() != 3 ||
+            !std::ranges::all_of(p, [](const ordered& n) { return n.is_number(); }))
+            return {};
+        d.push_back({p[0].get<double>(), {p[1].get<double>(), p[2].get<double>()}});
+    }
+    return is_drawing(d) ? std::optional(std::move(d)) : std::nullopt;
+}
+
 // page/participant.html with its styles and modules, as one document.
 constexpr net::page_document document =
 #include "study/participant_page.inc"
     ;
 
-// Returns the words and the places of tactors for a page. Leaves out title and methods, which could influence
-// the participant.
+// Returns the words, the places of tactors and the site for a page. Leaves out title and methods, which could
+// influence the participant.
 nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
 {
     nlohmann::ordered_json words;
@@ -54,7 +70,16 @@ nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
     nlohmann::ordered_json tactors = nlohmann::ordered_json::array();
     for (const tactor_spec& t : a.tactors)
         tactors.push_back({t.position.x_mm, t.position.y_mm});
-    return {{"words", words}, {"tactors", tactors}};
+    nlohmann::ordered_json facts{{"words", words}, {"tactors", tactors}, {"up", a.up}};
+    if (!a.site.empty())
+        facts["site"] = a.site;
+    if (a.place)
+        facts["place"] = point_list(a.place);
+    if (a.turn_deg)
+        facts["turn"] = *a.turn_deg;
+    if (a.body_mm)
+        facts["body"] = *a.body_mm;
+    return facts;
 }
 
 } // namespace
@@ -98,6 +123,9 @@ std::string page_dialogue::state(std::int64_t now_ns) const
             {"lowest", least_estimate}, {"greatest", most_estimate}, {"longest", most_estimate_characters}};
     if (screen_.entry == entry_kind::number)
         j["entry"] = {{"lowest", screen_.lowest}, {"greatest", screen_.greatest}};
+    if (screen_.is_drawn())
+        j["entry"] = {{"draw", screen_.entry == entry_kind::place ? "place" : "path"},
+                      {"most", most_drawn_points}};
     if (screen_.back)
         j["back"] = true;
     if (screen_.where)
@@ -165,9 +193,11 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
     const auto text_entered = received.find("text");
     const bool is_text = text_entered != received.end() && text_entered->is_string();
     const std::optional<std::uint64_t> number = whole_number(received, "answer");
+    const auto points = received.find("drawing");
+    const bool is_drawn = points != received.end();
     const auto back = received.find("back");
     const bool is_back = back != received.end() && *back == true;
-    if (!is_text && !number && !is_back)
+    if (!is_text && !number && !is_drawn && !is_back)
         return {.understood = false};
     if (theirs_ != from)
         return h; // the page already knows that another page replaced it
@@ -183,6 +213,10 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
         if (screen_.entry == entry_kind::estimate && is_text &&
             read_estimate(text_entered->get_ref<const std::string&>()))
             h.text = text_entered->get<std::string>();
+        if (screen_.is_drawn() && is_drawn)
+            if (const auto d = read_points(*points);
+                d && (screen_.entry == entry_kind::path || d->size() == 1))
+                h.text = to_text(*d);
         if (is_number || h.text) {
             open_ = false;
             h.answer = '\0';

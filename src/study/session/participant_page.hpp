@@ -24,12 +24,14 @@
 
 namespace tactor::study {
 
-/// Kind of answer that a participant types instead of choosing.
+/// Kind of answer that a participant types or draws instead of choosing.
 enum class entry_kind {
     none,
     number,   ///< a whole number
     estimate, ///< a number above 0, sent as a text
     text,     ///< one or several lines
+    place,    ///< a point on the array
+    path,     ///< a path over the array
 };
 
 /// Greatest length of a text that a participant enters, in characters.
@@ -58,8 +60,11 @@ struct page_screen {
     std::vector<std::string> choices = {}; ///< possible answers; the page shows an empty one as its number
     std::string keys = {};                 ///< a key for each choice; may be empty
     bool is_line = false; ///< true if the choices are places on a line, from 0 on, without numbers
-    entry_kind entry = entry_kind::none; ///< kind of typed answer, in place of choices
-    unsigned lowest = 1;                 ///< smallest number that may be entered
+    entry_kind entry = entry_kind::none; ///< kind of typed or drawn answer, in place of choices
+
+    bool is_drawn() const noexcept { return entry == entry_kind::place || entry == entry_kind::path; }
+
+    unsigned lowest = 1; ///< smallest number that may be entered
     unsigned greatest = 1;
     bool back = false; ///< true if key b goes to the previous question
     /// Paths of a motion's strokes for each choice, at equal parts of their times; may be empty.
@@ -95,10 +100,12 @@ public:
         std::vector<message> replies = {};
         std::optional<char> answer = {}; ///< key of the answer, or 0; a question gets at most one answer
         unsigned number = 0;             ///< number entered, or place of the choice from 1 (on a line from 0)
-        std::optional<std::string> text = {}; ///< text that was entered, after tidy_text(); an estimate
+        /// Text that was entered, after tidy_text(); an estimate; a drawing as to_text() writes it.
+        std::optional<std::string> text = {};
     };
     /// Takes a message. {"hello":true} makes its sender the participant's page. {"ask":N,"answer":CHOICE or
-    /// number} and {"ask":N,"text":TEXT} answer question N, {"ask":N,"back":true} goes back from it.
+    /// number}, {"ask":N,"text":TEXT} and {"ask":N,"drawing":[[TIME,X,Y],...]} answer question N,
+    /// {"ask":N,"back":true} goes back from it.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
 
     /// Takes a keypad's key in place of an answer from the page: the key of a choice, or its number.

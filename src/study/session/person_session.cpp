@@ -459,7 +459,7 @@ void person_session::trial(const session_step& s)
                               s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
                               s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
     const given_stimulus g = give(s, t);
-    trial_row row = planned_row(p_, t, s.which);
+    trial_row row = planned_row(p_, r, t, s.which);
     row.stream = stream_;
     row.xruns = g.xruns;
     row.frame_1 = g.first_frame;
@@ -467,11 +467,13 @@ void person_session::trial(const session_step& s)
         row.frame_2 = *g.first_frame + p_.stimuli.second(t);
     std::string flaw = g.flaw;
     if (flaw.empty()) {
-        const auto a = ask(ask_about_trial(p_, s));
+        const question q = ask_about_trial(p_, s);
+        const auto a = ask(q);
         if (!a) {
             flaw = "the experimenter repeated it";
         } else {
-            set_response(row, r, a->number, std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
+            set_response(row, r, read_trial_answer(q, *a, p_.where.tactors),
+                         std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
             codes_.send(code_event::answer, s, t, row.response);
         }
     }

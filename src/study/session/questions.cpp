@@ -67,14 +67,15 @@ std::optional<given_answer> question_asker::ask(const question& q,
     typed_text text;
     typed_number number;
     for (;;) {
-        const session_key k = q.is_text()    ? keys_.wait_for_text(text)
-                              : q.is_typed() ? keys_.wait_for_number(number, q.is_estimate())
-                                             : keys_.wait(subject);
+        const bool on_hand = q.is_drawn() && page_ != nullptr;
+        const session_key k = q.is_text() || on_hand ? keys_.wait_for_text(text)
+                              : q.is_typed()         ? keys_.wait_for_number(number, q.is_estimate())
+                                                     : keys_.wait(subject);
         const bool is_shown = q.is_typed() && k.is_key;
         const std::optional<double> estimate = q.is_estimate() ? read_estimate(k.text) : std::nullopt;
         const bool is_answer =
-            q.is_text()       ? k.entered.has_value()
-            : q.is_estimate() ? estimate.has_value()
+            q.is_text() || on_hand ? k.entered.has_value()
+            : q.is_estimate()      ? estimate.has_value()
                               : k.answer && *k.answer >= q.screen.lowest && *k.answer <= q.screen.greatest;
         if (k.command) {
             if (!obey(*k.command))
@@ -83,11 +84,11 @@ std::optional<given_answer> question_asker::ask(const question& q,
             show(q.screen); // asks again, because the page took the press as an answer
         } else if (is_answer) {
             answered_ = k;
-            if (q.is_text() || q.is_estimate())
+            if (q.is_text() || q.is_estimate() || on_hand)
                 answered_.answer.reset();
             given_answer a{estimate.value_or(k.answer.value_or(0)), {}, k.at_ns};
-            a.text = q.is_text() ? *k.entered : fmt::format("{}", a.number);
-            session::show(is_shown ? "\n" : a.text + "\n");
+            a.text = q.is_text() || on_hand ? *k.entered : fmt::format("{}", a.number);
+            session::show(is_shown || on_hand ? "\n" : a.text + "\n");
             return a;
         } else if (q.is_typed() || !keys_.come_early()) {
             session::show(fmt::format("{}{}: {}", is_shown ? "\n" : "", words_["no_answer"], possible));
@@ -150,6 +151,13 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
         shown.entry = entry_kind::estimate;
         return {std::move(shown), std::move(a.possible)};
     }
+    if (a.draws != drawing_kind::none) {
+        shown.entry = a.draws == drawing_kind::place ? entry_kind::place : entry_kind::path;
+        shown.greatest = static_cast<unsigned>(p.where.tactors.tactors.size());
+        const std::string numbers =
+            fmt::format("{} {} {}", shown.lowest, p.definition.page["to"], shown.greatest);
+        return {std::move(shown), numbers};
+    }
     shown.lowest = a.lowest;
     shown.greatest = a.lowest + static_cast<unsigned>(a.labels.size()) - 1;
     shown.choices = std::move(a.labels);
@@ -159,6 +167,15 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(draw_motion(p.definition.motions[m].strokes, layout(p.where.tactors)));
     return {std::move(shown), std::move(a.possible)};
+}
+
+trial_answer read_trial_answer(const question& q, const given_answer& a, const array& where)
+{
+    if (!q.is_drawn())
+        return a.number;
+    if (auto d = read_drawing(a.text))
+        return *std::move(d);
+    return drawing{{0.0, where.tactors.at(static_cast<std::size_t>(a.number) - 1).position}};
 }
 
 question ask_about_item(const questionnaire& q, std::size_t item, const page_words& w, bool back,

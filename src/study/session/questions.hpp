@@ -23,7 +23,8 @@
 
 namespace tactor::study {
 
-/// A question with its answers: numbers from the screen's lowest to its greatest, an estimate, or a text.
+/// A question with its answers: numbers from the screen's lowest to its greatest, an estimate, a text, or a
+/// drawing. The terminal takes the number of a tactor in place of a drawn place.
 struct question {
     page_screen screen;      ///< screen for the page; the terminal shows only its `question`
     std::string possible;    ///< possible answers for the terminal: "1 or 2"; may be empty
@@ -31,13 +32,14 @@ struct question {
 
     bool is_text() const noexcept { return screen.entry == entry_kind::text; }
     bool is_estimate() const noexcept { return screen.entry == entry_kind::estimate; }
+    bool is_drawn() const noexcept { return screen.is_drawn(); }
     /// Returns true if an answer takes several keys and then Enter.
     bool is_typed() const noexcept;
 };
 
 struct given_answer {
-    double number = 0.0; ///< unused for a text
-    std::string text;
+    double number = 0.0;    ///< unused for a text
+    std::string text;       ///< text, estimate as it was typed, or drawing as to_text() writes it
     std::int64_t at_ns = 0; ///< time of the answer, CLOCK_MONOTONIC
 };
 
@@ -82,6 +84,9 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
 
 /// Returns the question of a trial.
 question ask_about_trial(const prepared_experiment& p, const session_step& s);
+
+/// Returns the answer to the question of a trial, with a drawing in place of a tactor's number.
+trial_answer read_trial_answer(const question& q, const given_answer& a, const array& where);
 
 /// Returns the question of an item. `back`: the participant can go to the previous item with key b, or with
 /// Backspace if a text is typed at the terminal.

@@ -123,7 +123,7 @@ private:
             now_ += frames(find_duration_s(p_.definition.motions[t.motion].strokes));
         now_ += codes_.lead(s);
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
-        trial_row row = planned_row(p_, t, s.which);
+        trial_row row = planned_row(p_, r, t, s.which);
         row.stream = 1;
         row.frame_1 = now_;
         if (t.method_2)

@@ -118,7 +118,7 @@ public:
     }
 
     void prepare(simulated_run& who) const override { prepare_judge(who); }
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         const double first = judge(who, t.motion, t.method_1, r);
         return first >= judge(who, t.motion, t.method_2.value(), r) ? 1 : 2;

@@ -35,13 +35,14 @@ public:
         read_comparison(r, t, row, o);
         score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
     }
-    void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const override
+    void score(trial& r, const run_outline& o, std::string_view method_1,
+               const trial_answer& answer) const override
     {
         task::score(r, o, method_1, answer);
         r.positive = is_more(o, method_1, r.response);
     }
 
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         return simulate_comparison(who, t, r);
     }

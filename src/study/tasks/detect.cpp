@@ -57,14 +57,15 @@ public:
             t.refuse(row, "the trial has a value but no stimulus", "write n/a");
         score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
     }
-    void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const override
+    void score(trial& r, const run_outline& o, std::string_view method_1,
+               const trial_answer& answer) const override
     {
         task::score(r, o, method_1, answer);
         r.positive = r.response == 1;
         r.signal = !o.catches || method_1 != catch_name;
     }
 
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         if (const auto key = lapse(who, r))
             return *key;

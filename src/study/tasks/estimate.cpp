@@ -47,10 +47,10 @@ public:
     {
         return {.possible = w["any_number"], .is_estimate = true};
     }
-    void take(trial_row& row, const run_definition& r, double answer) const override
+    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override
     {
         task::take(row, r, answer);
-        row.intensity_estimate = answer;
+        row.intensity_estimate = answer.number;
     }
     std::vector<std::string> list_responses(const run_outline&) const override { return {}; }
     std::string name_response(const run_outline&, std::string_view) const override { return {}; }
@@ -66,12 +66,12 @@ public:
             return number;
         });
     }
-    void score(trial& r, const run_outline&, std::string_view, double answer) const override
+    void score(trial& r, const run_outline&, std::string_view, const trial_answer& answer) const override
     {
-        r.estimate = answer;
+        r.estimate = answer.number;
     }
 
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         constexpr double modulus = 100.0; // estimate for the standard, or for the middle value
         const run_outline& o = who.run.outline;

@@ -97,9 +97,9 @@ public:
         a.possible = describe_answers(a.labels, 1, true, true, w["or"]);
         return a;
     }
-    void take(trial_row& row, const run_definition& r, double answer) const override
+    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override
     {
-        row.response = r.outline.motions.at(static_cast<std::size_t>(answer) - 1);
+        row.response = r.outline.motions.at(static_cast<std::size_t>(answer.number) - 1);
     }
     std::vector<std::string> list_responses(const run_outline& o) const override { return o.motions; }
     std::string name_response(const run_outline&, std::string_view response) const override
@@ -112,9 +112,9 @@ public:
         r.method_1 = find_place(t, row, "method_1", o.methods);
         r.response = static_cast<unsigned>(find_place(t, row, "response", o.motions));
     }
-    void score(trial& r, const run_outline&, std::string_view, double answer) const override
+    void score(trial& r, const run_outline&, std::string_view, const trial_answer& answer) const override
     {
-        r.response = static_cast<unsigned>(answer) - 1;
+        r.response = static_cast<unsigned>(answer.number) - 1;
     }
 
     void prepare(simulated_run& who) const override
@@ -125,7 +125,7 @@ public:
                 who.targets.back().push_back(target_path(s));
         }
     }
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         paths felt = who.felt_paths(t.motion, t.method_1);
         for (std::vector<tactor::point>& path : felt)

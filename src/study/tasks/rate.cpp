@@ -80,10 +80,10 @@ public:
         a.possible = describe_answers(a.labels, a.lowest, false, o.labels.size() == a.labels.size(), w["to"]);
         return a;
     }
-    void take(trial_row& row, const run_definition& r, double answer) const override
+    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override
     {
         task::take(row, r, answer);
-        row.rating = static_cast<unsigned>(answer);
+        row.rating = static_cast<unsigned>(answer.number);
     }
     std::vector<std::string> list_responses(const run_outline& o) const override
     {
@@ -106,7 +106,7 @@ public:
     }
 
     void prepare(simulated_run& who) const override { prepare_judge(who); }
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         const double lowest = who.run.outline.lowest_rating();
         const double highest = who.run.outline.scale;

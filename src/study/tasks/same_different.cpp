@@ -58,14 +58,15 @@ public:
         r.method_2 = find_place(t, row, "method_2", o.methods);
         score(r, o, {}, read_one_of_two(t, row));
     }
-    void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const override
+    void score(trial& r, const run_outline& o, std::string_view method_1,
+               const trial_answer& answer) const override
     {
         task::score(r, o, method_1, answer);
         r.positive = r.response == 2;
         r.signal = r.method_1 != r.method_2;
     }
 
-    double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         if (const auto key = lapse(who, r))
             return *key;

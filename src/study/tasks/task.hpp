@@ -22,6 +22,7 @@
 #include "files/toml_reader.hpp"
 #include "study/analysis/cells.hpp"
 #include "study/data/dataset.hpp"
+#include "study/data/drawing.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
@@ -33,13 +34,14 @@ struct simulation;
 
 /// Answers that a participant may give in a trial.
 struct trial_answers {
-    unsigned lowest = 1;                  ///< number of the first answer
-    std::vector<std::string> labels = {}; ///< label of each answer; empty if the number is enough
-    std::string possible = {};            ///< all answers for a terminal: "1 or 2"
-    bool is_line = false;                 ///< answers are places on a line, without numbers
-    bool is_estimate = false;             ///< the answer is a number above 0, and all else is unused
-    bool names_stimuli = false;           ///< labels name the stimuli of the trial
-    bool shows_motions = false;           ///< answers are the run's motions, which a page draws
+    unsigned lowest = 1;                     ///< number of the first answer
+    std::vector<std::string> labels = {};    ///< label of each answer; empty if the number is enough
+    std::string possible = {};               ///< all answers for a terminal: "1 or 2"
+    bool is_line = false;                    ///< answers are places on a line, without numbers
+    bool is_estimate = false;                ///< the answer is a number above 0, and all else is unused
+    drawing_kind draws = drawing_kind::none; ///< what participants draw, if anything; all else is unused
+    bool names_stimuli = false;              ///< labels name the stimuli of the trial
+    bool shows_motions = false;              ///< answers are the run's motions, which a page draws
 };
 
 /// Procedure that chooses values from the answers so far. This base class leaves the values of trials as they
@@ -136,8 +138,10 @@ public:
 
     /// Returns the possible answers; usually two.
     virtual trial_answers ask(const run_definition& r, const page_words& w) const;
+    /// Returns the target of a motion as its tables have it; empty if they do not.
+    virtual std::string write_target(const motion_definition&) const { return {}; }
     /// Sets the cells of an answer in the row of its trial.
-    virtual void take(trial_row& row, const run_definition& r, double answer) const;
+    virtual void take(trial_row& row, const run_definition& r, const trial_answer& answer) const;
     /// Lists the responses in its tables that have separate numbers in [sync.codes]; empty if all share a
     /// number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
@@ -149,13 +153,15 @@ public:
     virtual void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const = 0;
     /// Sets the members of a trial that depend on its answer. `method_1`: name of the first stimulus' method
     /// in the table.
-    virtual void score(trial& r, const run_outline& o, std::string_view method_1, double answer) const;
+    virtual void score(trial& r, const run_outline& o, std::string_view method_1,
+                       const trial_answer& answer) const;
 
     /// Prepares an observer. \throws error (bad_input) if it cannot judge the run.
     virtual void prepare(simulated_run& who) const;
-    /// Returns an observer's answer to a trial: 1 or 2, a rating, the place of a motion in the run from 1, or
-    /// an estimate.
-    virtual double simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const = 0;
+    /// Returns an observer's answer to a trial: 1 or 2, a rating, the place of a motion in the run from 1, an
+    /// estimate, or a drawing.
+    virtual trial_answer simulate(const simulated_run& who, const planned_trial& t,
+                                  random_numbers& r) const = 0;
 
     // Results.
 

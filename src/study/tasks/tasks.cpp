@@ -23,12 +23,14 @@ const task& estimate_task();
 const task& constant_task();
 const task& adaptive_task();
 const task& interval_task();
+const task& locate_task();
+const task& trace_task();
 
 std::span<const task* const> list_tasks() noexcept
 {
-    static const std::array all{&choose_task(),   &rate_task(),           &identify_task(),
-                                &detect_task(),   &same_different_task(), &estimate_task(),
-                                &constant_task(), &adaptive_task(),       &interval_task()};
+    static const std::array all{&choose_task(),         &rate_task(),     &identify_task(), &detect_task(),
+                                &same_different_task(), &estimate_task(), &constant_task(), &adaptive_task(),
+                                &interval_task(),       &locate_task(),   &trace_task()};
     return all;
 }
 
@@ -90,9 +92,9 @@ trial_answers task::ask(const run_definition& r, const page_words& w) const
     return a;
 }
 
-void task::take(trial_row& row, const run_definition&, double answer) const
+void task::take(trial_row& row, const run_definition&, const trial_answer& answer) const
 {
-    row.response = fmt::format("{}", answer);
+    row.response = fmt::format("{}", answer.number);
 }
 
 std::vector<std::string> task::list_responses(const run_outline&) const
@@ -105,9 +107,9 @@ std::string task::name_response(const run_outline&, std::string_view response) c
     return fmt::format("answer {}", response);
 }
 
-void task::score(trial& r, const run_outline&, std::string_view, double answer) const
+void task::score(trial& r, const run_outline&, std::string_view, const trial_answer& answer) const
 {
-    r.response = static_cast<unsigned>(answer);
+    r.response = static_cast<unsigned>(answer.number);
 }
 
 void task::prepare(simulated_run&) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shows answers: as buttons with numbers, which are also keys, or if there are many, as a line with a mark.
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
+import {make_drawing} from "./drawing.js";
 import {draw_picture} from "./motion.js";
 import {fits_entry} from "./entry.js";
 
@@ -72,15 +73,15 @@ let kept = ""; // content of the answers shown, as JSON
 let focused = -1;
 
 // Shows the answers of a screen. Keeps the buttons and the focus if the question is the same.
-export function show_answers(s, tactors, words, answer) {
+export function show_answers(s, facts, words, answer) {
   const choices = s.choices ?? [], all = by_id("answers"), now = JSON.stringify([choices, s.pictures, s.screen, s.entry, s.question,
     s.screen === "questionnaire" && s.progress]); // the next item may look the same
-  const kind = choices.length ? find_kind(s) : s.entry ? "entry" : "", on_line = kind === "line";
+  const kind = choices.length ? find_kind(s) : s.entry?.draw ? "drawing" : s.entry ? "entry" : "", on_line = kind === "line";
   if (now !== kept || !kind) {
     kept = now;
     all.closest("main").scrollTop = 0;
     focused = on_line || s.entry ? 0 : -1; // so that arrows set the mark, and keys type
-    all.className = on_line || s.entry && !s.entry.most ? `${kind} unset` : kind;
+    all.className = on_line || s.entry && (s.entry.draw || !s.entry.most) ? `${kind} unset` : kind;
     const set = (name, value) => all.style.setProperty(name, value), n = choices.length;
     const on_phone = n < 5 && n !== 3 ? 2 : 3;
     set("--n", n);
@@ -88,8 +89,9 @@ export function show_answers(s, tactors, words, answer) {
     set("--across-phone", on_phone);
     all.classList.toggle("long", n > 7);
     all.classList.toggle("slim", on_phone > 2);
-    all.replaceChildren(...on_line ? make_line(s, words.confirm, answer) : s.entry ? make_entry(s.entry, words, answer) : choices.map((label, i) => {
-      const b = make_button(s, label, i, tactors);
+    all.replaceChildren(...on_line ? make_line(s, words.confirm, answer) : kind === "drawing" ? make_drawing(s.entry, facts, words, answer)
+      : s.entry ? make_entry(s.entry, words, answer) : choices.map((label, i) => {
+      const b = make_button(s, label, i, facts.tactors);
       b.addEventListener("click", () => answer(i + 1));
       return b;
     }));
@@ -102,7 +104,10 @@ export function show_answers(s, tactors, words, answer) {
 export function enable_answers(yes) {
   const all = [...by_id("answers").children];
   if (!yes && all.includes(document.activeElement)) focused = all.indexOf(document.activeElement);
-  for (const b of all) b.disabled = !yes || b.matches(".unset button");
+  for (const b of all) {
+    b.disabled = !yes || b.matches(".unset button");
+    b.classList.toggle("closed", !yes); // an SVG cannot be disabled
+  }
   if (yes && focused >= 0) {
     all[focused]?.focus();
     focused = -1;

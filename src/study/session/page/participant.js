@@ -9,7 +9,7 @@ const LAST = ["over", "elsewhere"]; // last screens of a session or a page
 const ALONE = ["target", "rest", "wait", "pause", "over", "elsewhere"]; // screens without answers
 const BETWEEN = ["wait", "pause"];  // screens that keep the progress shown before
 
-let socket = null, words = {}, tactors = [], state = {screen: "wait", ask: 0}, began = 0;
+let socket = null, facts = {}, words = {}, state = {screen: "wait", ask: 0}, began = 0;
 
 // The program has the session's state. This page shows the program's last message and stores nothing else.
 function connect() {
@@ -27,8 +27,8 @@ function connect() {
     setTimeout(connect, RETRY_MS);
   };
 }
-function greet(facts) {
-  ({words, tactors} = facts);
+function greet(all) {
+  [facts, words] = [all, all.words];
   document.documentElement.lang = words.language;
   by_id("offline").lastElementChild.textContent = words.offline;
   show_only_if(by_id("offline"), false);
@@ -50,12 +50,12 @@ function show(s) {
   for (const mark of by_id("mark").children) show_only_if(mark, !s.stimuli && mark.dataset.on.split(" ").includes(s.screen));
   if (s.progress || !BETWEEN.includes(s.screen)) show_progress(s.progress, s.screen === "rest");
   show_stimuli(s.stimuli ?? 0, s.playing ?? 0, s.names);
-  show_answers(s, tactors, words, answer);
+  show_answers(s, facts, words, answer);
   enable_answers(state.ask > 0);
   show_only_if(by_id("back"), s.back);
   show_only_if(by_id("field"), s.paths);
   show_only_if(by_id("rest"), s.screen === "rest");
-  if (s.paths) draw_target(tactors, s.paths);
+  if (s.paths) draw_target(facts.tactors, s.paths);
   if (s.lasts_s) move(s);
 }
 
@@ -92,7 +92,7 @@ function show_left(left_s, lasts_s) {
 }
 
 function answer(choice) {
-  if (choice > state.choices?.length || !send({[typeof choice === "string" ? "text" : "answer"]: choice})) return;
+  if (choice > state.choices?.length || !send({[typeof choice === "string" ? "text" : Array.isArray(choice) ? "drawing" : "answer"]: choice})) return;
   mark_answer(choice);
 }
 function send(reply) {
