@@ -47,7 +47,7 @@ constexpr std::array commands{
     command{"render", "Write the samples to a WAV file, one channel per tactor", run_render},
     command{"play", "Play strokes on the array", run_play},
     command{"plot", "Draw the array, the path and the bursts over time", run_plot},
-    command{"compare", "Compare predictions of what algorithms feel like", run_compare},
+    command{"compare", "Predict how a stroke feels with several algorithms", run_compare},
     command{"calibrate", "Measure a participant's threshold at each tactor", run_calibrate},
     command{"experiment", "Run an experiment with a participant or a simulated one", run_experiment},
     command{"analyze", "Print the statistics of a study", run_analyze},
