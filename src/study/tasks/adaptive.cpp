@@ -108,7 +108,7 @@ public:
                            .trial =
                                "One stimulus to judge, or a standard and a comparison to choose from; the "
                                "previous answers choose the values",
-                           .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
+                           .response = "Number of the chosen stimulus, or of the chosen word: 1 or 2",
                            .keys = add_procedure_keys({"choices", "vary", "standard"}),
                            .column = "track"})
     {

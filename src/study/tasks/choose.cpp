@@ -81,7 +81,7 @@ public:
     choose()
         : balanced_task({.name = "choose",
                          .trial = "Two stimuli, one after the other; the participant chooses one",
-                         .response = "Which of the two stimuli was chosen, 1 or 2",
+                         .response = "Number of the chosen stimulus: 1 or 2",
                          .questions = {"Which of the two was more like the target?",
                                        "Which of the two was more even?", ""},
                          .keys = {"choices"}},

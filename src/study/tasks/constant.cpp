@@ -10,7 +10,7 @@ public:
         : comparison_task(
               {.name = "constant",
                .trial = "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
-               .response = "Which of the two stimuli, or of the two words, was chosen: 1 or 2",
+               .response = "Number of the chosen stimulus, or of the chosen word: 1 or 2",
                .keys = {"choices", "vary", "values", "standard", "trials_per_value"}})
     {
     }

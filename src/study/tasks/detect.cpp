@@ -22,7 +22,7 @@ public:
     detect()
         : task({.name = "detect",
                 .trial = "One stimulus or none",
-                .response = "Whether a stimulus was felt: 1 yes, 2 no",
+                .response = "Answer to the question of whether a stimulus was felt: 1 yes, 2 no",
                 .questions = {"Did you feel it?", "Did you feel it?", "Did you feel it?"},
                 .keys = {"choices", "catch", "vary", "values", "trials_per_value"}})
     {

@@ -21,7 +21,7 @@ public:
     same_or_different()
         : task({.name = "same-different",
                 .trial = "Two stimuli, one after the other",
-                .response = "Whether the stimuli were 1 the same or 2 different",
+                .response = "Answer of the participant: 1 the stimuli are the same, 2 they differ",
                 .questions = {"Were both the same?", "Were both the same?", "Were both the same?"},
                 .keys = {"choices"}})
     {
