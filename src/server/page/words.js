@@ -19,7 +19,7 @@ export const OPTION_NAMES = {
   overlap: "Where bursts overlap", soa: "Interval, onset to onset (SOA)", burst: "Burst", slope: "Slope of the law",
   intercept: "Intercept of the law", timing: "Interval", min_duration: "Shortest burst", carrier: "Carrier", am: "Amplitude modulation",
   noise_seed: "Seed of the noise", ramp: "Ramp", envelope: "Envelope", attack: "Attack", release: "Release", sl: "Level above the threshold",
-  intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength", level_dbfs: "Level", phase: "One carrier through the stroke",
+  intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength", level_dbfs: "Level", phase: "One carrier for the whole stroke",
 };
 // Words for a prediction: its distance from the path as a part of the pitch, its lag, and the coefficient of variation of its speed.
 export const path_word = part => part < 0.03 ? "on the path" : part < 0.1 ? "near the path" : "off the path";

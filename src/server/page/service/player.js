@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plays takes, tests tactors, stops, and advances the moment.
+// Plays takes, tests tactors, stops, and advances the time shown.
 import {state, changed, on_change, current_take, take_by_id, is_cardless, is_simulated, ceiling_dbfs, take_gain, marks, say, now_ms, SILENT_DB} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
@@ -138,7 +138,7 @@ function hear_starts(strokes) {
 
 // Returns true if the sounding take is the one that is shown.
 const is_shown = p => p.take === state.current;
-// Advances the moment; called once a frame.
+// Advances the time shown; called once a frame.
 export function tick() {
   const p = state.playing;
   if (!p) return;

@@ -51,7 +51,7 @@ function cards(label, name, words, picture) {
   const list = choice({label, visible_label: false, shape: picture ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v), values,
     hold: v => play_by({[name]: v})});
   return join("section", {}, make("h2", {}, label), list, picture
-    ? make("p", {class: "hint-text"}, "Hold a card to feel the take with that method.")
+    ? make("p", {class: "hint-text"}, "Hold a method down to feel the take with it.")
     : button("More", null, e => { all_phantoms = !all_phantoms; e.currentTarget.setAttribute("aria-expanded", all_phantoms); list.update(); },
       {class: "button small outlined", "aria-label": "More phantoms", "aria-expanded": String(all_phantoms)}));
 }
@@ -144,7 +144,7 @@ function vibration_controls() {
   const attack = () => value("attack") ?? value("ramp") ?? 0.002, release = () => value("release") ?? attack();
   const envelope = {least: 0, most: 0.05, step: 0.0005, text: v => ms(v, 1)};
   const phase_row = row("phase"), through = phase_row?.choices?.[0];
-  const phase = toggle({label: "One carrier through the stroke", hint: "Off: it starts again with each burst",
+  const phase = toggle({label: "One carrier for the whole stroke", hint: "Off: it starts again with each burst",
     get: () => (value("phase") ?? through) === through, set: on => set_option("phase", on ? null : phase_row?.choices?.[1])});
   const picture = {element: make("div", {class: "picture"}), update() {
     noise.element.hidden = kind() !== "noise";

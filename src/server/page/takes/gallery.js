@@ -12,7 +12,7 @@ import {box, distance, outside_mm, sampled} from "../geometry.js";
 
 const BURST_S = 0.07; // by Park's law the interval is the same
 
-// Returns rows of a stroke, [t_s, u, v, strength], where u and v go from 0 to 1: along places at one speed, or at one place.
+// Returns rows of a stroke, [t_s, u, v, strength], along places at one speed. u and v go from 0 to 1.
 function path(seconds, places) {
   const rows = places.map((p, i) => [i, ...p, 1]);
   return rows.map(([i, ...q]) => [seconds * parts_reached(rows)[i][0], ...q]);
@@ -38,7 +38,7 @@ const BACK = [...ROW, ROW[0]], PARTS = [0, 0.5, 1], CONTINUOUS = {algorithm: "co
 const GALLERY = [
   ["Line across", "One line at one speed: the plainest motion.", 1, one(1.2, ROW)],
   ["Fast and slow", "In 0.4 s and in 1.6 s: speed is felt, too.", 2, [[0, path(0.4, ROW)], [0.8, path(1.6, ROW)]]],
-  ["Half circle", "A curve from three tactors at a time.", 4, one(1.4, curve(p => ring(-p / 2)))],
+  ["Half circle", "A curve that three tactors at a time make.", 4, one(1.4, curve(p => ring(-p / 2)))],
   ["Three-quarter circle", "Where does it begin, and which way does it turn?", 4, one(2.1, curve(p => ring(0.5 + 0.75 * p)))],
   ["Nothing there", "Two tactors, felt as one point between them.", 0, [[0, resting(0.5, 1)]], CONTINUOUS],
   ["Between two", "The point moves to a neighbour and back.", 0, one(1.6, BACK), CONTINUOUS],
@@ -114,7 +114,7 @@ export function draw_card() {
 // Steps of the tour: title, text, range of its strokes (as in the gallery), and [name, strokes] to try, with the neighbours a and b.
 const tour = ([a, b], feel) => [
   ["One tactor", `Tactor ${b} buzzes where it is.`, 0, ["Tap it", [[0, resting(1, 0.5)]]]],
-  ["A point where nothing is", `Now ${a} and ${b} play together, equally strong. You ${feel} one point between them: a phantom.`, 0,
+  ["A point without a tactor", `Now ${a} and ${b} play together, equally strong. You ${feel} one point between them: a phantom.`, 0,
     ...[["Again", 0.5], [`Only ${a}`, 0], [`Only ${b}`, 1]].map(([name, u]) => [name, [[0, resting(u, 1)]]])],
   ["It moves", `The strength moves from ${a} to ${b} while both play, and the point moves with it.`, 0,
     ...[["Again", 1.2], ["Slower", 3.6]].map(([name, s]) => [name, [[0, path(s, ROW)]]])],

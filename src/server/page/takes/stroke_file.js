@@ -7,7 +7,7 @@ const REST = /^# Options of the studio that a stroke file has no keys for: (\{.*
 const AM = /^([\d.]+)(?::([\d.]+))?$/; // HZ or HZ:DEPTH
 
 export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
-// Returns a stroke's own `keys`, as in a stroke file, such as {soa_s: 0.4}, without options that are set for all strokes, which win.
+// Returns a stroke's own `keys`, as in a stroke file, such as {soa_s: 0.4}. Leaves out options that are set for all strokes, because those win.
 export const keys_left = (s, options) => Object.fromEntries(Object.entries(s.keys ?? {}).filter(([key]) => key === "noise_seed"
   ? options.waveform === undefined : options[key.replace(/_(s|hz|depth|profile)$/, "")] === undefined)
   .map(([key, v]) => [key, key === "noise_seed" ? options.noise_seed ?? v : v]));
@@ -41,8 +41,8 @@ export function take_toml(take) {
   const {keys} = split(take.options);
   return strokes_toml(with_level(take).strokes.map(s => ({...s, keys: {...keys_left(s, take.options), ...keys}}))) + rest_comment(take);
 }
-// Returns the strokes, options and gain of a file: from the service's reading of its text, and the text. Options that all strokes have become the
-// take's.
+// Returns the strokes, options and gain of a file, from its text and from the strokes that the service read in it. Options that all strokes have
+// become the take's.
 export function read_take({strokes, points}, text, rows) {
   const own = strokes.map(s => ({...s.keys})), shared = key => own.every(k => k[key] === own[0][key]) ? own[0][key] : undefined;
   const options = {}, take = {options}, drop = key => own.forEach(k => { delete k[key]; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lanes that show the times at which tactors play: a ruler, the strokes, a lane for each tactor. They are drawn only
-// when something has changed; the moment is an element above them.
+// when something has changed; the mark of the time shown is an element above them.
 import {state, current_take, marks} from "../state.js";
 import {colour, is_dark, paint, write, plot} from "../look.js";
 import {array} from "../drawing/view.js";

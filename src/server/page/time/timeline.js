@@ -51,7 +51,7 @@ function touch_curve_at(l, x, y) {
   const far = h => Math.hypot(h.x - x, h.y - y), nearest = l.curves && y > l.height - l.curves && handles(l).reduce((a, b) => a && far(a) <= far(b) ? a : b, null);
   touch_curve(nearest ? nearest.kind : "");
 }
-// Grasps a thing on the ruler: an end of the range, the moment, or a place where a range begins.
+// Grasps a thing on the ruler: an end of the range, the mark of the time shown, or a place where a range begins.
 function hold_ruler(l, x, e) {
   const is_near = (t, px) => Math.abs(to_x(l, t) - x) < px, {range} = marks();
   const end = range?.findIndex(t => is_near(t, e.pointerType === "touch" ? 22 : 8)) ?? -1;
