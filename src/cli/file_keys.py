@@ -75,7 +75,7 @@ def table_rows(page):
 
 
 def list_rows(page):
-    """Yields the same of the page's lists, which say ranges and defaults in their texts."""
+    """Yields the same for the page's lists, whose texts contain the ranges and defaults."""
     table = ""
     seen = ""
     for part in re.split(r"^(?=\.(?:Bl|It|El|Ss|Sh)\b)", page, flags=re.M):
@@ -92,7 +92,7 @@ def list_rows(page):
 
 
 def mentioned(text):
-    """Returns the words of a text that are set as keys."""
+    """Returns the words of a manual's text that its macros and fonts mark as keys."""
     words = re.findall(r"\\fB([a-z_]+)\\fR", text) + re.findall(r"([a-z_]+) =", " ".join(re.findall(r"\\fB(.*?)\\fR", text))) + [w for line in re.findall(r"^\.Cm (.*)$", text, re.M) for w in re.findall(r"[a-z_]{2,}", line)]
     return " ".join(dict.fromkeys(words))
 

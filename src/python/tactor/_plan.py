@@ -283,7 +283,7 @@ class Plan(_Value):
 
     @property
     def array(self) -> Array:
-        """The array that it is for."""
+        """The array of the plan."""
         return self._array
 
     @property
@@ -384,7 +384,7 @@ class Plan(_Value):
         return pandas.DataFrame(columns)
 
     def _place_on(self, array: Array) -> tuple[bool, _t.Any]:
-        """Returns True if it was made for another array, and then the other tables of that array's file, which say what the plan leaves
+        """Returns True if the plan was made for another array, and then the other tables of that array's file, which say what the plan leaves
         open. A record says all, and a plan has taken over what its own array's file says."""
         elsewhere = not (self._recorded or self._array is array or self._array == array)
         return elsewhere, array._settings() if elsewhere else None

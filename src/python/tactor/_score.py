@@ -38,7 +38,7 @@ def _find_type(dtype: _DTypeLike) -> _np.dtype[_t.Any]:
 
 
 def _find_frames(samples: _ArrayLike) -> _NDArray[_t.Any]:
-    """Returns samples of one's own as frames of a type that can be rendered, in C's order."""
+    """Returns the caller's samples as frames of a type that can be rendered, in C order."""
     import numpy as np
     raw: _t.Any = samples if isinstance(samples, np.ma.MaskedArray) else np.asarray(samples)
     if raw.ndim == 1:
@@ -130,7 +130,7 @@ class Score(_Value):
     @classmethod
     def from_samples(cls, array: Array, samples: _ArrayLike, rate: int = 48000, *, level_dbfs: float | None = None,
                      marker_channel: int | None = None, marker_s: float | None = None) -> Score:
-        """Makes a score of samples of one's own, which play exactly as they are.
+        """Makes a score of your own samples, which play exactly as they are.
 
         Parameters
         ----------
@@ -174,17 +174,17 @@ class Score(_Value):
         return made
 
     def _moved(self, array: Array) -> Score:
-        """Returns the same samples of one's own for another array."""
+        """Returns a score of the same samples for another array."""
         return Score._make_own(array, self.render(_t.cast(str, self._own)), self._options)
 
     @property
     def array(self) -> Array:
-        """The array that it is for."""
+        """The array of the score."""
         return self._array
 
     @property
     def plans(self) -> tuple[Plan, ...]:
-        """The plans, in the order given; none of samples of one's own."""
+        """The plans, in the order given; empty for a score of your own samples."""
         return tuple(p for _, p in self._plans)
 
     frames: _Member[int] = _Member("frames", "Length.")
@@ -306,7 +306,7 @@ class Score(_Value):
         return hash((self._sounds(), tuple((p.carrier, p.amplitudes.tobytes()) for p in self.plans)))
 
     def _sounds(self) -> tuple[_t.Any, ...]:
-        """Returns all that decides on the samples, but for the plans' bursts and curves."""
+        """Returns everything that decides the samples, except the plans' bursts and curves."""
         return self._array.tactors, tuple(self.starts), self.frames, self._recipe, self._hash_samples()
 
     def _hash_samples(self) -> bytes | None:

@@ -54,7 +54,7 @@ class Comparison(list[dict[str, _t.Any]]):
 
 
 def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list[str]:
-    """Returns a list of names; empty if its option for a single name counts."""
+    """Returns the names in `value`; an empty list for None. Refuses names if `one`, the option for a single name, is set, too."""
     if value is None:
         return []
     if one is not None:
@@ -82,7 +82,7 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
             intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None, observer: _Observer | None = None,
             spread: int | None = None, spread_seed: int | None = None, spread_sigma: float | None = None,
             spread_threshold_db: float | None = None, spread_place_mm: float | None = None) -> Comparison:
-    """What algorithms are predicted to feel like on the same stroke: a model, never a measurement.
+    """Predicts how the same stroke feels with several algorithms: a model, never a measurement.
 
     Parameters
     ----------
