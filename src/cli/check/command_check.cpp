@@ -164,7 +164,7 @@ finding check_device(const alsa_options& device, const session::stream_options& 
                        fmt::format("{}: not opened, because that would empty its file or start its command",
                                    device.pcm) +
                            note_text(session::wiring_notes(e.tactors, there)),
-                       "play would open it: check that you want this");
+                       "check that you want this before you play");
     }
     try {
         return check_open(device, o, e, named, kept_as);
