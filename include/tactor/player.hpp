@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The engine: it plays scores on a sink in real time, and strokes that a program feeds point by point while
-/// they sound (from a sensor, a finger, a simulation), and it reports about strokes and streams that ended.
+/// The engine. It plays scores on a sink in real time. It also plays strokes that a program feeds point by
+/// point while they sound, from a sensor, a finger or a simulation. It reports how strokes and streams ended.
 #pragma once
 
 #include <chrono>
@@ -411,8 +411,8 @@ public:
     bool set_level(stroke_id id, double db);
 
     /// Returns the frame of the stream with which a planned stroke began, while it sounds; nothing before and
-    /// after that. To continue it exact to the frame, start another stroke with start_at::frame() at this
-    /// frame plus its length.
+    /// after that. To continue the stroke without a gap, start another one with start_at::frame() at this
+    /// frame plus the stroke's length.
     [[nodiscard]] std::optional<std::uint64_t> first_frame(stroke_id id) const;
 
     /// Starts all armed strokes: their first samples are at the DAC at a time, or as soon as possible if that

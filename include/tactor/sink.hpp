@@ -25,8 +25,8 @@ struct stream_wiring {
     /// from 1024). A channel that reaches none is lost. Empty: each channel reaches the one of the same
     /// number.
     std::vector<std::vector<unsigned>> outputs = {};
-    /// Factor on the samples of each of `outputs`, in the same order; below 0 the polarity is reversed. A
-    /// gain below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
+    /// Factors on the samples, in the order of `outputs`; a factor below 0 reverses the polarity. An output
+    /// with a gain below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
     std::vector<std::vector<double>> gains = {};
     /// Plugin on the route whose level is not known: "type softvol". Empty: none.
     std::string level_by = {};

@@ -125,7 +125,7 @@ public:
         send(hello);
         while (!wait() && take_messages())
             check_silence();
-        // Tries again, because no other process can.
+        // Tries again, because no other process can switch the line off.
         for (int tries = 0; !job_.set(job_.line, false) && tries < last_tries; ++tries)
             ::poll(nullptr, 0, last_pause_ms);
     }
@@ -375,7 +375,7 @@ std::optional<message> holder_link::receive() noexcept
     return m;
 }
 
-/// Kills a holder that is lost or hangs with the line, takes the line over and switches it off.
+/// Kills a holder that is lost, or that hangs and keeps the line. Takes the line over and switches it off.
 void holder_link::give_up() noexcept
 {
     gone_ = true;

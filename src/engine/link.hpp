@@ -26,9 +26,9 @@ class live_voice;
 /// Most scores that the audio thread holds at once, sounding or about to; more wait on the control side.
 inline constexpr std::uint32_t voices = 512;
 
-/// Identifier of one handing-over of a score to the audio thread: place in its table plus voices *
-/// generation. A score that must be handed over again after an xrun gets a new ticket. Commands under the old
-/// one that are still in the ring are ignored.
+/// Identifier of a score in the audio thread: its place in the thread's table plus voices * generation. A
+/// score that control sends again after an xrun gets a new ticket. The audio thread ignores commands under
+/// the old one that are still in the ring.
 using ticket = std::uint32_t;
 
 constexpr std::uint32_t ticket_place(ticket t) noexcept
@@ -156,8 +156,8 @@ private:
     std::atomic<bool> changed_{false};
 };
 
-/// Levels of drive time, s, to which others have driven channels. The control side sets them; the audio
-/// thread takes each once.
+/// Levels of drive time, s, that other programs and players have reached on the channels. The control side
+/// sets them; the audio thread takes each once.
 class level_requests {
 public:
     /// Sets the number of channels. Call it before the audio thread starts.

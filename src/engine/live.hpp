@@ -83,7 +83,7 @@ public:
     /// Counts a point whose intensity was above 1, and a point outside the array.
     void count_held() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
     void count_outside() noexcept { outside_points_.fetch_add(1, std::memory_order_relaxed); }
-    /// Counts the way to a point with this time stamp, ns.
+    /// Adds a point with this time stamp, ns, to the length and the duration that doubt() judges.
     void count_way(point p, std::int64_t at_ns) noexcept;
 
     /// Ends the stroke as interrupted, for this reason. Call it once.
@@ -95,7 +95,7 @@ public:
     std::uint64_t outside_points() const noexcept { return outside_points_.load(std::memory_order_relaxed); }
     /// Returns a warning if the points are likely in another unit than millimetres; else empty.
     std::string doubt() const;
-    /// Returns why it failed. Only for a caller that knows that it failed.
+    /// Returns the reason of the failure. Call it only after the stroke has failed.
     const std::string& failure() const noexcept { return failure_; }
     bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
     /// Marks the stroke as ended, or as about to end without further points.

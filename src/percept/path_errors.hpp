@@ -44,8 +44,8 @@ public:
     target_window window(std::size_t i) const noexcept { return {&x_mm_[i], &y_mm_[i]}; }
     /// Returns the unit vector of the movement at i ms; none while the target rests.
     std::optional<point> direction(std::size_t i) const noexcept;
-    /// Returns the distance from the nearest point of the path, for more than most_pieces accurate to
-    /// 0.015 mm. `near` is any point of the path: the search is the shorter, the nearer it is.
+    /// Returns the distance from the nearest point of the path. It is accurate to 0.015 mm for more than
+    /// most_pieces. `near` is any point of the path; a nearer one makes the search shorter.
     double off_path_mm(point p, point near) const noexcept;
 
 private:
@@ -71,9 +71,9 @@ public:
     /// `targets` must live as long.
     explicit path_errors(const target_places& targets) : targets_(targets) {}
 
-    /// Adds what is felt at i ms. Times must ascend, here and below.
+    /// Adds the felt place at i ms. Times must ascend, also in calls of the next function.
     void add(std::size_t i, point felt) { add(i, targets_.window(i), felt); }
-    /// Adds what is felt at a time with the places `window`. The direction is that at i ms.
+    /// Adds a felt place whose targets are `window`. Takes the direction of the movement at i ms.
     void add(std::size_t i, target_window window, point felt);
 
     /// Sets the errors of a summary; none if nothing is felt.

@@ -26,8 +26,8 @@ bool names_device(const settings& s, const environment& e);
 /// Says on standard error that the session plays to "null", if nothing names a PCM.
 void tell_of_no_device(const settings& s, const environment& e);
 
-/// Returns the options to open the PCM with these channels at that rate, Hz; "null" if nothing names a PCM.
-/// \throws error (bad_input) if an array file has more than the name of a device.
+/// Returns the options to open the PCM with these channels at that rate, Hz. The PCM is "null" if nothing
+/// names one. \throws error (bad_input) if an array file's PCM is anything but the name of a device.
 alsa_options device_options(const settings& s, const stream_options& chosen, const environment& e,
                             unsigned channels, unsigned rate);
 
@@ -50,8 +50,8 @@ std::string find_fit(alsa_options o, const array& a);
 /// Opens like open_alsa() for this array; if the PCM has too few channels, the hint names what fits.
 std::unique_ptr<sink> open_device(const alsa_options& o, const array& a);
 
-/// Returns the sound server between this process and a PCM; empty: none. Sets an unset variable of PipeWire
-/// in this process, so that each channel goes to the output with its number without mixing. Call it before
+/// Returns the sound server between this process and a PCM; empty: none. If a variable of PipeWire is unset,
+/// sets it in this process, so that each channel goes unmixed to the output with its number. Call it before
 /// there are threads and before the PCM is opened.
 std::string prepare_server(const std::string& pcm);
 

@@ -53,7 +53,8 @@ bool may_be_appended_to(int fd)
     return n == 0 || (n > 0 && is_log({begin.data(), static_cast<std::size_t>(n)}));
 }
 
-// Cuts off half a line, unless another process has written since. The next log would begin in it.
+// Cuts off a line that was written in part, unless another process has written since. Otherwise the next
+// log would continue that line.
 void take_back(int fd, ssize_t written)
 {
     const off_t end = ::lseek(fd, 0, SEEK_CUR);

@@ -96,8 +96,8 @@ using before_stroke = std::function<void(std::size_t i)>;
 void plan_piece(piece& p, const array& a, const layout& faces, const options::option_values& o,
                 const before_stroke& next = {});
 
-/// Makes the score of a piece: of its samples, its plans, or its strokes. Plans of strokes become a part of
-/// the score one by one. Takes the plans that the piece has. \throws error.
+/// Makes the score of a piece from its samples, its plans or its strokes. Plans strokes one by one and moves
+/// each plan into the score. Moves plans that the piece has out of it. \throws error.
 score make_score(piece& p, const array& a, const layout& faces, const options::option_values& o,
                  const render_options& r, const before_stroke& next = {});
 
