@@ -50,7 +50,7 @@ error about_own(const error& x, const stroke& s)
     return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;
 }
 
-// Calls work(next). Errors of it name the stroke for which it called next() last.
+// Calls work(next). If work() throws, the error names the stroke for which it last called next().
 template <class F>
 auto name_strokes(const piece& p, F work)
 {

@@ -27,7 +27,7 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
     return parts;
 }
 
-/// Parses a text that is a number as a whole. Returns nothing for other texts and for numbers that T cannot
+/// Parses a text that contains only a number. Returns nothing for other texts and for numbers that T cannot
 /// hold. `base` applies to whole numbers; the default is ten.
 template <typename T, typename... Base>
 std::optional<T> number_in(std::string_view text, Base... base)
@@ -50,7 +50,7 @@ bool blank(char c) noexcept;
 /// Returns the text without blanks at both ends.
 std::string_view without_blanks(std::string_view text) noexcept;
 
-/// Moves `at` behind blanks.
+/// Moves `at` past blanks.
 void skip_blanks(std::string_view text, std::size_t& at) noexcept;
 
 /// Reads the number that begins at `at`, as SVG and CSV write it, and moves `at` behind it. Without a number

@@ -21,9 +21,9 @@ inline constexpr std::array<std::pair<const char*, const char*>, 3> all_error_ba
      {"within", "95 % intervals within participants (Cousineau-Morey)"},
      {"ci", "95 % intervals of the means"}}};
 
-/// Draws a panel for each run: means with error bars and each participant by motion, as the paper's figures 8
-/// and 9, and d'; psychometric functions and estimates, of several conditions one for each and their means;
-/// and the answers of runs that identify.
+/// Draws a panel for each run. The panel shows means with error bars and each participant by motion, as the
+/// paper's figures 8 and 9 do, or d'. Runs that measure have psychometric functions or estimates: one for
+/// each condition, and their means. Runs that identify have their answers.
 plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, error_bars kind);
 
 } // namespace tactor::cli

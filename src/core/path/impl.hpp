@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Contents of a path; the outline from which it is made, also of SVG path data; and its meetings with lines.
+/// Contents of a path; the outline, such as SVG path data, from which it is made; its meetings with lines.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Axes, line charts, parts of lines and lines of fewer points; headings over a picture and notes under it.
+/// Axes, line charts, lines that are clipped or have fewer points, headings over a picture, notes under it.
 #pragma once
 
 #include <string>
@@ -38,7 +38,7 @@ ticks nice_ticks(double lo, double hi, std::size_t most);
 /// `most`, ticks are at powers of ten alone, however many.
 ticks log_ticks(double lo, double hi, std::size_t most);
 
-inline constexpr double small_text = 6.0; ///< pt, the least at one print column
+inline constexpr double small_text = 6.0; ///< pt, smallest in a picture as wide as one print column
 inline constexpr double label_text = 6.5;
 inline constexpr double title_text = 7.0;
 

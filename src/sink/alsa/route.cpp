@@ -61,7 +61,7 @@ std::string value_text(snd_config_t* value)
     return text;
 }
 
-// Returns a string's text, which the node owns; null for other nodes and for none.
+// Returns the text of a string, which the node owns; null for null and for other nodes.
 const char* string_value(snd_config_t* value)
 {
     const char* text = nullptr;
@@ -341,7 +341,8 @@ constexpr std::array binding{"dmix", "dshare", "share"};
 constexpr double least_gain = 1e-3; // -60 dB: less is not felt
 constexpr double rounding = 1e-6;
 
-// First number of an output that is the end of a table, where ALSA clips, and no channel of a device.
+// Lowest number of an output that stands for the end of a table, where ALSA clips. Lower numbers are channels
+// of devices.
 constexpr unsigned first_end = 1U << 30;
 
 // Outputs that each channel reaches, and the factor on its samples there.

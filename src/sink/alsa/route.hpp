@@ -16,7 +16,7 @@
 
 namespace tactor::alsa {
 
-/// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes and for none.
+/// Calls `visit` for each member of a compound, with its name. Does nothing for null and for other nodes.
 template <typename Visit>
 void each_member(snd_config_t* compound, Visit visit)
 {

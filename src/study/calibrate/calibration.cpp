@@ -31,7 +31,7 @@ constexpr double guess_chance = 0.5; // of two intervals
 // QUEST+: levels and thresholds are 1 dB apart. Thresholds this far above the ceiling mean "not felt".
 constexpr int levels_db = 80;
 constexpr int above_ceiling_db = 10;
-// Number of right answers without a wrong one that cannot come from the skin.
+// Number of right answers in a row, from the first on, that cannot come from the skin.
 constexpr std::size_t too_many_right = 20;
 // The first tactor's threshold is expected below the start level, within some 20 dB. The others are expected
 // near the thresholds that were measured so far.
@@ -122,7 +122,7 @@ bool staircase::step(bool right)
 
 void staircase::go_to(double level_dbfs)
 {
-    const double rounded = std::round(level_dbfs * 1e6) / 1e6; // steps of 0.1 dB add up to decimal numbers
+    const double rounded = std::round(level_dbfs * 1e6) / 1e6; // steps of 0.1 dB add up to 0.3, not 0.30...04
     level_ = std::clamp(rounded, floor_dbfs, o_.ceiling_dbfs);
 }
 

@@ -314,8 +314,8 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     return loop;
 }
 
-/// Returns a recording in its own time at another rate; its peak is 1, and its mean 0. Throws error
-/// (bad_input) if no signal remains.
+/// Returns a recording resampled to another rate, without a change of its duration. Its peak is 1, and its
+/// mean is 0. Throws error (bad_input) if no signal remains.
 wave_samples recorded_loop(const recording& r, unsigned rate)
 {
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
