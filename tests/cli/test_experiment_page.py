@@ -123,6 +123,21 @@ class Sessions(PageTest):
         # A drawing of one point has no direction; the mean is over those that have one.
         self.assertAlmostEqual(told["how"]["drawings"]["participants"]["01"]["direction"], math.degrees(math.atan2(2 - 1.23, 20)), 9)
         self.assertEqual(len(told["how"]["drawings"]["mean"]), 51)
+        # Both observers feel the stroke on the line between the tactors.
+        for drawings in (told["where"]["drawings"], told["how"]["drawings"]):
+            self.assertEqual(list(drawings["predicted"]), ["centroid", "low-speed"])
+            for one in drawings["predicted"].values():
+                self.assertTrue(all(y == 0 and 0 <= x <= 20 for x, y in one["points"]), one)
+                if len(one["points"]) == 1:
+                    self.assertAlmostEqual(one["distance"], math.dist(one["points"][0], drawings["mean"][0]), 9)
+                else:
+                    self.assertGreaterEqual(one["frechet"], one["distance"])
+        file = self.dir / "study/sourcedata/sub-01/session.json"
+        kept = file.read_text()
+        file.write_text(kept.replace('"felt": "0 ', '"felt": "x ', 1))
+        self.assertIn("predictions[0].felt: it is not a drawing", self.refused(2, "analyze", "study").stderr)
+        file.write_text(re.sub(r'"predictions": \[.*?\],', "", kept, flags=re.S))  # as of another program
+        self.assertEqual(self.analysis()["runs"]["how"]["drawings"]["predicted"], {})
         self.write_row("how", 0, "response", "0 1 1;x")
         self.assertIn('sub-01_task-how_beh.tsv:2: response is not a drawn path', self.refused(2, "analyze", "study").stderr)
         self.assertIn("participants can draw only on the page", self.refused(2, *self.args(code="02", definition="drawn.toml")).stderr)

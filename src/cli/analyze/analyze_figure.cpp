@@ -317,6 +317,13 @@ void add_drawings(plot::panel_figure& f, const study::run_analysis& r)
         for (const study::drawn_by_person& person : v->people)
             for (const std::vector<point>& drawing : person.drawings)
                 p.curves.push_back(make(drawing, 1.0));
+        for (const study::predicted_drawing& one : v->predicted) {
+            plot::curve predicted = make(one.points, large);
+            predicted.name = one.observer + " observer";
+            predicted.thick = true;
+            predicted.colour = 2 + static_cast<std::size_t>(&one - v->predicted.data());
+            p.curves.push_back(std::move(predicted));
+        }
         plot::curve mean = make(v->mean, large);
         mean.name = "mean";
         mean.thick = true;
@@ -357,7 +364,8 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
     }
     const auto is_drawn = [](const plot::curve_panel& p) { return p.to_scale; };
     if (std::ranges::any_of(f.curves, is_drawn))
-        notes.emplace_back("To scale: each drawing of each participant, their mean, and the target.");
+        notes.emplace_back(
+            "To scale: each drawing of each participant, their mean, the target, and predictions.");
     if (!std::ranges::all_of(f.curves, is_drawn))
         notes.emplace_back("Thin lines and points: participants; the area of a point grows with its trials.");
     if (std::ranges::any_of(f.curves,

@@ -313,6 +313,10 @@ public:
     {
         print_figures(v, usual_decimals);
         print_people(v, usual_decimals, [](const auto&) { return std::string(); });
+        for (const study::predicted_drawing& p : v.predicted)
+            say(stdout, "    {} observer, from the mean drawing: distance {:.2f} mm{}\n", p.observer,
+                p.distance_mm,
+                v.kind == study::drawing_kind::path ? fmt::format(", Frechet {:.2f} mm", p.frechet_mm) : "");
     }
     template <class T>
     void operator()(const T&) const // has no table

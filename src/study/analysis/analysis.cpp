@@ -61,7 +61,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
             continue;
         }
         r.trials += own.trials.size();
-        people.all.push_back({d.participants[i], &own.trials, d.groups.empty() ? "" : d.groups[i]});
+        people.all.push_back(
+            {d.participants[i], &own.trials, d.groups.empty() ? "" : d.groups[i], &own.predictions});
     }
     r.n = people.all.size();
     r.times = summarise_times(r.run, people.all);

@@ -153,6 +153,31 @@ std::vector<named_value> list_path_figures(const std::vector<trial>& trials)
             {{"curvature"}, mean_if_any(curvatures)}};
 }
 
+// Compares the predictions for a stimulus with the mean drawing. The place of a path is its middle.
+std::vector<predicted_drawing> compare_predictions(const std::vector<predicted_path>& all,
+                                                   const std::string& motion, const std::string& method,
+                                                   drawing_kind kind, const std::vector<point>& mean_drawing)
+{
+    std::vector<predicted_drawing> compared;
+    for (const predicted_path& p : all) {
+        if (p.motion != motion || p.method != method)
+            continue;
+        drawing felt = p.felt;
+        if (kind == drawing_kind::place) {
+            std::vector<std::vector<point>> points;
+            for (const drawn_point& one : p.felt)
+                points.push_back({one.at});
+            felt = {{0.0, average_points(points).front()}};
+        }
+        drawing drawn;
+        for (const point& at : mean_drawing)
+            drawn.push_back({0.0, at});
+        const path_errors e = compare_paths(felt, drawn);
+        compared.push_back({p.observer, divide(felt, drawn_parts), e.distance_mm, e.frechet_mm});
+    }
+    return compared;
+}
+
 } // namespace
 
 std::optional<double> find_curvature(const drawing& d)
@@ -193,7 +218,8 @@ std::vector<named_value> list_drawn_figures(drawing_kind kind, const std::vector
     return kind == drawing_kind::place ? list_place_figures(trials) : list_path_figures(trials);
 }
 
-drawn_answers measure_drawings(drawing_kind kind, const condition_trials& c, const run_people& people)
+drawn_answers measure_drawings(const run_outline& o, drawing_kind kind, const condition_trials& c,
+                               const run_people& people)
 {
     const auto look = [kind](const std::vector<trial>& trials, const std::string&) {
         drawn_by_person p{.figures = list_drawn_figures(kind, trials)};
@@ -207,12 +233,16 @@ drawn_answers measure_drawings(drawing_kind kind, const condition_trials& c, con
     v = measure_people(std::move(v), c, people, {}, look,
                        [&names](const drawn_by_person& p) { return p.figures.empty() ? names : p.figures; });
     std::set<std::size_t> motions;
+    std::set<std::size_t> methods;
     const trial* any = nullptr;
+    const std::vector<predicted_path>* predictions = nullptr;
     std::vector<std::vector<point>> means;
     for (std::size_t i = 0; i < v.people.size(); ++i) {
         for (const trial& t : c.people[i]) {
             motions.insert(t.motion);
+            methods.insert(t.method_1);
             any = &t;
+            predictions = people.all[i].predictions;
         }
         if (!v.people[i].drawings.empty())
             means.push_back(average_points(v.people[i].drawings));
@@ -220,6 +250,9 @@ drawn_answers measure_drawings(drawing_kind kind, const condition_trials& c, con
     if (motions.size() == 1) {
         v.target = divide(any->target, drawn_parts);
         v.mean = average_points(means);
+        if (predictions != nullptr && methods.size() == 1)
+            v.predicted = compare_predictions(*predictions, o.motions[any->motion], o.methods[any->method_1],
+                                              kind, v.mean);
     }
     return v;
 }

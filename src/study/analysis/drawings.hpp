@@ -40,8 +40,9 @@ std::optional<double> find_curvature(const drawing& d);
 std::vector<named_value> list_drawn_figures(drawing_kind kind, const std::vector<trial>& trials);
 
 /// Measures the drawings of each participant in a condition. With one motion it also has the target and the
-/// mean drawing.
-drawn_answers measure_drawings(drawing_kind kind, const condition_trials& c, const run_people& people);
+/// mean drawing, and with one method the predictions.
+drawn_answers measure_drawings(const run_outline& o, drawing_kind kind, const condition_trials& c,
+                               const run_people& people);
 
 /// Counts by method and motion the motion whose target is nearest to the place drawn.
 std::vector<answer_counts> count_nearest(const run_outline& o, const run_people& people);

@@ -194,7 +194,7 @@ private:
         std::string& group = set_.groups.back();
         if (std::vector<run_data>& runs = set_.data.back(); runs.empty()) {
             group = s.group;
-            runs.resize(set_.experiment.runs.size());
+            runs.resize(set_.experiment.runs.size(), {.predictions = s.predictions});
         }
         if (group != s.group)
             throw error(error_kind::bad_input, session_name(code, session),
@@ -324,6 +324,13 @@ session_data read_session(const std::filesystem::path& file)
         s.group = all["group"].need_text();
         if (std::ranges::find(groups, s.group, &group_outline::name) == groups.end())
             all["group"].refuse("it is not a group of the experiment");
+    }
+    for (const files::json_value& one : all["predictions"].list()) {
+        std::optional<drawing> felt = read_drawing(one["felt"].need_text());
+        if (!felt)
+            one["felt"].refuse("it is not a drawing");
+        s.predictions.push_back({one["observer"].need_text(), one["motion"].need_text(),
+                                 one["method"].need_text(), *std::move(felt)});
     }
     return s;
 }

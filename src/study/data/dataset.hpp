@@ -8,7 +8,7 @@
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}: the text
 ///                                             has the runs and the order of motions and methods. "group":
 ///                                             name of the group, if the experiment has groups. Other keys
-///                                             are ignored.
+///                                             are ignored, except "predictions", which may be absent.
 ///
 /// If the experiment has several sessions, the files are
 /// sub-CODE/ses-N/beh/sub-CODE_ses-N_task-NAME_beh.tsv and sourcedata/sub-CODE/ses-N/session.json.
@@ -126,7 +126,8 @@ struct session_data {
     bool simulated = false;
     std::string text; ///< definition of the experiment, TOML
     experiment_outline experiment;
-    std::string group = {}; ///< empty if the experiment has no groups
+    std::string group = {};                       ///< empty if the experiment has no groups
+    std::vector<predicted_path> predictions = {}; ///< for runs in which participants draw; may be empty
 };
 
 /// Reads a session.json. \throws error (bad_input) with the file and, if known, the line.
@@ -230,8 +231,9 @@ struct trial {
 /// A participant's trials of one run in all sessions.
 struct run_data {
     std::vector<trial> trials = {};
-    std::size_t voids = 0; ///< number of void lines, which do not count
-    unsigned sessions = 1; ///< number of sessions that the participant has begun
+    std::size_t voids = 0;                        ///< number of void lines, which do not count
+    unsigned sessions = 1;                        ///< number of sessions that the participant has begun
+    std::vector<predicted_path> predictions = {}; ///< predictions of the first session, for all runs
 };
 
 /// A participant whose trials are left out, with the reason.

@@ -53,6 +53,14 @@ std::vector<point> divide(const drawing& d, std::size_t parts);
 
 double find_length_mm(const drawing& d) noexcept;
 
+/// Path that an observer is predicted to feel from a stimulus.
+struct predicted_path {
+    std::string observer; ///< name of an observer of `compare`
+    std::string motion;
+    std::string method;
+    drawing felt;
+};
+
 /// Answer to a trial.
 struct trial_answer {
     // Not explicit: most answers are numbers.

@@ -25,6 +25,7 @@ struct person_trials {
     std::string code;
     const std::vector<trial>* trials = nullptr;
     std::string group = {};
+    const std::vector<predicted_path>* predictions = nullptr; ///< may be null
 };
 
 /// Participants of a run, whose groups may be compared.
@@ -184,11 +185,20 @@ struct drawn_by_person {
     std::vector<named_value> figures = {};
 };
 
+/// Drawing that an observer is predicted to make, and its distances from the mean drawing.
+struct predicted_drawing {
+    std::string observer;
+    std::vector<point> points = {}; ///< divided as the drawings are
+    double distance_mm = 0.0;       ///< mean distance at equal parts
+    double frechet_mm = 0.0;
+};
+
 /// Places or paths that participants drew.
 struct drawn_answers : measured<drawn_by_person> {
     drawing_kind kind = drawing_kind::place;
     std::vector<point> target = {}; ///< divided in the same way; empty if there are several motions
     std::vector<point> mean = {};   ///< mean over participants of their mean drawings, or empty
+    std::vector<predicted_drawing> predicted = {}; ///< with one motion and one method, if recorded
 };
 
 using result_value =

@@ -356,6 +356,16 @@ void row_member(Io& io, const char* name, const drawn_answers& v)
         constexpr about points{"points at equal parts of the length, mm; null with several motions"};
         inner.or_null("target", list_points(v.target, v.kind), points);
         inner.or_null("mean", list_points(v.mean, v.kind), points);
+        std::vector<std::string> observers;
+        for (const predicted_drawing& p : v.predicted)
+            observers.push_back(p.observer);
+        inner.named_objects(
+            "predicted", observers, v.predicted, {"drawings predicted, by observer"},
+            [&](auto& one, const predicted_drawing& p) {
+                one.or_null("points", list_points(p.points, v.kind), points);
+                one("distance", p.distance_mm, {"mean distance from the mean drawing, mm", detail::from_0});
+                one("frechet", p.frechet_mm, {"Frechet distance from the mean drawing, mm", detail::from_0});
+            });
     });
 }
 

@@ -398,6 +398,50 @@ std::vector<listed_stimulus> list_stimuli(const prepared_experiment& p)
     return all;
 }
 
+// Returns the path on which an observer is predicted to feel a stimulus, in the time of the motion; nothing
+// if the observer has no prediction.
+std::optional<drawing> predict_drawing(const prepared_experiment& p, const stimulus& s, observer_kind who)
+{
+    const std::vector<stroke_span> spans = list_spans(s.made.strokes);
+    drawing d;
+    for (std::size_t i = 0; i < s.made.strokes.size(); ++i) {
+        if (who == observer_kind::low_speed) {
+            const plan& own = s.made.plans[i].plan;
+            if (own.curve)
+                return {};
+            for (const tap& t : predict_taps(p.where.tactors, s.made.strokes[i], own))
+                d.push_back({spans[i].start_s + t.onset_s, t.felt});
+        } else {
+            const double lasts_s = spans[i].end_s - spans[i].start_s;
+            for (std::size_t k = 0; k <= path_parts; ++k)
+                d.push_back(
+                    {spans[i].start_s + lasts_s * static_cast<double>(k) / path_parts, s.felt_paths[i][k]});
+        }
+    }
+    std::ranges::stable_sort(d, {}, &drawn_point::time_s); // strokes may overlap
+    return is_drawing(d) ? std::optional(d) : std::nullopt;
+}
+
+// Returns the predictions for the runs in which participants draw; null without such runs.
+json list_predictions(const prepared_experiment& p)
+{
+    json all;
+    for (const stimulus& s : p.stimuli.all()) {
+        const bool is_drawn = std::ranges::any_of(p.definition.runs, [&](const run_definition& r) {
+            return task_in(r.outline).ask(r, p.definition.page).draws != drawing_kind::none &&
+                   std::ranges::count(r.motions, s.motion) != 0 &&
+                   std::ranges::count(r.methods, s.method) != 0;
+        });
+        for (const observer_kind who : {observer_kind::centroid, observer_kind::low_speed})
+            if (const auto d = is_drawn ? predict_drawing(p, s, who) : std::nullopt)
+                all.push_back({{"observer", std::string(to_string(who))},
+                               {"motion", p.definition.motions[s.motion].name},
+                               {"method", p.definition.methods[s.method].name},
+                               {"felt", to_text(*d)}});
+    }
+    return all;
+}
+
 json describe_session(const prepared_experiment& p, const std::optional<simulation>& simulate,
                       const std::string& masker)
 {
@@ -437,6 +481,8 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["masking"] = files::make_document(list_noise(d.masking));
     j["masker"] = simulate || masker.empty() ? json(nullptr) : json(masker);
     j["stimuli"] = files::make_document(list_stimuli(p));
+    if (json predictions = list_predictions(p); !predictions.is_null())
+        j["predictions"] = std::move(predictions);
     j["experiment"] = {{"name", d.outline.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
     j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
     j["device"] = simulate ? json(nullptr) : json(p.pcm);

@@ -74,7 +74,7 @@ std::vector<result> drawn_task::analyse(const run_outline& o, const run_people& 
     const bool is_place = kind_ == drawing_kind::place;
     std::vector<result> rows = analyse_conditions(
         o, people, o.methods, {}, "drawings", is_place ? "Places drawn, mm" : "Paths drawn",
-        [&](const condition_trials& c) { return measure_drawings(kind_, c, people); });
+        [&](const condition_trials& c) { return measure_drawings(o, kind_, c, people); });
     if (is_place && o.motions.size() > 1)
         for (answer_counts& c : count_nearest(o, people)) {
             const std::string method = c.method;
