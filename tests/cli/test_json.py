@@ -44,7 +44,8 @@ MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
-        "runs{}.exponent.participants", "runs{}.by",
+        "runs{}.exponent.participants", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
+        "runs{}.by",
         *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means"))}
 
 
@@ -79,7 +80,8 @@ MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_
             + studies.run("felt", "detect", 20, vary="level_dbfs", values=[-40, -30, -20], catch=0.2)
             + studies.run("some", "detect", 8, catch=0.5)
             + studies.run("same", "same-different", 16, methods=["park", "soft"])
-            + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20]))
+            + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20])
+            + studies.run("place", "locate", 4))
 
 # A task that measures, with three methods, three sessions and two groups.
 THRICE = (FELT.partition("[[run]]")[0].replace("name", "sessions = 3\nname", 1) + studies.toml("method", "soft", level_dbfs=-30)

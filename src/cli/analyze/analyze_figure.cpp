@@ -401,8 +401,9 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
         if (p)
             f.bars.push_back(*std::move(p));
         for (const study::answer_counts* v : study::list_values<study::answer_counts>(r.results))
-            f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, v->method), "played",
-                                  "answered", v->motions, v->counts});
+            if (v->motions.size() > 1)
+                f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, v->method), "played",
+                                      "answered", v->motions, v->counts});
     }
     f.note = describe_panels(f, a, kind);
     return plot::draw_panels(f);

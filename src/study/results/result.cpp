@@ -186,6 +186,8 @@ bool has_table(const result_value& v)
         return !p->pairs.empty();
     if (const auto* c = std::get_if<figure_comparison>(&v))
         return c->means.front().n != 0;
+    if (const auto* counts = std::get_if<answer_counts>(&v))
+        return counts->motions.size() > 1;
     return v.index() > 2; // not null, a text or a number
 }
 

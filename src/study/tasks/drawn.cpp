@@ -65,7 +65,7 @@ std::vector<std::vector<result_outline>> drawn_task::outline_results() const
 {
     std::vector<result_outline> rows = outline_measured({{{"drawings"}, outline_figures<drawn_answers>()}});
     if (kind_ == drawing_kind::place)
-        rows.push_back({{"confusion", "*"}, answer_counts{}, false, true});
+        rows.push_back({{"confusion", "*"}, answer_counts{}});
     return {std::move(rows)};
 }
 
@@ -75,7 +75,7 @@ std::vector<result> drawn_task::analyse(const run_outline& o, const run_people& 
     std::vector<result> rows = analyse_conditions(
         o, people, o.methods, {}, "drawings", is_place ? "Places drawn, mm" : "Paths drawn",
         [&](const condition_trials& c) { return measure_drawings(o, kind_, c, people); });
-    if (is_place && o.motions.size() > 1)
+    if (is_place)
         for (answer_counts& c : count_nearest(o, people)) {
             const std::string method = c.method;
             rows.push_back({{"confusion", method}, "Nearest target with " + method, std::move(c)});
