@@ -28,7 +28,7 @@ class Block:
 
 def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
-    for kind, pattern in (("c++", r"^#include|^const tactor::"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
+    for kind, pattern in (("c++", r"^#include|^const tactor::"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("), ("r", r"^\w+ <- "),
                           ("drawing", r"-->"), ("runner", r"PsychPortAudio|Tactor\(|jsPsych|TactorDevice|tactor\.hello"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):
@@ -151,6 +151,7 @@ NOT_RUN = {
     "~/tactor-venv/bin/pip ": "the lane tests/lanes/python installs the package",
     "tactor play STROKE --array both.toml ": "tests/machines/rtp.py plays the array over PipeWire",
     "python3 examples/python/two_machines.py": "the lane tests/lanes/python runs it",
+    "tactor experiment examples/experiments/drawings.toml --participant P01": "needs a participant; tests/page draws",
     "rm -rf strokes/sub-P07": "there is no such study here",
     "sed -i '/^sub-P07": "there is no such study here",
     "rm P07.toml": "there is no such study here",
