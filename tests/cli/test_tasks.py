@@ -94,6 +94,45 @@ class EveryTask(ExperimentTest):
                 self.assertNotIn("not recorded", report.partition("## Stimuli")[2].partition("### As it was held")[0] + report.partition("## Data")[2])
                 self.assertRegex(report.partition("### only")[2], rf" {mean:.4g}[ ,]")
 
+    def test_means_of_cells_are_compared_between_methods_and_sessions(self):
+        self.write("desk.toml", DESK)
+        text = measures("desk.toml", toml("method", "hard", burst=0.02),
+                        toml("run", "marks", task="rate", attribute="similarity", trials=24, scale=101),
+                        toml("run", "pair", task="rate", attribute="similarity", trials=16, methods=["park", "soft"]),
+                        toml("run", "names", task="identify", trials=48), keys="gap_s = 0.1\nsessions = 2\n")
+        self.write("t.toml", text.replace("[[method]]", WEST + "[[method]]", 1))
+        for code in "1234":
+            for session in "12":
+                self.simulate(code, "--session", session, definition="t.toml", folder="study", spec=f"seed={code},sigma=30")
+        told = self.valid(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        self.assertEqual({name: (list(run.get("methods", {})), list(run["sessions"])) for name, run in told.items()},
+                         {"marks": (["rating"], ["rating"]), "pair": ([], ["rating"]), "names": (["correct"], ["correct"])})
+        _, rows = self.trials("study")
+        for run, column, scale in (("marks", "rating", 1), ("names", "correct", 100)):
+            for factor, levels in (("method", ("park", "soft", "hard")), ("session", ("1", "2"))):
+                with self.subTest(run=run, factor=factor):
+                    # The mean over cells of the means of a participant's trials in a level.
+                    def figure(code, level):
+                        cells = {}
+                        for r in rows:
+                            if (r["run"], r["participant"], r[factor]) == (run, code, level):
+                                cells.setdefault((r["method"], r["motion"]), []).append(scale * float(r[column]))
+                        return statistics.mean(map(statistics.mean, cells.values()))
+
+                    compared = told[run][factor + "s"][column]
+                    self.assertEqual((compared["n"], list(compared["means"])), (4, list(levels)))
+                    for level in levels:
+                        self.assertAlmostEqual(compared["means"][level]["mean"], statistics.mean(figure(c, level) for c in "1234"), places=9)
+                    p = sorted(pair["p"] for pair in compared["pairs"])
+                    self.assertEqual(len(p), len(levels) * (len(levels) - 1) // 2)
+                    for pair in compared["pairs"]:
+                        differences = [figure(c, pair["a"]) - figure(c, pair["b"]) for c in "1234"]
+                        mean, sd = statistics.mean(differences), statistics.stdev(differences)
+                        self.assertAlmostEqual(pair["difference"], mean, places=9)
+                        self.assertAlmostEqual(pair["t"], mean / (sd / 2), places=7)
+                    self.assertAlmostEqual(min(pair["p_holm"] for pair in compared["pairs"]), min(1, len(p) * p[0]), places=12)
+                    self.assertIn(f"{column} by {factor}, within participants:", self.ok("analyze", "study", "--format", "tables").stdout)
+
     def test_figures_are_compared_between_methods_and_sessions(self):
         self.write("desk.toml", DESK)
         values = dict(vary="length_mm", values=[4, 8, 12, 16, 20], trials_per_value=20)

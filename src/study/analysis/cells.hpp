@@ -25,6 +25,8 @@ struct cell_plan {
     interval possible = per_cents;
     std::optional<double> against = {}; ///< value expected from guessing; if missing, means are not tested
     std::string axis = {};
+    /// Name of a participant's mean over cells when methods or sessions are compared; empty: they are not.
+    std::string figure = {};
 
     /// Returns the largest difference between equal values that rounding may leave.
     double rounding() const noexcept { return few_digits * possible.second; }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -100,20 +101,45 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
     return c;
 }
 
-void add_factor(std::vector<result>& results, const run_outline& run, const run_people& people, sigmoid kind,
+// Returns a participant's figures in some trials; without trials only the names.
+using measure_function = std::function<std::vector<named_value>(const std::vector<trial>&)>;
+
+// Returns the mean of a participant's cells, of which there must be `rows` for each motion.
+std::optional<double> average_cells(const run_outline& run, const cell_plan& plan,
+                                    const std::vector<trial>& trials, std::size_t rows)
+{
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> cells;
+    for (const trial& t : trials)
+        for (const auto& [row, value] : plan.score(t))
+            cells[{row, t.motion}].push_back(value);
+    if (cells.size() != rows * run.motions.size())
+        return {};
+    std::vector<double> means;
+    for (const auto& [cell, values] : cells)
+        means.push_back(mean(values));
+    return mean(means);
+}
+
+measure_function measure_cells(const run_outline& run, const cell_plan& plan, std::size_t rows)
+{
+    return [&run, &plan, rows](const std::vector<trial>& trials) {
+        return std::vector<named_value>{{{plan.figure}, average_cells(run, plan, trials, rows)}};
+    };
+}
+
+void add_factor(std::vector<result>& results, const run_people& people, const measure_function& measure,
                 const std::string& factor, const std::vector<level>& levels)
 {
     if (levels.empty() || (levels.size() < 2 && !people.compares_groups))
         return;
-    const task& own = task_in(run);
-    const std::vector<named_value> figures = own.measure(run, {}, kind);
+    const std::vector<named_value> figures = measure({});
     std::vector<level_values> values(figures.size());
     for (const person_trials& p : people.all) {
         std::vector<std::vector<double>> rows(figures.size());
         for (const level& l : levels) {
             std::vector<trial> trials;
             std::ranges::copy_if(*p.trials, std::back_inserter(trials), l.has);
-            const std::vector<named_value> found = own.measure(run, trials, kind);
+            const std::vector<named_value> found = measure(trials);
             for (std::size_t k = 0; k < figures.size(); ++k)
                 if (found[k].value)
                     rows[k].push_back(*found[k].value);
@@ -139,11 +165,22 @@ void add_comparisons(std::vector<result>& results, const run_outline& run, const
                      sigmoid kind)
 {
     const task& own = task_in(run);
-    if (own.plan_cells(run))
+    if (const auto plan = own.plan_cells(run)) {
+        if (plan->figure.empty())
+            return;
+        const std::size_t rows = plan->methods.size();
+        // A task of ratings tests the difference of two methods itself.
+        const bool is_tested = !list_values<method_difference>(results).empty();
+        if (rows > (is_tested ? 2U : 1U))
+            add_factor(results, people, measure_cells(run, *plan, 1), "method", split_by_method(run));
+        if (const std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
+            add_factor(results, people, measure_cells(run, *plan, rows), "session", sessions);
         return;
+    }
+    const auto measure = [&](const std::vector<trial>& trials) { return own.measure(run, trials, kind); };
     if (own.has_one_method())
-        add_factor(results, run, people, kind, "method", split_by_method(run));
-    add_factor(results, run, people, kind, "session", split_by_session(people));
+        add_factor(results, people, measure, "method", split_by_method(run));
+    add_factor(results, people, measure, "session", split_by_session(people));
 }
 
 } // namespace tactor::study

@@ -223,14 +223,18 @@ std::vector<result_outline> outline_measured(const std::vector<result_outline>& 
     }
     all.push_back({{"group_anova"}, outline_effects({"group"}), false, true});
     for (const char* factor : {"method", "session"})
-        all.push_back(
-            {{fmt::format("{}s", factor), "*"},
-             figure_comparison{.factor = factor,
-                               .figure = {},
-                               .groups = outline_effects({"group", factor, fmt::format("group:{}", factor)})},
-             false,
-             true});
+        all.push_back(outline_comparison(factor));
     return all;
+}
+
+result_outline outline_comparison(const std::string& factor)
+{
+    return {{factor + "s", "*"},
+            figure_comparison{.factor = factor,
+                              .figure = {},
+                              .groups = outline_effects({"group", factor, "group:" + factor})},
+            false,
+            true};
 }
 
 result_outline outline_groups(bool methods)

@@ -237,6 +237,8 @@ effect_list outline_effects(const std::vector<std::string>& names);
 /// Returns the rows of a run that measures figures: for all trials, and for each condition. `named`: rows by
 /// their names.
 std::vector<result_outline> outline_measured(const std::vector<result_outline>& named);
+/// Returns the row that compares figures between methods or sessions. `factor`: "method" or "session".
+result_outline outline_comparison(const std::string& factor);
 /// Returns the row that compares groups. `methods`: it has the effects of methods.
 result_outline outline_groups(bool methods);
 

@@ -56,7 +56,10 @@ cell_plan plan_names(const run_outline& o)
                 return std::vector<std::pair<std::size_t, double>>{
                     {t.method_1, t.response == t.motion ? 100.0 : 0.0}};
             },
-            per_cents, find_chance(o), "correct (%)"};
+            per_cents,
+            find_chance(o),
+            "correct (%)",
+            "correct"};
 }
 
 std::vector<answer_counts> count_answers(const run_outline& o, const run_people& people)
@@ -149,7 +152,9 @@ public:
                  {{"confusion", "*"}, answer_counts{}},
                  {{"correct", "*"}, outline_cells(true)},
                  {{"pairs", "*"}, paired_list{}},
-                 outline_groups(true)}};
+                 outline_groups(true),
+                 outline_comparison("method"),
+                 outline_comparison("session")}};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override

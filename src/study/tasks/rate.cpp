@@ -27,7 +27,8 @@ cell_plan plan_ratings(const run_outline& o)
             },
             {o.lowest_rating(), o.scale},
             {},
-            "mean rating"};
+            "mean rating",
+            "rating"};
 }
 
 // Returns the last method's mean minus the first's; 0 if only rounding makes a difference.
@@ -124,7 +125,9 @@ public:
                  {{"paired"}, method_difference{}, true},
                  {{"anova"}, outline_effects({"method", "motion", "method:motion"})},
                  {{"tukey", "*"}, tukey_list{}},
-                 outline_groups(true)}};
+                 outline_groups(true),
+                 outline_comparison("method"),
+                 outline_comparison("session")}};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
