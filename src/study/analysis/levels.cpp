@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -104,27 +103,32 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
 // Returns a participant's figures in some trials; without trials only the names.
 using measure_function = std::function<std::vector<named_value>(const std::vector<trial>&)>;
 
-// Returns the mean of a participant's cells, of which there must be `rows` for each motion.
-std::optional<double> average_cells(const run_outline& run, const cell_plan& plan,
-                                    const std::vector<trial>& trials, std::size_t rows)
+// Measures the mean over a participant's cells, which is missing if a cell has no trial.
+measure_function measure_cells(const run_outline& run, const cell_plan& plan)
 {
-    std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> cells;
-    for (const trial& t : trials)
-        for (const auto& [row, value] : plan.score(t))
-            cells[{row, t.motion}].push_back(value);
-    if (cells.size() != rows * run.motions.size())
-        return {};
-    std::vector<double> means;
-    for (const auto& [cell, values] : cells)
-        means.push_back(mean(values));
-    return mean(means);
+    return [&run, plan](const std::vector<trial>& trials) {
+        std::optional<double> all;
+        if (const auto cells = compute_cells(run, plan, trials)) {
+            std::vector<double> rows;
+            for (const std::vector<double>& row : *cells)
+                rows.push_back(mean(row));
+            all = mean(rows);
+        }
+        return std::vector<named_value>{{{plan.figure}, all}};
+    };
 }
 
-measure_function measure_cells(const run_outline& run, const cell_plan& plan, std::size_t rows)
+// Returns the plan of the cells that trials of one method fill.
+cell_plan plan_one_method(cell_plan plan)
 {
-    return [&run, &plan, rows](const std::vector<trial>& trials) {
-        return std::vector<named_value>{{{plan.figure}, average_cells(run, plan, trials, rows)}};
+    plan.methods.resize(1);
+    plan.score = [score = plan.score](const trial& t) {
+        auto all = score(t);
+        for (auto& [row, value] : all)
+            row = 0;
+        return all;
     };
+    return plan;
 }
 
 void add_factor(std::vector<result>& results, const run_people& people, const measure_function& measure,
@@ -168,13 +172,13 @@ void add_comparisons(std::vector<result>& results, const run_outline& run, const
     if (const auto plan = own.plan_cells(run)) {
         if (plan->figure.empty())
             return;
-        const std::size_t rows = plan->methods.size();
         // A task of ratings tests the difference of two methods itself.
         const bool is_tested = !list_values<method_difference>(results).empty();
-        if (rows > (is_tested ? 2U : 1U))
-            add_factor(results, people, measure_cells(run, *plan, 1), "method", split_by_method(run));
+        if (plan->methods.size() > (is_tested ? 2U : 1U))
+            add_factor(results, people, measure_cells(run, plan_one_method(*plan)), "method",
+                       split_by_method(run));
         if (const std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
-            add_factor(results, people, measure_cells(run, *plan, rows), "session", sessions);
+            add_factor(results, people, measure_cells(run, *plan), "session", sessions);
         return;
     }
     const auto measure = [&](const std::vector<trial>& trials) { return own.measure(run, trials, kind); };
