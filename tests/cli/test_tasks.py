@@ -94,6 +94,31 @@ class EveryTask(ExperimentTest):
                 self.assertNotIn("not recorded", report.partition("## Stimuli")[2].partition("### As it was held")[0] + report.partition("## Data")[2])
                 self.assertRegex(report.partition("### only")[2], rf" {mean:.4g}[ ,]")
 
+    def test_a_motion_of_several_strokes_is_drawn_one_after_the_other(self):
+        def strokes(*all):
+            return "".join(f'[[stroke]]\npath = "{path}"\nduration_s = 0.2\nstart_s = {start}\n' for path, start in all)
+
+        self.write("both.toml", strokes(("M 0 0 H 40", 0), ("M 0 40 H 40", 0)))  # at once
+        self.write("many.toml", strokes(*((f"M 0 {3 * i} H 40", 0.3 * i) for i in range(13))))
+        self.write("t.toml", '[experiment]\nname = "t"\narray = "palm-3x3"\nlevel = { dbfs = -20 }\n' + toml("method", "park")
+                   + toml("motion", "both", file="both.toml") + toml("motion", "many", file="many.toml") + toml("run", "path", task="trace", trials=4))
+        self.simulate("1", definition="t.toml", spec="seed=1,sigma=0")
+        rows = list(csv.DictReader((self.dir / "study/sub-1/beh/sub-1_task-path_beh.tsv").read_text().splitlines(), delimiter="\t"))
+        for motion, size, end_y in (("both", 102, 40), ("many", 332, 36)):
+            targets = {r["target"] for r in rows if r["motion"] == motion}
+            points = [tuple(map(float, p.split())) for p in targets.pop().split(";")]
+            self.assertEqual((targets, len(points), points[0], points[-1][1:]), (set(), size, (0, 0, 0), (40, end_y)))
+            self.assertEqual([y for _, _, y in points], sorted(y for _, _, y in points))
+        predicted = json.loads((self.dir / "study/sourcedata/sub-1/session.json").read_text())["predictions"]
+        self.assertEqual([(p["observer"], p["motion"]) for p in predicted], [(o, m) for m in ("both", "many") for o in ("centroid", "low-speed")])
+        for p in predicted[:2]:
+            felt = [float(point.split()[2]) for point in p["felt"].split(";")]
+            self.assertEqual((felt, set(felt)), (sorted(felt), {0, 40}), p["observer"])
+        # Without noise people draw what the centroid observer feels.
+        told = self.analysis()["runs"]["path"]["by"]
+        for motion in ("both", "many"):
+            self.assertLess(told[f"park:{motion}"]["drawings"]["predicted"]["centroid"]["distance"], 0.01)
+
     def test_means_of_cells_are_compared_between_methods_and_sessions(self):
         self.write("desk.toml", DESK)
         text = measures("desk.toml", toml("method", "hard", burst=0.02),

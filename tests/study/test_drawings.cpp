@@ -61,6 +61,19 @@ TEST_CASE("a drawing is read as it was written, and other texts are refused")
     CHECK_FALSE(read_drawing(many + ";0 1 2"));
 }
 
+TEST_CASE("a drawing with too many points loses every second one, but neither end")
+{
+    for (const std::size_t n : {most_drawn_points, most_drawn_points + 1, 5 * most_drawn_points}) {
+        const drawing d = thin_out(line({0, 0}, {100, 0}, n));
+        CAPTURE(n);
+        CHECK(is_drawing(d));
+        CHECK(2 * d.size() >= most_drawn_points);
+        CHECK((n > most_drawn_points || d.size() == n));
+        CHECK(d.front().at == point{0, 0});
+        CHECK(d.back().at.x_mm == Approx(100.0));
+    }
+}
+
 TEST_CASE("a drawing is divided by length, not by points or time")
 {
     const drawing uneven{{0.0, {0, 0}}, {0.0, {0, 0}}, {0.9, {1, 0}},

@@ -46,6 +46,15 @@ double find_frechet(const std::vector<point>& a, const std::vector<point>& b)
     return row.back();
 }
 
+// Returns the distances between paths that were divided into the same parts.
+path_errors compare_points(const std::vector<point>& a, const std::vector<point>& b)
+{
+    path_errors e{.frechet_mm = find_frechet(a, b)};
+    for (std::size_t i = 0; i < a.size(); ++i)
+        e.distance_mm += distance_mm(a[i], b[i]) / static_cast<double>(a.size());
+    return e;
+}
+
 // Returns the direction from start to end, rad; nothing for a path that returns to its start.
 std::optional<double> find_direction(const drawing& d)
 {
@@ -169,11 +178,9 @@ std::vector<predicted_drawing> compare_predictions(const std::vector<predicted_p
                 points.push_back({one.at});
             felt = {{0.0, average_points(points).front()}};
         }
-        drawing drawn;
-        for (const point& at : mean_drawing)
-            drawn.push_back({0.0, at});
-        const path_errors e = compare_paths(felt, drawn);
-        compared.push_back({p.observer, divide(felt, drawn_parts), e.distance_mm, e.frechet_mm});
+        std::vector<point> points = divide(felt, drawn_parts);
+        const path_errors e = compare_points(points, mean_drawing);
+        compared.push_back({p.observer, std::move(points), e.distance_mm, e.frechet_mm});
     }
     return compared;
 }
@@ -196,9 +203,7 @@ path_errors compare_paths(const drawing& drawn, const drawing& target)
 {
     const std::vector<point> a = divide(drawn, drawn_parts);
     const std::vector<point> b = divide(target, drawn_parts);
-    path_errors e{.frechet_mm = find_frechet(a, b)};
-    for (std::size_t i = 0; i < a.size(); ++i)
-        e.distance_mm += distance_mm(a[i], b[i]) / static_cast<double>(a.size());
+    path_errors e = compare_points(a, b);
     if (const double length = find_length_mm(target); length > 0.0)
         e.length = find_length_mm(drawn) / length;
     const auto from = find_direction(target);

@@ -54,6 +54,18 @@ std::string to_text(const drawing& d)
     return text;
 }
 
+drawing thin_out(drawing d)
+{
+    while (d.size() > most_drawn_points) {
+        drawing half;
+        for (std::size_t i = 0; i + 1 < d.size(); i += 2)
+            half.push_back(d[i]);
+        half.push_back(d.back());
+        d = std::move(half);
+    }
+    return d;
+}
+
 bool is_drawing(const drawing& d) noexcept
 {
     return !d.empty() && d.size() <= most_drawn_points && std::ranges::all_of(d, is_point) &&

@@ -44,6 +44,9 @@ std::string to_text(const drawing& d);
 /// or out of bounds, or a time that goes back.
 std::optional<drawing> read_drawing(std::string_view text);
 
+/// Leaves out every second point but the last until there are at most most_drawn_points.
+drawing thin_out(drawing d);
+
 /// Returns true if the points are within the bounds above.
 bool is_drawing(const drawing& d) noexcept;
 

@@ -590,6 +590,31 @@ double find_duration_s(const std::vector<stroke>& strokes)
     return std::ranges::max(list_spans(strokes), {}, &stroke_span::end_s).end_s;
 }
 
+std::vector<std::vector<point>> sample_strokes(const std::vector<stroke>& strokes)
+{
+    std::vector<std::vector<point>> all;
+    for (const stroke& s : strokes) {
+        all.emplace_back();
+        for (std::size_t i = 0; i <= path_parts; ++i)
+            all.back().push_back(
+                s.motion.position(s.motion.duration_s() * static_cast<double>(i) / path_parts));
+    }
+    return all;
+}
+
+drawing join_paths(const std::vector<std::vector<point>>& paths, const std::vector<stroke>& strokes)
+{
+    drawing d;
+    double from_s = 0.0;
+    for (std::size_t s = 0; s < paths.size(); ++s) {
+        const double lasts_s = strokes[s].motion.duration_s();
+        for (std::size_t i = 0; i <= path_parts; i += 2)
+            d.push_back({from_s + lasts_s * static_cast<double>(i) / path_parts, paths[s][i]});
+        from_s += lasts_s;
+    }
+    return thin_out(std::move(d));
+}
+
 bool uses_thresholds(const experiment_definition& d)
 {
     return !d.level_dbfs || std::any_of(d.methods.begin(), d.methods.end(),

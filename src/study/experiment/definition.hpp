@@ -146,6 +146,16 @@ std::vector<stroke_span> list_spans(const std::vector<stroke>& strokes);
 /// Returns the end of the stroke that ends last, s.
 double find_duration_s(const std::vector<stroke>& strokes);
 
+/// Number of equal parts of time into which movements are divided for comparison.
+inline constexpr std::size_t path_parts = 100;
+
+/// Returns the positions of each stroke at path_parts equal parts of its time.
+std::vector<std::vector<point>> sample_strokes(const std::vector<stroke>& strokes);
+
+/// Joins the paths of strokes, each at path_parts equal parts of the stroke's time, one after the other
+/// without pauses. Keeps every second point, and fewer if a drawing has no room for them.
+drawing join_paths(const std::vector<std::vector<point>>& paths, const std::vector<stroke>& strokes);
+
 /// Reads a definition. `name` names the text in messages. File names in the text are relative to `folder`.
 /// \throws error (bad_input) with line and column if the text is not TOML, a key is missing, unknown, of the
 ///         wrong type or out of range, a name is unknown or used twice, or a motion cannot be read.

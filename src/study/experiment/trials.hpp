@@ -240,9 +240,6 @@ struct stimulus {
     std::vector<std::vector<point>> felt_paths = {};
 };
 
-/// Number of equal parts of time into which movements are divided for comparison.
-inline constexpr std::size_t path_parts = 100;
-
 class stimulus_set {
 public:
     /// Plans, predicts and checks all stimuli. Keeps each warning of the planner once, and warns if two

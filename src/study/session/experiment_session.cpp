@@ -398,28 +398,25 @@ std::vector<listed_stimulus> list_stimuli(const prepared_experiment& p)
     return all;
 }
 
-// Returns the path on which an observer is predicted to feel a stimulus, in the time of the motion; nothing
-// if the observer has no prediction.
+// Returns the path on which an observer is predicted to feel a stimulus, its strokes one after the other;
+// nothing if the observer has no prediction.
 std::optional<drawing> predict_drawing(const prepared_experiment& p, const stimulus& s, observer_kind who)
 {
-    const std::vector<stroke_span> spans = list_spans(s.made.strokes);
+    const std::vector<stroke>& strokes = s.made.strokes;
+    if (who == observer_kind::centroid)
+        return join_paths(s.felt_paths, strokes);
     drawing d;
-    for (std::size_t i = 0; i < s.made.strokes.size(); ++i) {
-        if (who == observer_kind::low_speed) {
-            const plan& own = s.made.plans[i].plan;
-            if (own.curve)
-                return {};
-            for (const tap& t : predict_taps(p.where.tactors, s.made.strokes[i], own))
-                d.push_back({spans[i].start_s + t.onset_s, t.felt});
-        } else {
-            const double lasts_s = spans[i].end_s - spans[i].start_s;
-            for (std::size_t k = 0; k <= path_parts; ++k)
-                d.push_back(
-                    {spans[i].start_s + lasts_s * static_cast<double>(k) / path_parts, s.felt_paths[i][k]});
-        }
+    double from_s = 0.0;
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+        const plan& own = s.made.plans[i].plan;
+        if (own.curve)
+            return {};
+        for (const tap& t : predict_taps(p.where.tactors, strokes[i], own))
+            d.push_back({from_s + t.onset_s, t.felt});
+        from_s += strokes[i].motion.duration_s();
     }
-    std::ranges::stable_sort(d, {}, &drawn_point::time_s); // strokes may overlap
-    return is_drawing(d) ? std::optional(d) : std::nullopt;
+    d = thin_out(std::move(d));
+    return is_drawing(d) ? std::optional(std::move(d)) : std::nullopt;
 }
 
 // Returns the predictions for the runs in which participants draw; null without such runs.

@@ -125,4 +125,9 @@ std::string drawn_task::model_in_r(const run_outline& o, bool grouped) const
     return write_model(o, grouped, {kind_ == drawing_kind::place ? "lmer(error" : "lmer(distance"});
 }
 
+std::vector<std::string_view> drawn_task::list_sections(const run_outline&) const
+{
+    return {kind_ == drawing_kind::place ? "has_places" : "has_paths"};
+}
+
 } // namespace tactor::study

@@ -17,15 +17,6 @@
 namespace tactor::study {
 namespace {
 
-// Returns the target's positions at equal parts of its time.
-std::vector<tactor::point> target_path(const stroke& s)
-{
-    std::vector<tactor::point> parts;
-    for (std::size_t i = 0; i <= path_parts; ++i)
-        parts.push_back(s.motion.position(s.motion.duration_s() * static_cast<double>(i) / path_parts));
-    return parts;
-}
-
 using paths = std::vector<std::vector<tactor::point>>; // by stroke
 
 // Returns the mean distance of two motions, whose strokes are compared in their order. If one has fewer,
@@ -122,11 +113,8 @@ public:
 
     void prepare(simulated_run& who) const override
     {
-        for (const std::size_t m : who.run.motions) {
-            who.targets.emplace_back();
-            for (const stroke& s : who.definition.motions[m].strokes)
-                who.targets.back().push_back(target_path(s));
-        }
+        for (const std::size_t m : who.run.motions)
+            who.targets.push_back(sample_strokes(who.definition.motions[m].strokes));
     }
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {

@@ -7,8 +7,8 @@
 namespace tactor::study {
 namespace {
 
-// Returns the mean of points; nothing without points.
-std::optional<tactor::point> find_middle(const std::vector<std::vector<tactor::point>>& strokes)
+// Returns the mean of all points.
+tactor::point find_middle(const std::vector<std::vector<tactor::point>>& strokes)
 {
     tactor::point sum;
     std::size_t n = 0;
@@ -18,9 +18,7 @@ std::optional<tactor::point> find_middle(const std::vector<std::vector<tactor::p
             sum.y_mm += p.y_mm;
             ++n;
         }
-    if (n == 0)
-        return {};
-    return tactor::point{sum.x_mm / static_cast<double>(n), sum.y_mm / static_cast<double>(n)};
+    return {sum.x_mm / static_cast<double>(n), sum.y_mm / static_cast<double>(n)};
 }
 
 class shown_place final : public drawn_task {
@@ -38,25 +36,16 @@ public:
     // The target is the middle of the motion, over its time.
     std::string write_target(const motion_definition& m) const override
     {
-        std::vector<std::vector<tactor::point>> all;
-        for (const stroke& s : m.strokes) {
-            all.emplace_back();
-            for (std::size_t i = 0; i <= path_parts; ++i)
-                all.back().push_back(
-                    s.motion.position(s.motion.duration_s() * static_cast<double>(i) / path_parts));
-        }
-        return to_text(drawing{{0.0, find_middle(all).value()}});
+        return to_text(drawing{{0.0, find_middle(sample_strokes(m.strokes))}});
     }
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        tactor::point felt = find_middle(who.felt_paths(t.motion, t.method_1)).value();
+        tactor::point felt = find_middle(who.felt_paths(t.motion, t.method_1));
         felt.x_mm += who.truth.sigma * r.normal();
         felt.y_mm += who.truth.sigma * r.normal();
         return drawing{{0.0, felt}};
     }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_places"}; }
 };
 
 } // namespace
