@@ -284,15 +284,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     service.token = server::read_token(serve);
     service.version = version();
     service.array = files::make_document(e.tactors);
-    for (const auto& [key, text] : {std::pair("site", &e.tactors.site), std::pair("up", &e.tactors.up)})
-        if (!text->empty())
-            service.array[key] = *text;
-    if (e.tactors.place)
-        service.array["place"] = {e.tactors.place->x_mm, e.tactors.place->y_mm};
-    for (const auto& [key, value] :
-         {std::pair("turn", e.tactors.turn_deg), std::pair("body", e.tactors.body_mm)})
-        if (value)
-            service.array[key] = *value;
+    service.array.update(files::describe_site(e.tactors));
     service.plans = make_planning(s, e, highest.dbfs, service.limits);
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;

@@ -89,6 +89,20 @@ void set_thresholds(tactor_spec& t, const thresholds& v)
             t.thresholds.push_back({hz, dbfs});
 }
 
+nlohmann::ordered_json describe_site(const array& a)
+{
+    auto site = nlohmann::ordered_json::object();
+    for (const auto& [key, text] : {std::pair("site", &a.site), std::pair("up", &a.up)})
+        if (!text->empty())
+            site[key] = *text;
+    if (a.place)
+        site["place"] = {a.place->x_mm, a.place->y_mm};
+    for (const auto& [key, value] : {std::pair("turn", a.turn_deg), std::pair("body", a.body_mm)})
+        if (value)
+            site[key] = *value;
+    return site;
+}
+
 std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o,
                                                    double weakened_db)
 {

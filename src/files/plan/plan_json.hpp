@@ -44,6 +44,10 @@ struct plan_record {
     const render_options& options; ///< with rate and channels
 };
 
+/// Returns the keys that place an array on the body: site, up, place, turn and body, each if the array has
+/// it.
+nlohmann::ordered_json describe_site(const array& a);
+
 /// Writes an object for each plan, row by row, so that a plan of an hour needs no document in memory.
 void write_plans(const plan_record& r, const text_sink& out);
 

@@ -6,6 +6,7 @@
 
 #include <boost/locale/utf.hpp>
 
+#include "files/plan/plan_json.hpp"
 #include "net/rpc.hpp"
 #include "rt/clock.hpp"
 #include "study/data/dataset.hpp"
@@ -70,15 +71,8 @@ nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
     nlohmann::ordered_json tactors = nlohmann::ordered_json::array();
     for (const tactor_spec& t : a.tactors)
         tactors.push_back({t.position.x_mm, t.position.y_mm});
-    nlohmann::ordered_json facts{{"words", words}, {"tactors", tactors}, {"up", a.up}};
-    if (!a.site.empty())
-        facts["site"] = a.site;
-    if (a.place)
-        facts["place"] = point_list(a.place);
-    if (a.turn_deg)
-        facts["turn"] = *a.turn_deg;
-    if (a.body_mm)
-        facts["body"] = *a.body_mm;
+    nlohmann::ordered_json facts{{"words", words}, {"tactors", tactors}};
+    facts.update(files::describe_site(a));
     return facts;
 }
 
@@ -123,8 +117,8 @@ std::string page_dialogue::state(std::int64_t now_ns) const
             {"lowest", least_estimate}, {"greatest", most_estimate}, {"longest", most_estimate_characters}};
     if (screen_.entry == entry_kind::number)
         j["entry"] = {{"lowest", screen_.lowest}, {"greatest", screen_.greatest}};
-    if (screen_.is_drawn())
-        j["entry"] = {{"draw", screen_.entry == entry_kind::place ? "place" : "path"},
+    if (screen_.draws != drawing_kind::none)
+        j["entry"] = {{"draw", screen_.draws == drawing_kind::place ? "place" : "path"},
                       {"most", most_drawn_points}};
     if (screen_.back)
         j["back"] = true;
@@ -155,7 +149,8 @@ std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int6
 {
     screen_ = std::move(s);
     since_ns_ = now_ns;
-    open_ = !screen_.choices.empty() || screen_.entry != entry_kind::none;
+    open_ =
+        !screen_.choices.empty() || screen_.entry != entry_kind::none || screen_.draws != drawing_kind::none;
     if (open_)
         ++asked_;
     if (!theirs_)
@@ -213,9 +208,9 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
         if (screen_.entry == entry_kind::estimate && is_text &&
             read_estimate(text_entered->get_ref<const std::string&>()))
             h.text = text_entered->get<std::string>();
-        if (screen_.is_drawn() && is_drawn)
+        if (screen_.draws != drawing_kind::none && is_drawn)
             if (const auto d = read_points(*points);
-                d && (screen_.entry == entry_kind::path || d->size() == 1))
+                d && (screen_.draws == drawing_kind::path || d->size() == 1))
                 h.text = to_text(*d);
         if (is_number || h.text) {
             open_ = false;

@@ -20,18 +20,17 @@
 #include "net/listen.hpp"
 #include "net/web.hpp"
 #include "rt/event_fd.hpp"
+#include "study/data/drawing.hpp"
 #include "study/experiment/page_words.hpp"
 
 namespace tactor::study {
 
-/// Kind of answer that a participant types or draws instead of choosing.
+/// Kind of answer that a participant types instead of choosing.
 enum class entry_kind {
     none,
     number,   ///< a whole number
     estimate, ///< a number above 0, sent as a text
     text,     ///< one or several lines
-    place,    ///< a point on the array
-    path,     ///< a path over the array
 };
 
 /// Greatest length of a text that a participant enters, in characters.
@@ -60,11 +59,9 @@ struct page_screen {
     std::vector<std::string> choices = {}; ///< possible answers; the page shows an empty one as its number
     std::string keys = {};                 ///< a key for each choice; may be empty
     bool is_line = false; ///< true if the choices are places on a line, from 0 on, without numbers
-    entry_kind entry = entry_kind::none; ///< kind of typed or drawn answer, in place of choices
-
-    bool is_drawn() const noexcept { return entry == entry_kind::place || entry == entry_kind::path; }
-
-    unsigned lowest = 1; ///< smallest number that may be entered
+    entry_kind entry = entry_kind::none;     ///< kind of typed answer, in place of choices
+    drawing_kind draws = drawing_kind::none; ///< kind of drawing, in place of choices
+    unsigned lowest = 1;                     ///< smallest number that may be entered
     unsigned greatest = 1;
     bool back = false; ///< true if key b goes to the previous question
     /// Paths of a motion's strokes for each choice, at equal parts of their times; may be empty.

@@ -194,7 +194,7 @@ void person_session::introduce(const session_step& s)
     held_.emplace(p_, s.run, store_);
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
-                                    r.outline.question, find_answers(p_.definition, r).possible));
+                                    r.outline.question, ask_about_trial(p_, s).possible));
     on_page({.name = "introduce",
              .question = r.outline.question,
              .choices = {w["begin"]},

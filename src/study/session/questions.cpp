@@ -151,13 +151,13 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
         shown.entry = entry_kind::estimate;
         return {std::move(shown), std::move(a.possible)};
     }
-    if (a.draws != drawing_kind::none) {
-        shown.entry = a.draws == drawing_kind::place ? entry_kind::place : entry_kind::path;
+    shown.draws = a.draws;
+    if (a.draws == drawing_kind::place) { // at a terminal, the number of a tactor
         shown.greatest = static_cast<unsigned>(p.where.tactors.tactors.size());
-        const std::string numbers =
-            fmt::format("{} {} {}", shown.lowest, p.definition.page["to"], shown.greatest);
-        return {std::move(shown), numbers};
+        a.possible = fmt::format("{} {} {}", shown.lowest, p.definition.page["to"], shown.greatest);
     }
+    if (a.draws != drawing_kind::none)
+        return {std::move(shown), std::move(a.possible)};
     shown.lowest = a.lowest;
     shown.greatest = a.lowest + static_cast<unsigned>(a.labels.size()) - 1;
     shown.choices = std::move(a.labels);

@@ -32,7 +32,7 @@ struct question {
 
     bool is_text() const noexcept { return screen.entry == entry_kind::text; }
     bool is_estimate() const noexcept { return screen.entry == entry_kind::estimate; }
-    bool is_drawn() const noexcept { return screen.is_drawn(); }
+    bool is_drawn() const noexcept { return screen.draws != drawing_kind::none; }
     /// Returns true if an answer takes several keys and then Enter.
     bool is_typed() const noexcept;
 };
