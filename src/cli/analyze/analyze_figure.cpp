@@ -297,37 +297,25 @@ void add_drawings(plot::panel_figure& f, const study::run_analysis& r)
         if (v->target.empty())
             continue;
         const bool is_place = v->kind == study::drawing_kind::place;
-        const auto make = [&](const std::vector<point>& points, double weight) {
-            plot::curve one{.line = to_line(points)};
-            if (is_place)
-                one.dots = {{one.line.front(), weight}};
-            return one;
-        };
-        constexpr double large = 6.0; // so that the target and the mean stand out
         plot::curve_panel p{
             fmt::format("{} ({}, n = {})", v->condition.empty() ? r.run.name : v->condition, r.run.name, r.n),
             {"x (mm)"},
             {"y (mm)"}};
         p.to_scale = true;
-        plot::curve target = make(v->target, large);
-        target.name = "target";
-        target.thick = true;
-        target.colour = 1;
-        p.curves.push_back(std::move(target));
+        const auto add = [&](const std::vector<point>& points, const std::string& name, std::size_t colour) {
+            constexpr double large = 6.0; // so that curves with a name stand out
+            const bool thick = !name.empty();
+            plot::curve& one = p.curves.emplace_back(plot::curve{name, colour, thick, to_line(points)});
+            if (is_place)
+                one.dots = {{one.line.front(), thick ? large : 1.0}};
+        };
+        add(v->target, "target", 1);
         for (const study::drawn_by_person& person : v->people)
             for (const std::vector<point>& drawing : person.drawings)
-                p.curves.push_back(make(drawing, 1.0));
-        for (const study::predicted_drawing& one : v->predicted) {
-            plot::curve predicted = make(one.points, large);
-            predicted.name = one.observer + " observer";
-            predicted.thick = true;
-            predicted.colour = 2 + static_cast<std::size_t>(&one - v->predicted.data());
-            p.curves.push_back(std::move(predicted));
-        }
-        plot::curve mean = make(v->mean, large);
-        mean.name = "mean";
-        mean.thick = true;
-        p.curves.push_back(std::move(mean));
+                add(drawing, "", 0);
+        for (std::size_t i = 0; i < v->predicted.size(); ++i)
+            add(v->predicted[i].points, v->predicted[i].observer + " observer", 2 + i);
+        add(v->mean, "mean", 0);
         for (const auto& [axis, of] : {std::pair(&p.x, &plot::spot::x), {&p.y, &plot::spot::y}}) {
             axis->from = std::numeric_limits<double>::infinity();
             axis->to = -axis->from;

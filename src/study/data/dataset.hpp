@@ -7,8 +7,8 @@
 ///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; trial_columns lists the columns
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}: the text
 ///                                             has the runs and the order of motions and methods. "group":
-///                                             name of the group, if the experiment has groups. Other keys
-///                                             are ignored, except "predictions", which may be absent.
+///                                             name of the group, if the experiment has groups.
+///                                             "predictions": may be absent. Other keys are ignored.
 ///
 /// If the experiment has several sessions, the files are
 /// sub-CODE/ses-N/beh/sub-CODE_ses-N_task-NAME_beh.tsv and sourcedata/sub-CODE/ses-N/session.json.
