@@ -58,8 +58,9 @@ class Trial:
         """Returns both halves' sound, 24-bit samples as floats, with the frames before each; and the channels that sound."""
         run(self.tool, "render", *stroke, "-o", str(self.folder / "rendered.wav"))
         data = (self.folder / "rendered.wav").read_bytes()
-        data = data[data.index(b"data") + 8:]
-        values = array.array("f", [int.from_bytes(data[i:i + 3], "little", signed=True) / (1 << 23) for i in range(0, len(data) - 2, 3)])
+        at = data.index(b"data") + 8
+        data = data[at:at + int.from_bytes(data[at - 4:at], "little")]  # the file's mark follows
+        values = array.array("f", [int.from_bytes(data[i:i + 3], "little", signed=True) / (1 << 23) for i in range(0, len(data), 3)])
         halves = [b"".join(values[i:i + HALF].tobytes() for i in range(first, len(values), 2 * HALF)) for first in (0, HALF)]
         return [(h[slice(*(FRAME * e for e in ends(h)))], ends(h)[0]) for h in halves], [c for c in range(2 * HALF) if any(values[c::2 * HALF])]
 
