@@ -238,7 +238,12 @@ void line_connection::next_line()
     message_ends();
     if (line.size() <= large_message)
         return handle(line);
-    handle_large(std::string(line));
+    if (line.data() != text_.data() || scanned_ != text_.size())
+        return handle_large(std::string(line));
+    // Gives the text away: sixty peers whose messages end together would make a stop wait for sixty copies.
+    text_.resize(line.size());
+    begin_ = scanned_ = 0;
+    handle_large(std::exchange(text_, {}));
 }
 
 void line_connection::read_more()
@@ -270,6 +275,8 @@ void line_connection::read_more()
             return fail(connection_fault::gone);
         within_memory([&] {
             over_ = e.failed();
+            if (text_.size() > large_message)
+                text_.reserve(room_for(limits()));
             text_.append(chunk_.data(), n);
             // The end of the input also ends a line. An incomplete line is not JSON, so the peer gets an
             // error.

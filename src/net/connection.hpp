@@ -4,6 +4,7 @@
 /// and outgoing messages wait in a bounded queue. One thread: the context's.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -99,6 +100,14 @@ struct message_limits {
     double message_s = 10.0; ///< time for the first message to come, and for each message to be complete
     std::size_t waiting_bytes = 4U << 20;
 };
+
+/// Bytes to reserve for a message that is becoming large: text that grows by doubling is copied each time,
+/// and the copies for all peers, made in one turn, would delay a stop. At most 1 MiB, which may be locked
+/// memory.
+constexpr std::size_t room_for(const message_limits& limits)
+{
+    return std::min(limits.message_bytes, std::size_t{1} << 20) + large_message;
+}
 
 /// Converts seconds for timers.
 inline std::chrono::steady_clock::duration steady_seconds(double seconds)

@@ -265,6 +265,8 @@ void web_connection::received()
 {
     if (!ws_->is_message_done()) {
         message_begins();
+        if (buffer_.size() > large_message)
+            buffer_.reserve(room_for(limits()));
         return read();
     }
     message_ends();
