@@ -191,6 +191,13 @@ class Felt(StudioTest):
         p.until(f"JSON.stringify({TAKE}.strokes[0].timed) === {quoted(before)}")
         p.click("#redo")
         p.until("!document.querySelector('#shape').hidden")
+        # Undone before its first plan came, a move stays undone.
+        self.diamonds(p)
+        moved = p.value(f"JSON.stringify({TAKE}.strokes[0].timed)")
+        p.value("""document.querySelector('#field').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft'}));
+                   document.querySelector('#undo').click()""")
+        self.diamonds(p)
+        self.assertEqual(p.value(f"[JSON.stringify({TAKE}.strokes[0].timed), document.querySelector('#redo').disabled]"), [moved, False])
         p.click("#shape-ink")
         p.until("document.querySelector('#shape-ink').getAttribute('aria-pressed') === 'true'")
 

@@ -52,7 +52,9 @@ export function step_felt(knot, [dx, dy]) {
 // triangles, tries positions round about. Each plan calls this again.
 function solve() {
   if (!(wish?.steps >= 0) || wish.knot !== state.knot || state.plan_of !== current_take()) return;
-  const s = current_stroke(), felt = felt_points().find(q => q.knot === wish.knot), k = editable(s).knots[wish.knot];
+  const s = current_stroke();
+  if (wish.after && wish.after !== s) { wish.steps = -1; return; } // undone, or changed by another hand
+  const felt = felt_points().find(q => q.knot === wish.knot), k = editable(s).knots[wish.knot];
   const error = [wish.at[0] - felt.x, wish.at[1] - felt.y], off = Math.hypot(...error);
   if (off >= wish.best?.off) wish.part /= 2; else Object.assign(wish, {best: {off, at: [k.x, k.y], error}, part: 1});
   const {best, part, steps} = wish, solved = !steps || best.off < SOLVED_MM, far = best.off * steps / WISH_STEPS;
