@@ -146,6 +146,7 @@ RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema
 NOT_RUN = {
     "sudo ": "needs root and changes the system",
     "TACTOR_SOAK=whole nice build/tests/study/test-study ": "simulates for minutes what the suite simulates for seconds",
+    "python3 tests/study/error_rates.py ": "the lane statistics runs it, for minutes",
     "build/tests/study/test-study ": "the suite runs it",
     "/usr/bin/python3 -m venv": "the lane tests/lanes/python makes one",
     "~/tactor-venv/bin/pip ": "the lane tests/lanes/python installs the package",

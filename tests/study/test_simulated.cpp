@@ -178,6 +178,10 @@ TEST_CASE("impossible simulations are refused")
     has(refusal("seed=1,"), "\"\" has no =");
     CHECK(parse_simulation("sigma=2") == simulation{1, 2.0, 0.0});
     CHECK(to_text(parse_simulation("void=0.1,sigma=0.5,seed=9")) == "seed=9,sigma=0.5,void=0.1");
+    for (const char* text : {"seed=1,sigma=1,pse=60,64,jnd=8,pse_sd=4,jnd_sd=2,method_sd=0.5",
+                             "seed=1,sigma=1,dprime=2,exponent=0.5,0.7,dprime_sd=1,exponent_sd=0.1"})
+        CHECK(to_text(parse_simulation(text)) == text);
+    has(refusal("pse_sd=-1"), "pse_sd is \"-1\"");
 }
 
 struct power_rig {
@@ -249,7 +253,7 @@ TEST_CASE("choices among three methods have the worths that their costs imply")
         CHECK(*worths[m].log_worth > *worths[m - 1].log_worth);
         CHECK(std::abs(*worths[m].log_worth - *truth[m].log_worth) < 4.0 * *worths[m].se);
     }
-    const power_at at = r.tell({s, {6}, 40})[0].at[0];
+    const power_at at = r.tell({s, {6}, 40})[0].tests[0].at[0];
     CHECK(at.for_last == at.significant);
     CHECK(at.significant > 32);
 }
@@ -260,10 +264,10 @@ TEST_CASE("where both methods are equal, one study in twenty is significant")
     const std::vector<run_power> powers = r.tell({{.seed = 1, .sigma = 1.0}, {8}, 3000});
     REQUIRE(powers.size() == 2);
     for (const run_power& p : powers) {
-        CHECK(p.at[0].significant > 90); // counts are coarse, and so is their t: not 0.05 exactly
-        CHECK(p.at[0].significant < 210);
-        CHECK(static_cast<double>(p.at[0].for_last) ==
-              doctest::Approx(static_cast<double>(p.at[0].significant) / 2.0).epsilon(0.25));
+        CHECK(p.tests[0].at[0].significant > 90); // counts are coarse, and so is their t: not 0.05 exactly
+        CHECK(p.tests[0].at[0].significant < 210);
+        CHECK(static_cast<double>(p.tests[0].at[0].for_last) ==
+              doctest::Approx(static_cast<double>(p.tests[0].at[0].significant) / 2.0).epsilon(0.25));
     }
 }
 
@@ -271,7 +275,7 @@ TEST_CASE("less noise and more people find more")
 {
     const power_rig r("park2016", rate);
     const auto power = [&](double sigma, std::size_t n) {
-        return r.tell({{.seed = 5, .sigma = sigma}, {n}, 300})[0].at[0].significant;
+        return r.tell({{.seed = 5, .sigma = sigma}, {n}, 300})[0].tests[0].at[0].significant;
     };
     CHECK(power(8.0, 6) < power(4.0, 6));
     CHECK(power(8.0, 6) < power(8.0, 24));
@@ -284,16 +288,16 @@ TEST_CASE("smaller studies are the first people of larger ones, in any given ord
     const auto both = r.tell({s, {9, 4}, 50});
     const auto less = r.tell({s, {4}, 50});
     for (std::size_t run = 0; run < 2; ++run) {
-        CHECK(both[run].at[1].participants == 4);
-        CHECK(both[run].at[1].significant == less[run].at[0].significant);
-        CHECK(both[run].at[1].for_last == less[run].at[0].for_last);
+        CHECK(both[run].tests[0].at[1].participants == 4);
+        CHECK(both[run].tests[0].at[1].significant == less[run].tests[0].at[0].significant);
+        CHECK(both[run].tests[0].at[1].for_last == less[run].tests[0].at[0].for_last);
     }
 }
 
 TEST_CASE("without noise nobody differs, so nothing is tested")
 {
     const power_rig r("park2016", choose);
-    const power_at at = r.tell({{.sigma = 0.0}, {5}, 20})[0].at[0];
+    const power_at at = r.tell({{.sigma = 0.0}, {5}, 20})[0].tests[0].at[0];
     CHECK(at.untested == 20);
     CHECK(at.significant == 0);
 }
@@ -303,9 +307,88 @@ TEST_CASE("ratings of one method have nothing to compare, identifications chance
     const power_rig r("park2016", std::string(rate) + "methods = [\"b\"]\n[[run]]\nname = \"what\"\n"
                                                       "task = \"identify\"\ntrials = 8\n");
     const auto powers = r.tell({{.sigma = 30.0}, {6}, 20});
-    CHECK(powers[0].at.empty());
-    REQUIRE(powers[1].at.size() == 1);
-    CHECK(powers[1].at[0].significant > 0);
+    CHECK(powers[0].tests.empty());
+    REQUIRE(powers[1].tests[0].at.size() == 1);
+    CHECK(powers[1].tests[0].at[0].significant > 0);
+}
+
+constexpr const char* measured =
+    "[[run]]\nname = \"even\"\ntask = \"constant\"\nquestion = \"?\"\nvary = \"speed_mm_s\"\n"
+    "standard = 60\nvalues = [20, 40, 50, 60, 70, 80, 100]\ntrials = 112\n"
+    "motions = [\"right\"]\n";
+
+// The outcome of a test of the only run, with `n` people.
+const tested_power& find_test(const std::vector<run_power>& powers, std::string_view figure)
+{
+    const auto& all = powers.at(0).tests;
+    return *std::ranges::find(all, figure, &tested_power::figure);
+}
+
+TEST_CASE("a difference between methods is found by the test of its own figure")
+{
+    const power_rig r("park2016", measured);
+    simulation s{.seed = 3, .pse = {60.0}, .jnd = {6.0, 18.0}};
+    const auto wider = r.tell({s, {8}, 30});
+    REQUIRE(wider[0].tests.size() == 3); // the PSE against 60, and both figures by method
+    CHECK(find_test(wider, "jnd").at[0].significant >= 27);
+    CHECK(find_test(wider, "jnd").at[0].for_last == find_test(wider, "jnd").at[0].significant);
+    CHECK(find_test(wider, "pse").at[0].significant <= 6);
+    s = {.seed = 3, .pse = {66.0, 54.0}, .jnd = {10.0}};
+    const auto moved = r.tell({s, {8}, 30});
+    CHECK(find_test(moved, "pse").at[0].significant == 30);
+    CHECK(find_test(moved, "pse").at[0].for_last == 0);
+    CHECK(find_test(moved, "jnd").at[0].significant <= 6);
+    CHECK(moved[0].tests[0].at[0].significant <= 6); // their mean is the standard
+}
+
+TEST_CASE("people who differ need larger studies, but do not make differences that are not there")
+{
+    const power_rig r("park2016", measured);
+    const auto pse = [&r](double off, double sd) {
+        const auto all = r.tell({{.seed = 9, .pse = {60.0 + off}, .jnd = {8.0}, .pse_sd = sd}, {8}, 200});
+        return all[0].tests[0].at[0].significant;
+    };
+    CHECK(pse(4.0, 0.0) > 180);
+    // t with 7 degrees of freedom and a noncentrality of 4 / sqrt((64 + error) / 8), some 1.3: a power of
+    // 0.2.
+    CHECK(pse(4.0, 8.0) > 20);
+    CHECK(pse(4.0, 8.0) < 70);
+    CHECK(pse(0.0, 8.0) < 20); // 10 expected, sd 3.1
+    const auto all = r.tell({{.seed = 4, .jnd = {8.0}, .pse_sd = 6.0, .jnd_sd = 4.0}, {8}, 300});
+    for (const std::string_view figure : {"pse", "jnd"}) {
+        CHECK(find_test(all, figure).at[0].significant > 3);
+        CHECK(find_test(all, figure).at[0].significant < 30); // 15 expected, sd 3.8
+    }
+}
+
+TEST_CASE("participants have the spread that was asked for, the same in each run and session")
+{
+    const power_rig r("park2016", std::string(choose) + measured);
+    const run_definition& run = r.d.runs[1];
+    // A person without a JND to speak of answers by the PSE alone: the share of answers above it is measured.
+    std::vector<double> shares;
+    const auto share = [&](const std::string& code, unsigned session) {
+        experiment_definition held = r.d;
+        held.session = session;
+        const simulated_observer who({.pse = {60.0}, .jnd = {1e-6}, .pse_sd = 20.0}, held, run, r.stimuli,
+                                     code);
+        unsigned more = 0;
+        const auto trials = make_run(r.d, 1, code, 7).trials;
+        for (unsigned i = 0; i < trials.size(); ++i) {
+            const bool standard_first = r.d.methods[trials[i].method_1].name == "standard";
+            more += (who.answer(trials[i], i + 1, 1, false).response.number == 2) == standard_first ? 1 : 0;
+        }
+        return static_cast<double>(more) / static_cast<double>(trials.size());
+    };
+    unsigned low = 0;
+    for (int i = 0; i < 400; ++i) {
+        shares.push_back(share(fmt::format("{}", i), 1));
+        low += shares.back() > 3.5 / 7.0 - 1e-9 && shares.back() > 4.5 / 7.0 ? 1 : 0;
+    }
+    CHECK(share("3", 2) == shares[3]);
+    // Five values and more lie above a PSE below 50: 31 % of a normal distribution about 60 with an sd of 20.
+    CHECK(low > 0.31 * 400 - 28);
+    CHECK(low < 0.31 * 400 + 28);
 }
 
 TEST_CASE("the computation asks before each study whether to go on, and gives nothing when stopped")

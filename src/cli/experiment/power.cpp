@@ -65,6 +65,14 @@ std::string comparison_text(const study::run_outline& r)
     return task_in(r).name_comparison(r).text;
 }
 
+// Names a test of a figure between the levels of a factor.
+std::string comparison_text(const study::tested_power& t)
+{
+    return t.levels.size() == 2 ? fmt::format("{} by {}, {} - {}, paired t against 0", t.figure, t.factor,
+                                              t.levels.back(), t.levels.front())
+                                : fmt::format("{} by {}, analysis of variance (p_gg)", t.figure, t.factor);
+}
+
 double share(std::size_t n, std::size_t studies)
 {
     return static_cast<double>(n) / static_cast<double>(studies);
@@ -79,16 +87,20 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
         e.definition.outline.name, studies, study::to_text(s));
     for (const study::run_power& p : all) {
         const study::run_outline& r = e.definition.runs[p.run].outline;
-        say(stdout, "\n{}: {}\n", r.name, comparison_text(r));
-        if (!p.at.empty())
+        const auto has_main = [](const study::tested_power& t) { return t.factor.empty(); };
+        if (std::ranges::none_of(p.tests, has_main))
+            say(stdout, "\n{}: {}\n", r.name, comparison_text(r));
+        for (const study::tested_power& t : p.tests) {
+            say(stdout, "\n{}: {}\n", r.name, has_main(t) ? comparison_text(r) : comparison_text(t));
             say(stdout, "  {:>12} {:>11} {:>15} {:>11} {:>8}\n", "participants", "p < 0.05 in", "95 %",
                 "for last in", "untested");
-        for (const study::power_at& at : p.at) {
-            const study::interval ci = study::binomial_interval(at.significant, studies);
-            say(stdout, "  {:>12} {:>9.1f} % {:>15} {:>9.1f} % {:>8}\n", at.participants,
-                100.0 * share(at.significant, studies),
-                fmt::format("{:.1f} ... {:.1f}", 100.0 * ci.first, 100.0 * ci.second),
-                100.0 * share(at.for_last, studies), at.untested);
+            for (const study::power_at& at : t.at) {
+                const study::interval ci = study::binomial_interval(at.significant, studies);
+                say(stdout, "  {:>12} {:>9.1f} % {:>15} {:>9.1f} % {:>8}\n", at.participants,
+                    100.0 * share(at.significant, studies),
+                    fmt::format("{:.1f} ... {:.1f}", 100.0 * ci.first, 100.0 * ci.second),
+                    100.0 * share(at.for_last, studies), at.untested);
+            }
         }
     }
 }
@@ -98,7 +110,8 @@ template <class Io>
 void count_members(Io& io, const study::power_at& at)
 {
     constexpr detail::about significant{
-        "studies with a p below alpha, and among these the studies in which the last method was better"};
+        "studies with a p below alpha, and among these the studies in which the mean was above the value "
+        "compared with, or the last level's mean above the first's"};
     io("participants", at.participants, {"participants of each study", {2, detail::from_0.high}});
     io("significant", at.significant, significant);
     io("for_last", at.for_last, significant);
@@ -122,11 +135,29 @@ void members(Io& io, Power& v)
     io("ci", v.ci, share);
 }
 
+// A figure between the levels of a factor.
+struct listed_test {
+    std::string factor = {};
+    std::string figure = {};
+    std::string comparison = {};
+    std::vector<listed_power> power = {};
+};
+
+template <class Io, detail::either<listed_test> Test>
+void members(Io& io, Test& v)
+{
+    io("factor", v.factor, {"what the levels are: method or session"});
+    io("figure", v.figure, {"the figure, such as jnd"});
+    io("comparison", v.comparison, {"the test, in words"});
+    io("power", v.power, {"by the requested numbers of participants"});
+}
+
 struct listed_run_power {
     std::string name = {};
     std::string task = {};
     std::string comparison = {};
     std::vector<listed_power> power = {};
+    std::vector<listed_test> comparisons = {};
 };
 
 template <class Io, detail::either<listed_run_power> Run>
@@ -137,6 +168,8 @@ void members(Io& io, Run& v)
     io.one_of("task", v.task, study::task_names(), names);
     io("comparison", v.comparison, {"the comparison, in words"});
     io("power", v.power, {"by the requested numbers of participants; empty if there is nothing to compare"});
+    io("comparisons", v.comparisons,
+       {"each figure between methods and between sessions, as analyze tests it"});
 }
 
 struct listed_powers {
@@ -167,9 +200,17 @@ void print_power_json(const study::prepared_experiment& e, const std::vector<stu
     for (const study::run_power& p : all) {
         const study::run_outline& r = e.definition.runs[p.run].outline;
         listed.runs.push_back({r.name, std::string(task_in(r).name()), comparison_text(r)});
-        for (const study::power_at& at : p.at) {
-            const study::interval ci = study::binomial_interval(at.significant, studies);
-            listed.runs.back().power.push_back({at, share(at.significant, studies), {ci.first, ci.second}});
+        for (const study::tested_power& t : p.tests) {
+            std::vector<listed_power> power;
+            for (const study::power_at& at : t.at) {
+                const study::interval ci = study::binomial_interval(at.significant, studies);
+                power.push_back({at, share(at.significant, studies), {ci.first, ci.second}});
+            }
+            if (t.factor.empty())
+                listed.runs.back().power = std::move(power);
+            else
+                listed.runs.back().comparisons.push_back(
+                    {t.factor, t.figure, comparison_text(t), std::move(power)});
         }
     }
     fmt::print("{}", study::json_text(files::make_document(listed)));
@@ -208,8 +249,9 @@ void write_part(const std::string& file, json j, const study::power_request& ask
     j["runs"] = json::array();
     for (const study::run_power& p : all) {
         j["runs"].push_back(json::array());
-        for (const study::power_at& at : p.at)
-            j["runs"].back().push_back(files::make_object([&at](auto& io) { count_members(io, at); }));
+        for (const study::tested_power& t : p.tests)
+            for (const study::power_at& at : t.at)
+                j["runs"].back().push_back(files::make_object([&at](auto& io) { count_members(io, at); }));
     }
     study::write_whole(file, study::json_text(j));
 }
@@ -247,10 +289,11 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
         runs.refuse("it has another number of runs");
     for (std::size_t run = 0; run < all.size(); ++run) {
         const std::vector<files::json_value> counts = theirs[run].need_list();
-        if (counts.size() != all[run].at.size())
-            theirs[run].refuse("it has another number of sample sizes");
+        const std::size_t sizes = all[run].tests.empty() ? 0 : all[run].tests.front().at.size();
+        if (counts.size() != all[run].tests.size() * sizes)
+            theirs[run].refuse("it has another number of tests or sample sizes");
         for (std::size_t i = 0; i < counts.size(); ++i) {
-            study::power_at& at = all[run].at[i];
+            study::power_at& at = all[run].tests[i / sizes].at[i % sizes];
             for (const auto& [key, sum] : {std::pair("significant", &at.significant),
                                            {"for_last", &at.for_last},
                                            {"untested", &at.untested}}) {

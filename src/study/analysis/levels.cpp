@@ -18,12 +18,6 @@
 namespace tactor::study {
 namespace {
 
-// A level of a factor, with the trials that belong to it.
-struct level {
-    std::string name;
-    std::function<bool(const trial&)> has;
-};
-
 std::vector<level> split_by_method(const run_outline& run)
 {
     std::vector<level> all;
@@ -100,11 +94,8 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
     return c;
 }
 
-// Returns a participant's figures in some trials; without trials only the names.
-using measure_function = std::function<std::vector<named_value>(const std::vector<trial>&)>;
-
 // Measures the mean over a participant's cells, which is missing if a cell has no trial.
-measure_function measure_cells(const run_outline& run, const cell_plan& plan)
+auto measure_cells(const run_outline& run, const cell_plan& plan)
 {
     return [&run, plan](const std::vector<trial>& trials) {
         std::optional<double> all;
@@ -131,60 +122,91 @@ cell_plan plan_one_method(cell_plan plan)
     return plan;
 }
 
-void add_factor(std::vector<result>& results, const run_people& people, const measure_function& measure,
-                const std::string& factor, const std::vector<level>& levels)
+// Returns true if the run's own results test the difference of two methods.
+bool tests_difference(const run_outline& run)
 {
-    if (levels.empty() || (levels.size() < 2 && !people.compares_groups))
+    if (run.methods.size() != 2)
+        return false;
+    for (const std::vector<result_outline>& form : task_in(run).outline_results())
+        for (const result_outline& row : form)
+            if (std::holds_alternative<method_difference>(row.value))
+                return true;
+    return false;
+}
+
+void add_factor(std::vector<result>& results, const run_people& people, const compared_factor& f)
+{
+    if (f.levels.empty() || (f.levels.size() < 2 && !people.compares_groups))
         return;
-    const std::vector<named_value> figures = measure({});
-    std::vector<level_values> values(figures.size());
+    std::vector<level_values> values(f.figures.size());
     for (const person_trials& p : people.all) {
-        std::vector<std::vector<double>> rows(figures.size());
-        for (const level& l : levels) {
-            std::vector<trial> trials;
-            std::ranges::copy_if(*p.trials, std::back_inserter(trials), l.has);
-            const std::vector<named_value> found = measure(trials);
-            for (std::size_t k = 0; k < figures.size(); ++k)
-                if (found[k].value)
-                    rows[k].push_back(*found[k].value);
-        }
-        for (std::size_t k = 0; k < figures.size(); ++k)
-            if (rows[k].size() == levels.size()) {
-                values[k].rows.push_back(std::move(rows[k]));
+        const auto found = measure_levels(f, *p.trials);
+        for (std::size_t k = 0; k < found.size(); ++k)
+            if (found[k]) {
+                values[k].rows.push_back(*found[k]);
                 values[k].groups.push_back(p.group);
             }
     }
-    for (std::size_t k = 0; k < figures.size(); ++k) {
-        const std::string& name = figures[k].name.front();
-        results.push_back({{factor + "s", name},
-                           levels.size() > 1 ? fmt::format("{} by {}, within participants", name, factor)
-                                             : fmt::format("{} by group", name),
-                           compare_levels(factor, name, levels, values[k], people.compares_groups)});
+    for (std::size_t k = 0; k < f.figures.size(); ++k) {
+        const std::string& name = f.figures[k];
+        results.push_back({{f.name + "s", name},
+                           f.levels.size() > 1 ? fmt::format("{} by {}, within participants", name, f.name)
+                                               : fmt::format("{} by group", name),
+                           compare_levels(f.name, name, f.levels, values[k], people.compares_groups)});
     }
 }
 
 } // namespace
 
+std::vector<compared_factor> list_factors(const run_outline& run, const run_people& people, sigmoid kind)
+{
+    const task& own = task_in(run);
+    std::vector<compared_factor> all;
+    if (const auto plan = own.plan_cells(run)) {
+        if (plan->figure.empty())
+            return {};
+        if (plan->methods.size() > (tests_difference(run) ? 2U : 1U))
+            all.push_back(
+                {"method", split_by_method(run), {plan->figure}, measure_cells(run, plan_one_method(*plan))});
+        if (std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
+            all.push_back({"session", std::move(sessions), {plan->figure}, measure_cells(run, *plan)});
+        return all;
+    }
+    const auto measure = [&run, &own, kind](const std::vector<trial>& trials) {
+        return own.measure(run, trials, kind);
+    };
+    std::vector<std::string> figures;
+    for (const named_value& v : measure({}))
+        figures.push_back(v.name.front());
+    if (own.has_one_method())
+        all.push_back({"method", split_by_method(run), figures, measure});
+    all.push_back({"session", split_by_session(people), figures, measure});
+    return all;
+}
+
+std::vector<std::optional<std::vector<double>>> measure_levels(const compared_factor& f,
+                                                               const std::vector<trial>& trials)
+{
+    std::vector<std::optional<std::vector<double>>> rows(f.figures.size(), std::vector<double>());
+    for (const level& l : f.levels) {
+        std::vector<trial> own;
+        std::ranges::copy_if(trials, std::back_inserter(own), l.has);
+        const std::vector<named_value> found = f.measure(own);
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            if (!found[k].value)
+                rows[k].reset();
+            if (rows[k])
+                rows[k]->push_back(*found[k].value);
+        }
+    }
+    return rows;
+}
+
 void add_comparisons(std::vector<result>& results, const run_outline& run, const run_people& people,
                      sigmoid kind)
 {
-    const task& own = task_in(run);
-    if (const auto plan = own.plan_cells(run)) {
-        if (plan->figure.empty())
-            return;
-        // A task of ratings tests the difference of two methods itself.
-        const bool is_tested = !list_values<method_difference>(results).empty();
-        if (plan->methods.size() > (is_tested ? 2U : 1U))
-            add_factor(results, people, measure_cells(run, plan_one_method(*plan)), "method",
-                       split_by_method(run));
-        if (const std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
-            add_factor(results, people, measure_cells(run, *plan), "session", sessions);
-        return;
-    }
-    const auto measure = [&](const std::vector<trial>& trials) { return own.measure(run, trials, kind); };
-    if (own.has_one_method())
-        add_factor(results, people, measure, "method", split_by_method(run));
-    add_factor(results, people, measure, "session", split_by_session(people));
+    for (const compared_factor& f : list_factors(run, people, kind))
+        add_factor(results, people, f);
 }
 
 } // namespace tactor::study

@@ -3,14 +3,40 @@
 /// Comparisons of the figures that a task measures between methods and between sessions, within participants.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "study/results/result.hpp"
 
 namespace tactor::study {
 
-/// Adds a comparison of each figure between the run's methods, if there are several and a trial has one, and
-/// between the sessions with trials. The figure of cells is their mean. Leaves out participants who lack the
+/// A level of a factor, with the trials that belong to it.
+struct level {
+    std::string name;
+    std::function<bool(const trial&)> has;
+};
+
+/// A factor whose levels are compared by each figure of a run.
+struct compared_factor {
+    std::string name; ///< method or session
+    std::vector<level> levels = {};
+    std::vector<std::string> figures = {};
+    /// Returns a participant's figures in some trials.
+    std::function<std::vector<named_value>(const std::vector<trial>&)> measure = {};
+};
+
+/// Lists the factors of a run: its methods, if there are several and a trial has one, and the sessions with
+/// trials. The figure of cells is their mean. The lists refer to `run`.
+std::vector<compared_factor> list_factors(const run_outline& run, const run_people& people, sigmoid kind);
+
+/// Returns a participant's values of each figure at all levels; nothing if one is missing.
+std::vector<std::optional<std::vector<double>>> measure_levels(const compared_factor& f,
+                                                               const std::vector<trial>& trials);
+
+/// Adds a comparison of each figure between the levels of each factor. Leaves out participants who lack the
 /// figure at a level.
 void add_comparisons(std::vector<result>& results, const run_outline& run, const run_people& people,
                      sigmoid kind);

@@ -2,13 +2,16 @@
 #include "study/analysis/power.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "study/analysis/levels.hpp"
 #include "study/experiment/trials.hpp"
+#include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
@@ -37,6 +40,7 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
         p.planned = make_run(d, run, p.code, seed.value_or(d.seed.value_or(default_seed(p.code)))).trials;
         for (const planned_trial& t : p.planned) {
             trial one;
+            one.session = d.session;
             one.place = static_cast<unsigned>(p.trials.size() + 1);
             one.motion = place_in(r.motions, t.motion);
             one.method_1 = place_in(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
@@ -74,18 +78,105 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
     }
 }
 
-// Tests one study with its first n participants. Leaves out a participant without a value, who lacks a cell,
-// as the analysis does.
-void count_study(power_at& at, std::span<const compared_person> people, const run_outline& run,
-                 std::string_view seed)
+void count(power_at& at, const compared& found)
 {
-    const compared found = task_in(run).test(run, people.first(at.participants), seed);
     at.untested += found.p ? 0 : 1;
     if (found.p && *found.p < significant_p) {
         ++at.significant;
         at.for_last += found.is_above ? 1 : 0;
     }
 }
+
+// Tests a figure between the levels of a factor with some participants. Leaves out those without a value.
+compared compare_levels(std::span<const std::optional<std::vector<double>>> people, std::size_t levels)
+{
+    std::vector<std::vector<double>> rows;
+    for (const auto& row : people)
+        if (row)
+            rows.push_back(*row);
+    std::vector<double> differences; // of the last level from the first
+    for (const std::vector<double>& row : rows)
+        differences.push_back(row.back() - row.front());
+    const t_test pair = quick_test_mean(differences, 0.0);
+    const bool is_above = pair.mean.value_or(0.0) > 0.0;
+    if (levels == 2)
+        return {pair.p, is_above};
+    const effect e = repeated_measures({rows, levels, 1}).first;
+    return {e.p_gg ? e.p_gg : e.p, is_above};
+}
+
+// A run with its participants in all sessions.
+struct simulated_study {
+    simulated_study(const std::vector<experiment_definition>& sessions, std::size_t r,
+                    const power_request& asked, std::size_t most)
+        : run(sessions.front().runs[r]), outcome{r, {}}
+    {
+        for (const experiment_definition& held : sessions)
+            people.push_back(prepare_people(held, r, most, asked.seed));
+        for (std::size_t i = 0; i < most; ++i) {
+            trials.emplace_back();
+            for (const auto& session : people)
+                trials[i].insert(trials[i].end(), session[i].trials.begin(), session[i].trials.end());
+        }
+        for (const std::vector<trial>& own : trials)
+            all.all.push_back({"", &own});
+        factors = list_factors(run.outline, all, sigmoid::normal);
+        std::erase_if(factors, [](const compared_factor& f) { return f.levels.size() < 2; });
+        if (task_in(run.outline).name_comparison(run.outline).against)
+            outcome.tests.emplace_back();
+        for (const compared_factor& f : factors)
+            for (const std::string& figure : f.figures) {
+                outcome.tests.push_back({f.name, figure});
+                for (const level& l : f.levels)
+                    outcome.tests.back().levels.push_back(l.name);
+            }
+        for (tested_power& t : outcome.tests)
+            for (const std::size_t n : asked.participants)
+                t.at.push_back({n});
+    }
+
+    // Simulates a study, and tests each number of participants.
+    void simulate(const std::vector<experiment_definition>& sessions, const stimulus_set& stimuli,
+                  const simulation& s)
+    {
+        if (outcome.tests.empty())
+            return;
+        const task& own = task_in(run.outline);
+        std::vector<compared_person> main;
+        std::vector<std::vector<std::optional<std::vector<double>>>> figures(outcome.tests.size()); // by test
+        for (std::size_t i = 0; i < trials.size(); ++i) {
+            trials[i].clear();
+            for (std::size_t n = 0; n < sessions.size(); ++n) {
+                person_run& who = people[n][i];
+                answer_all(who, {s, sessions[n], run, stimuli, who.code}, sessions[n], run);
+                trials[i].insert(trials[i].end(), who.trials.begin(), who.trials.end());
+            }
+            std::size_t test = 0;
+            if (outcome.tests.front().factor.empty()) {
+                main.push_back(own.compare(run.outline, trials[i]));
+                ++test;
+            }
+            for (const compared_factor& f : factors)
+                for (auto& row : measure_levels(f, trials[i]))
+                    figures[test++].push_back(std::move(row));
+        }
+        for (std::size_t test = 0; test < outcome.tests.size(); ++test) {
+            tested_power& t = outcome.tests[test];
+            for (power_at& at : t.at)
+                count(at, t.factor.empty() ? own.test(run.outline, std::span(main).first(at.participants),
+                                                      fmt::format("{}/{}", s.seed, run.outline.name))
+                                           : compare_levels(std::span(figures[test]).first(at.participants),
+                                                            t.levels.size()));
+        }
+    }
+
+    const run_definition& run;
+    std::vector<std::vector<person_run>> people = {}; // by session
+    std::vector<std::vector<trial>> trials = {};      // by participant
+    run_people all = {};
+    std::vector<compared_factor> factors = {};
+    run_power outcome;
+};
 
 } // namespace
 
@@ -97,41 +188,20 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
     std::vector<experiment_definition> sessions(d.outline.sessions, d);
     for (unsigned i = 0; i < sessions.size() && sessions.size() > 1; ++i)
         sessions[i].session = i + 1;
-    std::vector<run_power> all;
-    std::vector<std::vector<std::vector<person_run>>> people; // by run and session
-    for (std::size_t run = 0; run < d.runs.size(); ++run) {
-        people.emplace_back();
-        for (const experiment_definition& held : sessions)
-            people[run].push_back(prepare_people(held, run, most, r.seed));
-        all.push_back({run, {}});
-        const run_outline& o = d.runs[run].outline;
-        if (task_in(o).name_comparison(o).against)
-            for (const std::size_t n : r.participants)
-                all[run].at.push_back({n});
-    }
+    std::deque<simulated_study> runs; // whose trials stay in place
+    for (std::size_t run = 0; run < d.runs.size(); ++run)
+        runs.emplace_back(sessions, run, r, most);
     for (std::size_t k = r.studies * (r.part - 1) / r.parts; k < r.studies * r.part / r.parts; ++k) {
         if (!go_on())
             return {};
         simulation s = r.observer;
         s.seed += k;
-        for (run_power& p : all) {
-            if (p.at.empty())
-                continue;
-            const run_definition& run = d.runs[p.run];
-            std::vector<compared_person> all_people;
-            for (std::size_t i = 0; i < most; ++i) {
-                std::vector<trial> trials;
-                for (std::size_t n = 0; n < sessions.size(); ++n) {
-                    person_run& who = people[p.run][n][i];
-                    answer_all(who, {s, sessions[n], run, stimuli, who.code}, d, run);
-                    trials.insert(trials.end(), who.trials.begin(), who.trials.end());
-                }
-                all_people.push_back(task_in(run.outline).compare(run.outline, trials));
-            }
-            for (power_at& at : p.at)
-                count_study(at, all_people, run.outline, fmt::format("{}/{}", s.seed, run.outline.name));
-        }
+        for (simulated_study& one : runs)
+            one.simulate(sessions, stimuli, s);
     }
+    std::vector<run_power> all;
+    for (simulated_study& one : runs)
+        all.push_back(std::move(one.outcome));
     return all;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "study/experiment/simulated.hpp"
@@ -29,20 +30,29 @@ inline constexpr double significant_p = 0.05;
 struct power_at {
     std::size_t participants = 0;
     std::size_t significant = 0; ///< studies with p < 0.05, two-sided
-    std::size_t for_last = 0;    ///< number of these in which the last method was better
+    std::size_t for_last = 0;    ///< number of these in which the mean was larger, or the last level's mean
     std::size_t untested = 0;    ///< studies without a test, because all participants are equal
+};
+
+/// A test that analyze prints: the main comparison of a run, or of a figure between the levels of a factor.
+struct tested_power {
+    std::string factor = {};              ///< method or session; empty for the main comparison
+    std::string figure = {};              ///< "jnd"; empty for the main comparison
+    std::vector<std::string> levels = {}; ///< names of the factor's levels
+    std::vector<power_at> at = {};        ///< outcomes by sample size
 };
 
 struct run_power {
     std::size_t run = 0; ///< index in the definition
-    /// Outcomes by sample size; empty for ratings of one method, which have no comparison.
-    std::vector<power_at> at = {};
+    /// The main comparison comes first, except for a run that compares nothing by itself.
+    std::vector<tested_power> tests = {};
 };
 
-/// Simulates and tests each study of the part. Study k (from 0) has the participants 01, 02, ..., each with
-/// all sessions and an observer whose seed is that of `observer` plus k. A study of n consists of the first n
-/// participants of a larger one. Void trials come again. Calls `go_on` before each study, and returns nothing
-/// if `go_on` returns false. \throws error (bad_input) as simulated_observer does.
+/// Simulates and tests each study of the part: two levels by a paired t test, more by the analysis of
+/// variance with the correction of Greenhouse and Geisser. Study k (from 0) has the participants 01, 02, ...,
+/// each with all sessions and an observer whose seed is that of `observer` plus k. A study of n consists of
+/// the first n participants of a larger one. Void trials come again. Calls `go_on` before each study, and
+/// returns nothing if `go_on` returns false. \throws error (bad_input) as simulated_observer does.
 std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
                                                      const stimulus_set& stimuli, const power_request& r,
                                                      const std::function<bool()>& go_on);

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 
@@ -43,16 +44,29 @@ double find_cost(const experiment_definition& d, const run_definition& r, const 
 simulation parse_simulation(std::string_view text)
 {
     simulation s;
-    const auto into = [](auto& to) { return [&to](double v) { to = v; }; };
+    const auto into = [](double& to) { return [&to](double v) { to = v; }; };
+    // The first value replaces the default, further ones are for further methods.
+    const auto list = [](std::vector<double>& to) {
+        return [&to, is_new = true](double v) mutable {
+            if (std::exchange(is_new, false))
+                to.clear();
+            to.push_back(v);
+        };
+    };
     const observer_key keys[] = {
         {"seed", 0.0, 0x1p53 - 1.0, [&](double v) { s.seed = static_cast<std::uint64_t>(v); }, true},
         {"sigma", 0.0, 1e6, into(s.sigma)},
         {"void", 0.0, 0.9, into(s.voids)},
-        {"pse", -1e6, 1e6, into(s.pse)},
-        {"jnd", 1e-9, 1e6, into(s.jnd)},
+        {"pse", -1e6, 1e6, list(s.pse), false, true},
+        {"jnd", 1e-9, 1e6, list(s.jnd), false, true},
         {"lapse", 0.0, 0.5, into(s.lapse)},
-        {"dprime", 0.0, 10.0, into(s.dprime)},
-        {"exponent", 0.0, 10.0, into(s.exponent)}};
+        {"dprime", 0.0, 10.0, list(s.dprime), false, true},
+        {"exponent", 0.0, 10.0, list(s.exponent), false, true},
+        {"pse_sd", 0.0, 1e6, into(s.pse_sd)},
+        {"jnd_sd", 0.0, 1e6, into(s.jnd_sd)},
+        {"dprime_sd", 0.0, 10.0, into(s.dprime_sd)},
+        {"exponent_sd", 0.0, 10.0, into(s.exponent_sd)},
+        {"method_sd", 0.0, 1e6, into(s.method_sd)}};
     read_observer(text, keys, "seed=1,sigma=1");
     return s;
 }
@@ -61,15 +75,25 @@ std::string to_text(const simulation& s)
 {
     const simulation usual;
     std::string text = fmt::format("seed={},sigma={}", s.seed, s.sigma);
-    for (const auto& [key, v, other] : {std::tuple("void", s.voids, usual.voids),
-                                        {"lapse", s.lapse, usual.lapse},
-                                        {"dprime", s.dprime, usual.dprime},
-                                        {"exponent", s.exponent, usual.exponent}})
-        if (v != other)
+    const auto add = [&text](std::string_view key, const auto& v, const auto& other) {
+        if (v == other)
+            return;
+        if constexpr (std::is_same_v<decltype(v), const double&>)
             text += fmt::format(",{}={}", key, v);
-    for (const auto& [key, v] : {std::pair("pse", s.pse), {"jnd", s.jnd}})
-        if (v)
-            text += fmt::format(",{}={}", key, *v);
+        else
+            text += fmt::format(",{}={}", key, fmt::join(v, ","));
+    };
+    add("void", s.voids, usual.voids);
+    add("lapse", s.lapse, usual.lapse);
+    add("dprime", s.dprime, usual.dprime);
+    add("exponent", s.exponent, usual.exponent);
+    add("pse", s.pse, usual.pse);
+    add("jnd", s.jnd, usual.jnd);
+    add("pse_sd", s.pse_sd, usual.pse_sd);
+    add("jnd_sd", s.jnd_sd, usual.jnd_sd);
+    add("dprime_sd", s.dprime_sd, usual.dprime_sd);
+    add("exponent_sd", s.exponent_sd, usual.exponent_sd);
+    add("method_sd", s.method_sd, usual.method_sd);
     return text;
 }
 
@@ -87,6 +111,19 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
                return stimuli.at(motion, method).felt_paths;
            }}
 {
+    for (const auto& [key, values] :
+         {std::pair("pse", &s.pse), {"jnd", &s.jnd}, {"dprime", &s.dprime}, {"exponent", &s.exponent}})
+        if (values->size() > 1 && r.methods.size() > 1 && values->size() != r.methods.size())
+            throw error(error_kind::bad_input, r.where,
+                        fmt::format("simulate: {} has {} values, but run \"{}\" has {} methods", key,
+                                    values->size(), r.outline.name, r.methods.size()),
+                        "give one value, or one for each method");
+    // A person is the same in all runs and sessions.
+    random_numbers numbers(fmt::format("{}/{}/{}/person", s.seed, d.outline.name, code));
+    for (double* own : {&run_.person.pse, &run_.person.jnd, &run_.person.dprime, &run_.person.exponent})
+        *own = numbers.normal();
+    for (std::size_t m = 0; m < d.methods.size(); ++m)
+        run_.person.methods.push_back(numbers.normal());
     task_.prepare(run_);
 }
 

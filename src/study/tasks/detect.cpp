@@ -72,10 +72,10 @@ public:
         const bool is_silent = who.definition.methods[t.method_1].silent;
         if (is_silent && !who.run.outline.vary.empty())
             return 2;
-        if (const auto value = find_value(who.definition, t))
-            return feels_more(who, *value, r) ? 1 : 2;
-        const double felt = is_silent ? 0.0 : who.truth.dprime;
-        return felt + r.normal() > 0.5 * who.truth.dprime ? 1 : 2;
+        if (find_value(who.definition, t))
+            return feels_more(who, t, r) ? 1 : 2;
+        const double dprime = find_dprime(who, t);
+        return (is_silent ? 0.0 : dprime) + r.normal() > 0.5 * dprime ? 1 : 2;
     }
 
     // Results.

@@ -78,7 +78,7 @@ public:
         const double middle = o.standard.value_or(o.values[o.values.size() / 2]);
         const double ratio = size_ratio(o, find_value(who.definition, t).value(), middle);
         const double number =
-            modulus * std::pow(ratio, who.truth.exponent) * std::exp(who.truth.sigma * r.normal());
+            modulus * std::pow(ratio, find_exponent(who, t)) * std::exp(who.truth.sigma * r.normal());
         const auto rounded = detail::number_in<double>(fmt::format("{:.3g}", number));
         return std::clamp(rounded.value_or(number), least_estimate, most_estimate);
     }

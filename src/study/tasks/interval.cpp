@@ -88,7 +88,7 @@ public:
         if (const auto key = lapse(who, r))
             return *key;
         const bool silence_first = who.definition.methods[t.method_1].silent;
-        const bool right = feels_more(who, find_value(who.definition, t).value(), r) || r.below(2) == 0;
+        const bool right = feels_more(who, t, r) || r.below(2) == 0;
         return right == silence_first ? 2 : 1;
     }
 

@@ -72,7 +72,7 @@ public:
             return *key;
         // Answers "different" if the felt difference exceeds this, in units of d'.
         constexpr double criterion = std::numbers::sqrt2;
-        const double apart = t.method_1 != *t.method_2 ? who.truth.dprime : 0.0;
+        const double apart = t.method_1 != *t.method_2 ? find_dprime(who, t) : 0.0;
         return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;
     }
 

@@ -55,6 +55,15 @@ public:
     virtual void take(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
 };
 
+/// Deviations of a simulated person from the mean of all, in standard deviations.
+struct simulated_person {
+    double pse = 0.0;
+    double jnd = 0.0;
+    double dprime = 0.0;
+    double exponent = 0.0;
+    std::vector<double> methods = {}; ///< of the worth of each method of the definition
+};
+
 /// A run as a simulated observer knows it.
 struct simulated_run {
     const simulation& truth;
@@ -64,6 +73,7 @@ struct simulated_run {
     std::function<double(std::size_t motion, std::size_t method)> cost;
     /// Returns where each stroke of a stimulus is felt, at equal parts of its time.
     std::function<const std::vector<std::vector<point>>&(std::size_t motion, std::size_t method)> felt_paths;
+    simulated_person person = {};
     double mean_utility = 0.0;                                 ///< rate: mean of -ln cost over the stimuli
     std::vector<std::vector<std::vector<point>>> targets = {}; ///< identify: by motion and stroke
 };

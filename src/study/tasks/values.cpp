@@ -187,13 +187,48 @@ bool is_more(const run_outline& o, std::string_view method_1, unsigned response)
     return (response == 2) == (!o.standard || method_1 == standard_name);
 }
 
-bool feels_more(const simulated_run& who, double value, random_numbers& r)
+namespace {
+
+// Returns the true value for the method of a trial.
+std::optional<double> find_truth(const std::vector<double>& values, const simulated_run& who,
+                                 const planned_trial& t)
+{
+    if (values.size() < 2 || who.run.methods.size() < 2 || !task_in(who.run.outline).has_one_method())
+        return values.empty() ? std::nullopt : std::optional(values.front());
+    const auto base = [&who](std::size_t m) { return who.definition.methods[m].made_of.value_or(m); };
+    auto at = std::ranges::find(who.run.methods, base(t.method_1));
+    if (at == who.run.methods.end() && t.method_2) // the first stimulus is the standard
+        at = std::ranges::find(who.run.methods, base(*t.method_2));
+    return values.at(static_cast<std::size_t>(at - who.run.methods.begin()));
+}
+
+} // namespace
+
+bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r)
 {
     const run_outline& o = who.run.outline;
+    const simulation& s = who.truth;
+    const double value = find_value(who.definition, t).value();
     const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
-    const double pse = who.truth.pse.value_or(o.standard.value_or(0.5 * (least + greatest)));
-    const double jnd = who.truth.jnd.value_or(0.1 * (greatest - least));
+    const double pse = find_truth(s.pse, who, t).value_or(o.standard.value_or(0.5 * (least + greatest))) +
+                       s.pse_sd * who.person.pse;
+    double jnd = find_truth(s.jnd, who, t).value_or(0.1 * (greatest - least));
+    if (s.jnd_sd > 0.0) {
+        const double variance = std::log1p(std::pow(s.jnd_sd / jnd, 2.0));
+        jnd *= std::exp(std::sqrt(variance) * who.person.jnd - 0.5 * variance);
+    }
     return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
+}
+
+double find_dprime(const simulated_run& who, const planned_trial& t)
+{
+    return std::max(0.0,
+                    find_truth(who.truth.dprime, who, t).value() + who.truth.dprime_sd * who.person.dprime);
+}
+
+double find_exponent(const simulated_run& who, const planned_trial& t)
+{
+    return find_truth(who.truth.exponent, who, t).value() + who.truth.exponent_sd * who.person.exponent;
 }
 
 std::optional<double> lapse(const simulated_run& who, random_numbers& r)
@@ -207,7 +242,7 @@ double simulate_comparison(const simulated_run& who, const planned_trial& t, ran
 {
     if (const auto key = lapse(who, r))
         return *key;
-    const bool more = feels_more(who, find_value(who.definition, t).value(), r);
+    const bool more = feels_more(who, t, r);
     const bool standard_first = who.definition.methods[t.method_1].name == standard_name;
     return more == (!t.method_2 || standard_first) ? 2 : 1;
 }
@@ -226,9 +261,14 @@ void prepare_judge(simulated_run& who)
     who.mean_utility = sum / static_cast<double>(r.motions.size() * r.methods.size());
 }
 
+double deviate(const simulated_run& who, std::size_t method, random_numbers& r)
+{
+    return who.truth.method_sd * who.person.methods[method] + who.truth.sigma * r.normal();
+}
+
 double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r)
 {
-    return -std::log(who.cost(motion, method)) + who.truth.sigma * r.normal();
+    return -std::log(who.cost(motion, method)) + deviate(who, method, r);
 }
 
 } // namespace tactor::study

@@ -74,8 +74,13 @@ bool is_more(const run_outline& o, std::string_view method_1, unsigned response)
 
 // Simulated observers.
 
-/// Returns true with the probability of the true psychometric function at a value.
-bool feels_more(const simulated_run& who, double value, random_numbers& r);
+/// Returns true with the probability of the person's psychometric function at the value of a trial. The
+/// person's PSE is normal, the JND lognormal, so that it stays positive.
+bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r);
+/// Returns the person's d' for the method of a trial: normal, at least 0.
+double find_dprime(const simulated_run& who, const planned_trial& t);
+/// Returns the person's exponent for the method of a trial: normal.
+double find_exponent(const simulated_run& who, const planned_trial& t);
 /// Returns a random key in the share of trials in which an observer does not attend, else nothing.
 std::optional<double> lapse(const simulated_run& who, random_numbers& r);
 /// Answers a trial with a comparison by is_more().
@@ -83,7 +88,10 @@ double simulate_comparison(const simulated_run& who, const planned_trial& t, ran
 /// Throws error (bad_input) if an observer cannot judge the run's attribute; else computes the mean of its
 /// judgements.
 void prepare_judge(simulated_run& who);
-/// Returns a judgement of a stimulus: -ln of its cost, plus noise.
+/// Returns how far a judgement of a method is from the mean of all people's: what the method is worth to this
+/// person, plus noise.
+double deviate(const simulated_run& who, std::size_t method, random_numbers& r);
+/// Returns a judgement of a stimulus: -ln of its cost, plus deviate().
 double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r);
 
 } // namespace tactor::study
