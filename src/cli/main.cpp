@@ -329,14 +329,16 @@ int main(int argc, char** argv)
         if (is_unread(e))
             return status_unread;
         const tactor::error said = explain(in_options(e), {argv + 1, argv + argc});
-        say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", said.what()); // an empty name
+        // A name may be empty, or have line ends that would forge messages.
+        say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", shown(said.what()));
         return exit_status_for(e.kind());
     } catch (const std::system_error& e) {
         if (std::ferror(stdout) != 0) // set by fmt::print
             return unprinted(output_error() != 0 ? output_error() : e.code().value());
-        say_error("tactor: failed: {}\n", e.what());
+        say_error("tactor: failed: {}\n", shown(e.what()));
     } catch (const std::bad_alloc&) {
-        say_error("tactor: memory: not enough for this input\n");
+        say_error("tactor: memory: not enough for this input (close other programs, or give a shorter "
+                  "stroke or fewer channels)\n");
     } catch (const std::exception& e) {
         say_error("tactor: failed: {}\n", e.what());
     }

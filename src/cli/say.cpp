@@ -40,7 +40,7 @@ void say_warnings(std::span<const std::string> warnings)
     for (const std::string& w : warnings) {
         const std::size_t n = std::exchange(counts[find_kind(w)], 0);
         if (n != 0)
-            say(stderr, "tactor: warning: {}{}\n", w,
+            say(stderr, "tactor: warning: {}{}\n", shown(w),
                 n == 1 ? "" : fmt::format("; and {} more like it", n - 1));
     }
 }
@@ -56,7 +56,7 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
 void warn_of_weakening(const std::string& name, const weakening& w, std::size_t strokes)
 {
     if (const std::string text = session::weakening_text(w, strokes); !text.empty())
-        say(stderr, "tactor: warning: {}: {}\n", name, spelled(text));
+        say(stderr, "tactor: warning: {}: {}\n", shown(name), spelled(text));
 }
 
 progress_line::~progress_line()

@@ -2,6 +2,7 @@
 #include "net/listen.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -33,12 +34,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string_view advise(int code)
+{
+    switch (code) {
+    case EADDRINUSE:
+        return "end the other server, or choose another address";
+    case EADDRNOTAVAIL:
+        return "give an address of this machine: ip addr shows them";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return "name a folder in which you can create files";
+    case ENOSPC:
+    case EDQUOT:
+        return "free some space";
+    default:
+        return {};
+    }
+}
+
 [[noreturn]] void refused(const std::string& what, int code, std::string_view hint = {})
 {
-    const auto kind = code == EADDRINUSE || code == EACCES || code == EADDRNOTAVAIL
-                          ? error_kind::not_available
-                          : error_kind::runtime;
-    detail::throw_caused(error(kind, what, std::strerror(code), hint), code);
+    constexpr std::array unavailable{EADDRINUSE, EACCES, EADDRNOTAVAIL, EPERM, EROFS};
+    const auto kind =
+        std::ranges::count(unavailable, code) != 0 ? error_kind::not_available : error_kind::runtime;
+    detail::throw_caused(error(kind, what, std::strerror(code), hint.empty() ? advise(code) : hint), code);
 }
 
 sockaddr_un unix_address(const std::string& path)

@@ -97,7 +97,8 @@ void session_log::open()
         throw error(error_kind::bad_input, file_, "it is a folder", "name a file in it");
     if (!fd_)
         throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
-                    std::strerror(code));
+                    std::strerror(code),
+                    code == ENOENT ? "make its folder first" : "name a file in a folder that you can write");
     if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
         throw error(error_kind::bad_input, file_, "it is not a regular file",
                     "name a file; {verbose=true} writes to standard error");

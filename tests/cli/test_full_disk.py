@@ -234,7 +234,7 @@ class FullDisk(ExperimentTest):
         return kept
 
     def test_a_simulated_study_on_a_full_disk_resumes(self):
-        self.assertGreater(self.study(Disk.fill), 5)
+        self.assertGreater(self.study(Disk.fill), 2)
 
     def test_a_simulated_study_on_a_disk_without_names_resumes(self):
         self.assertGreater(self.study(Disk.fill_names), 5)

@@ -255,7 +255,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }
-    store.try_to_write();
+    store.try_to_write(p.stimuli.all());
     if (store.resumed())
         for (const std::string& what : store.mend())
             say(stderr, "tactor: warning: {}\n", what);

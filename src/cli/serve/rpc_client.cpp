@@ -17,6 +17,7 @@
 #include <fmt/ranges.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -109,6 +110,10 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
         throw error(error_kind::not_available, "server at " + *socket, "it is not the path of a Unix socket",
                     "give --socket the path that tactor serve prints; other programs use addresses, see "
                     "tactor-protocol(7)");
+    struct stat s {};
+    if (socket && ::stat(socket->c_str(), &s) == 0 && !S_ISSOCK(s.st_mode))
+        throw error(error_kind::not_available, "server at " + *socket, "it is not a socket",
+                    "give --socket the path that tactor serve prints");
     throw error(error_kind::not_available, fmt::format("server at {}", fmt::join(places, ", ")),
                 code == ENOENT ? "no server listens there" : std::strerror(code),
                 "start one with tactor serve, or name its socket with --socket PATH");

@@ -116,7 +116,9 @@ std::string convert(const canvas& c, std::initializer_list<std::string> options)
     if (status != 0) {
         const std::string messages = files[2].read();
         throw error(error_kind::runtime, program,
-                    messages.empty() ? fmt::format("it ended with status {:#x}", status)
+                    messages.empty() ? WIFEXITED(status)
+                                           ? fmt::format("it ended with exit status {}", WEXITSTATUS(status))
+                                           : fmt::format("it was ended by signal {}", WTERMSIG(status))
                                      : clean(messages.substr(0, messages.find('\n'))),
                     "write SVG");
     }

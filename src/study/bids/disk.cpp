@@ -129,7 +129,7 @@ void make_folders(const fs::path& folder, const fs::path& below)
         make_folder(at /= part);
 }
 
-void try_to_write(const fs::path& file)
+void try_to_write(const fs::path& file, std::size_t bytes)
 {
     fs::path folder = file.parent_path();
     while (!is_on_disk(folder))
@@ -138,8 +138,12 @@ void try_to_write(const fs::path& file)
     const std::size_t length = std::max(file.filename().string().size(), tail.size() + 2);
     const fs::path probe = folder / ("." + std::string(length - tail.size() - 1, 'x') + tail);
     const detail::owned_fd fd(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
-    const bool possible = fd && (!is_on_disk(file) || ::access(file.c_str(), W_OK) == 0);
-    const int code = errno;
+    bool possible = fd && (!is_on_disk(file) || ::access(file.c_str(), W_OK) == 0);
+    int code = errno;
+    if (possible && bytes > 0) {
+        code = write_all(fd.get(), std::string(bytes, '\n'), false);
+        possible = code == 0;
+    }
     ::unlink(probe.c_str());
     if (possible)
         return;

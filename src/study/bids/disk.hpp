@@ -42,8 +42,9 @@ void make_folder(const std::filesystem::path& folder);
 void make_folders(const std::filesystem::path& folder, const std::filesystem::path& below);
 
 /// Tries another name of the same length, to find out if a file can be written under this name once its
-/// folders are made. \throws error: bad_input for an impossible name, runtime for what the system refuses.
-void try_to_write(const std::filesystem::path& file);
+/// folders are made, and if the disk has room for `bytes`. \throws error: bad_input for an impossible name,
+/// runtime for what the system refuses.
+void try_to_write(const std::filesystem::path& file, std::size_t bytes = 0);
 
 /// Removes the files that a crash in write_whole() left in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;

@@ -130,29 +130,41 @@ session_store::~session_store()
     release();
 }
 
-void session_store::try_to_write() const
+void session_store::try_to_write(const std::vector<stimulus>& stimuli) const
 {
     std::vector<fs::path> files = folder_.list_files();
     std::erase_if(files, [](const fs::path& p) { return is_on_disk(p) && p.extension() != ".tsv"; });
     for (const run_definition* r : runs_)
         files.push_back(facts_.contains("codes") ? event_table(*r) : table(*r)); // the longer name
-    files.push_back(source_ / "session.json");
     for (const fs::path& file : files)
         study::try_to_write(file);
+    std::size_t room = 2 * reserved_bytes; // the other half: tables, lists and descriptions
+    for (const stimulus& s : stimuli)
+        room += s.text.size();
+    study::try_to_write(source_ / "session.json", resumed_ ? 0 : room);
 }
 
 void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& events)
 {
     begun_ = true;
-    make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");
-    reserve();
-    for (const stimulus& s : stimuli) {
-        const fs::path file = source_ / "plans" / (s.hash + ".json");
-        if (!is_on_disk(file))
-            write_whole(file, s.text);
+    try {
+        make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");
+        reserve();
+        for (const stimulus& s : stimuli) {
+            const fs::path file = source_ / "plans" / (s.hash + ".json");
+            if (!is_on_disk(file))
+                write_whole(file, s.text);
+        }
+        if (!resumed_)
+            write_facts();
+    } catch (const error& e) {
+        if (resumed_)
+            throw;
+        begun_ = false;
+        undo_begin(stimuli);
+        throw error(e.kind(), e.subject(), e.why(),
+                    "free some space, or name another disk, and run it again; the session has not begun");
     }
-    if (!resumed_)
-        write_facts();
     folder_.describe();
     for (const run_definition* r : runs_) {
         const fs::path file = folder_.path() / events_description(*r);
@@ -322,6 +334,21 @@ void session_store::note(const std::string& key, const ordered& value)
 {
     facts_[key] = value;
     write_facts();
+}
+
+// Removes the files and empty folders of a session that could not begin.
+void session_store::undo_begin(const std::vector<stimulus>& stimuli) noexcept
+{
+    release();
+    std::error_code ignored;
+    for (const stimulus& s : stimuli)
+        fs::remove(source_ / "plans" / (s.hash + ".json"), ignored);
+    fs::remove(source_ / "plans", ignored);
+    fs::path folder = source_;
+    for ([[maybe_unused]] const fs::path& part : source_path(folder_.code(), folder_.session())) {
+        fs::remove(folder, ignored);
+        folder = folder.parent_path();
+    }
 }
 
 void session_store::write_facts() const

@@ -37,8 +37,8 @@ public:
     session_store& operator=(const session_store&) = delete;
 
     /// Checks, before anybody answers, that there will be a place for each answer: tries each name that the
-    /// session will write. \throws as study::try_to_write().
-    void try_to_write() const;
+    /// session will write, and whether the disk has room for a new one. \throws as study::try_to_write().
+    void try_to_write(const std::vector<stimulus>& stimuli) const;
 
     /// Writes session.json and the files of the study, if they do not exist, and each plan under its hash.
     /// `events`: the description of append_event()'s tables; null if there are none.
@@ -96,6 +96,7 @@ private:
     std::string scan_name(const run_definition& r) const;
     std::vector<std::string> begun_answers(const std::string& form) const;
     void write_facts() const;
+    void undo_begin(const std::vector<stimulus>& stimuli) noexcept;
     void reserve();
     void release() noexcept;
     template <class Write>

@@ -84,7 +84,8 @@ private:
 };
 
 /// Hint of an error that ends a session with a person.
-inline constexpr const char* resume_hint = "earlier answers are kept; continue with --resume";
+inline constexpr const char* resume_hint =
+    "earlier answers are kept; if there are any, continue with --resume";
 
 /// A keypad. While this object lives, no other program gets its keys. For use by one thread.
 class keypad {
