@@ -27,7 +27,7 @@ class AnalyzeTest(ToolTest):
 
 class Figures(AnalyzeTest):
     def test_every_figure_matches_r_and_nothing_else_is_printed(self):
-        known = {"method", "reference", "task", "trials", "early", "left_out", "a", "b", "participant", "why"}
+        known = {"method", "reference", "task", "trials", "early", "dropped", "left_out", "a", "b", "participant", "why"}
         for name in studies.STUDIES:
             golden = check_r.read((check_r.GOLDEN / f"{name}.tsv").read_text(encoding="utf-8"))
             self.assertGreater(len(golden), 100)
@@ -142,6 +142,39 @@ class Forms(AnalyzeTest):
             shown = re.findall(r"^\| \S.*? \| [\d.]+ \| [\d.]* \| (-?[\d.]+) to (-?[\d.]+) \|", self.ok("report", name).stdout, re.M)
             self.assertTrue(shown and all(0 <= float(low) <= float(high) <= 100 for low, high in shown), shown)
         self.assertGreater(beyond, 0)  # else nothing was tried
+
+    def test_trials_can_be_left_out_by_their_answers_and_are_counted(self):
+        folder = self.study("simulated")
+        tables = {t: list(csv.DictReader(t.read_text().splitlines(), delimiter="\t")) for t in folder.glob("sub-*/beh/*_task-similarity_beh.tsv")}
+        # The last two answers of each participant are early; the table has response times of its own.
+        for table, rows in tables.items():
+            for i, row in enumerate(rows):
+                row["early"] = "true" if i >= len(rows) - 2 else "false"
+                row["response_time"] = 0.1 * (i + 1)
+            table.write_text("\t".join(rows[0]) + "\n" + "".join("\t".join(map(str, r.values())) + "\n" for r in rows))
+
+        def counted(*options, keep):
+            told = self.analysis(folder, *options)
+            valid = [[r for r in rows if r["void"] == "false"] for rows in tables.values()]
+            kept = sum(sum(map(keep, rows)) for rows in valid)
+            run = told["runs"]["similarity"]
+            self.assertEqual((run["trials"], run["dropped"]), (kept, sum(map(len, valid)) - kept))
+            self.assertFalse([w for w in told["warnings"] if "that count, of" in w])
+            return told
+
+        self.assertEqual(counted(keep=lambda r: True)["drop_rule"], "")
+        told = counted("--drop-early", keep=lambda r: r["early"] == "false")
+        self.assertEqual(told["drop_rule"], "answers marked early")
+        told = counted("--response-time", "0.35,3.05", keep=lambda r: 0.35 <= r["response_time"] <= 3.05)
+        self.assertEqual(told["drop_rule"], "response times outside 0.35 to 3.05 s")
+        both = ("--drop-early", "--response-time", "0.35,3.05")
+        dropped = counted(*both, keep=lambda r: r["early"] == "false" and 0.35 <= r["response_time"] <= 3.05)["runs"]["similarity"]["dropped"]
+        why = "answers marked early; response times outside 0.35 to 3.05 s"
+        self.assertIn(f"  {dropped} trials left out: {why}\n", self.ok("analyze", folder, "--format", "tables", *both).stdout)
+        self.assertIn(f"Trials left out: {dropped} ({why}).", self.ok("report", folder, *both).stdout)
+        self.assertNotIn("Trials left out", self.ok("report", folder).stdout)
+        for wrong in ("1", "2,1", "1,nan", "-1,2", "a,b", "1,2,3"):
+            self.refused(2, "analyze", folder, "--response-time", wrong, says=["--response-time: ", "is not a range of times"])
 
     def test_a_summary_has_the_main_figure_of_each_run_in_ten_lines(self):
         told = self.analysis(self.study("simulated"))["runs"]

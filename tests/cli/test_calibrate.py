@@ -290,7 +290,7 @@ class Page(CalibrateTest):
 
     def test_intervals_are_shown_and_answered_on_the_page_in_the_words_of_an_experiment(self):
         self.write("mine.toml", '[page]\nbegin = "Los"\ncalibrate_choose = "Zwei"\ncalibrate_interval = "Abschnitt"\n'
-                                'calibrate_right = "Ja"\ncalibrate_wrong = "Nein"\n')
+                                'right = "Ja"\nwrong = "Nein"\n')
         s = self.start("--page-words", "mine.toml")
         s.key("1")  # text typed at the terminal is no answer
         asked = self.page.answer("introduce", 1)

@@ -60,6 +60,31 @@ class AtTheTerminal(PersonTest):
         self.assertIn("\033[", t.all)
         self.assertNotIn("cannot be drawn", t.said())
 
+    def test_people_are_told_whether_they_were_right(self):
+        runs = (toml("run", "what", task="identify", trials=2, methods=["Birch"], motions=["east", "west"], feedback=True)
+                + toml("run", "alike", task="same-different", trials=2, motions=["east"], training=2, question="Alike?")
+                + toml("run", "there", task="detect", trials=2, motions=["east"], methods=["Birch"], catch=0.5, feedback=True)
+                + toml("run", "when", task="interval", vary="level_dbfs", values=[-30, -20], motions=["east"], methods=["Birch"], trials=2, feedback=True))
+        self.write("short.toml", BARE.replace("gap_s = 0.1", 'gap_s = 0.1\norder = "latin"') + runs)
+        t = self.start()
+        t.walk(agrees=False)
+        told = []
+        for asked, answers in (("Which movement was it", 2), ("Alike", 4), ("Did you feel it", 2), ("In which interval", 2)):
+            t.answer("Any key begins", " ")
+            for n in range(answers):
+                t.answer(asked + ".*: ", "1")
+                if asked != "Alike" or n < 2:  # two are training
+                    told.append(t.until("That was (right|wrong)\\.")[1] == "right")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertEqual(len(re.findall("That was (?:right|wrong)", t.all)), len(told))
+        # Reads what was felt from the tables; practice has its own.
+        practice = read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")
+        truth = ([r["motion"] == "east" for r in self.rows("01", "what")] + [r["method_1"] == r["method_2"] for r in practice]
+                 + [r["method_1"] != "none" for r in self.rows("01", "there")] + [r["method_1"] != "none" for r in self.rows("01", "when")])
+        self.assertEqual(told, truth)
+        self.assertEqual({*truth}, {True, False})
+
     def test_the_terminal_has_the_words_of_the_definition(self):
         keys = ("agree yes no walk felt again back begin practice part target rest pause over or to any_key_begins any_key_ends trial "
                 "repeated later no_answer any_number").split()

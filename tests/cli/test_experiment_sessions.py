@@ -4,6 +4,7 @@ import collections
 import csv
 import io
 import json
+import re
 import shutil
 
 from experiments import COLUMNS, GROUPED, SMALL, ExperimentTest, contents, read_table
@@ -50,6 +51,30 @@ class Held(SessionTest):
             self.assertEqual((facts["session"], facts["order"]), (n, [r["name"] for r in self.dry("--participant", f"0{n}", "--session", "1")["runs"]]))
             for stimulus in facts["stimuli"]:
                 self.assertIn(f"sourcedata/sub-01/ses-{n}/plans/{stimulus['sha256']}.json", files)
+
+    def test_a_run_belongs_to_some_sessions(self):
+        text = several(SMALL, 3).replace('name = "how good"', 'name = "how good"\nsessions = [1, 3]')
+        self.write("two.toml", text)
+        for n in (1, 2, 3):
+            self.hold("01", n)
+            names = {r["name"] for r in self.dry("--participant", "01", "--session", str(n))["runs"]}
+            self.assertEqual("how good" in names, n != 2)
+            self.assertEqual((self.dir / f"study/sub-01/ses-{n}/beh/sub-01_ses-{n}_task-howgood_beh.tsv").exists(), n != 2)
+        told = self.analysis()["runs"]
+        self.assertEqual((told["how good"]["trials"], told["what"]["trials"]), (8, 9))
+        self.assertIn("- Sessions that have the run: 1, 3\n", self.ok("report", "study").stdout)
+        power = json.loads(self.ok("experiment", "two.toml", "--power", "2", "--studies", "2", "--simulate", "sigma=1", "--format", "json").stdout)
+        by = {r["name"]: r["comparisons"][-1]["comparison"] for r in power["runs"] if r["comparisons"]}
+        self.assertEqual((by["how good"], by["what"]), ("rating by session, 3 - 1, paired t against 0", "correct by session, analysis of variance (p_gg)"))
+        # A table of a session that does not have the run is not silently left out.
+        table = self.dir / "study/sub-01/ses-2/beh/sub-01_ses-2_task-howgood_beh.tsv"
+        table.write_bytes((self.dir / "study/sub-01/ses-1/beh/sub-01_ses-1_task-howgood_beh.tsv").read_bytes())
+        self.refused(2, "analyze", "study", says=[f"{table.relative_to(self.dir)}: the experiment has no such run in this session"])
+        for wrong, why in (("[4]", "sessions is 4"), ("[0]", "sessions is 0"), ("[1, 1]", "1 is not another session's number"), ("[]", "no session has the run"), ("[1.5]", "1.5 is not")):
+            self.write("wrong.toml", text.replace("sessions = [1, 3]", f"sessions = {wrong}"))
+            self.refused(2, "experiment", "wrong.toml", "--dry-run", "--session", "1", says=[why])
+        self.write("wrong.toml", re.sub(r'(?m)^(task = .*)$', r"\1\nsessions = [1]", several(SMALL)))
+        self.refused(2, "experiment", "wrong.toml", "--dry-run", "--session", "2", says=["session 2 has no run"])
 
     def test_orders_trials_and_answers_are_drawn_anew(self):
         self.hold("01", 1)

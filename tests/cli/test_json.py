@@ -45,7 +45,7 @@ MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
         "runs{}.exponent.participants", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
-        "runs{}.by",
+        "runs{}.scaling.participants", "runs{}.scaling.participants{}.places", "runs{}.scaling.places", "runs{}.by",
         *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means"))}
 
 
@@ -179,6 +179,9 @@ class Schemas(ToolTest):
         self.write("meet.toml", 2 * "[[stroke]]\npath = 'M 0 20 L 40 20'\nduration_s = 0.5\nstart_s = 0\n")
         self.write("grouped.toml", FELT.replace("name", "sessions = 2\nname", 1) + '[[group]]\nname = "a"\n')
         self.ok("experiment", "grouped.toml", "--participant", "1", "-o", "grouped", "--simulate", "seed=1", "--group", "a", "--session", "1")
+        self.write("apart.toml", studies.measures("palm-3x3", studies.toml("method", "hard", burst=0.02), studies.run("apart", "dissimilar", 12, attribute="similarity")))
+        for code in ("1", "2"):
+            self.ok("experiment", "apart.toml", "--participant", code, "-o", "apart", "--simulate", "seed=1")
         self.write("measured.toml", MEASURED + TRACKS)
         self.write("coded.toml", '[array]\npreset = "palm-3x3"\n[sync]\ncode = { channel = 9 }\n[sync.codes]\nstimulus = { by = ["motion", "method"] }\n')
         for code in "123":
@@ -203,7 +206,7 @@ class Schemas(ToolTest):
             ("plan", "park2016-1", "--compensate", "low-speed"),
             ("plan", "strokes.toml", "--array", "o.toml", "--compensate", "low-speed"),
             ("compare", "strokes.toml", "--array", "o.toml", "--observer", "low-speed"),
-            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--power", "2", "--studies", "2", "--simulate", "sigma=2", "--group", "a"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "thrice"), ("analyze", "compared"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
+            ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--power", "2", "--studies", "2", "--simulate", "sigma=2", "--group", "a"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "thrice"), ("analyze", "compared"), ("analyze", "apart"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"), ("play", "meet.toml", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
         for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:

@@ -34,12 +34,14 @@ TASKS = {
     "interval": (dict(vary="length_mm", procedure="1up3down", range=[4, 20], trials=60), "psychometric.tests.threshold.mean", "value"),
     "locate": (dict(trials=8), "drawings.means.error.mean", "error"),
     "trace": (dict(trials=8), "drawings.means.distance.mean", "distance"),
+    "dissimilar": (dict(attribute="similarity", trials=12), "means.park - soft.all.mean", "response"),
 }
 WEST = toml("motion", "west", path="M20 0H0", duration=0.2)
 
 
 def define(task):
-    text = measures("desk.toml", toml("run", "only", task=task, **TASKS[task][0]), keys="gap_s = 0.1\n")
+    third = toml("method", "hard", burst=0.02) if task == "dissimilar" else ""
+    text = measures("desk.toml", third, toml("run", "only", task=task, **TASKS[task][0]), keys="gap_s = 0.1\n")
     return text.replace("[[method]]", WEST + "[[method]]", 1)
 
 
@@ -60,7 +62,7 @@ class EveryTask(ExperimentTest):
         for name, make in STUDIES.items():
             make(self.dir / name)
         texts = [json.loads(p.read_text())["experiment"]["text"] for p in self.dir.glob("*/sourcedata/sub-*/session.json")]
-        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, check_r.DRAWN, *texts]), re.M))
+        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, check_r.DRAWN, check_r.APART, *texts]), re.M))
         self.assertEqual(checked, set(TASKS))
 
     def test_from_definition_to_report(self):
@@ -71,7 +73,7 @@ class EveryTask(ExperimentTest):
                 dry = self.valid(self.ok("experiment", "t.toml", "--dry-run", "--format", "json").stdout)
                 self.assertEqual([r["task"] for r in dry["runs"]], [task])
                 power = self.valid(self.ok("experiment", "t.toml", "--power", "3", "--studies", "2", "--simulate", "jnd=3", "--format", "json").stdout)
-                self.assertEqual(len(power["runs"][0]["power"]), task not in ("interval", "locate", "trace"))  # they have nothing to compare with
+                self.assertEqual(len(power["runs"][0]["power"]), task not in ("interval", "locate", "trace", "dissimilar"))  # they have nothing to compare with
                 for code in "123":
                     self.simulate(code, definition="t.toml", folder=task, spec=f"seed={code},jnd=3,dprime=2,sigma=0.3")
                 told = self.valid(self.ok("analyze", task, "--format", "json").stdout)["runs"]["only"]

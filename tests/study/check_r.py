@@ -347,6 +347,45 @@ def check_drawings(tool, folder):
             if not all(abs(a - b) <= 1e-8 * max(1, abs(b)) for a, b in zip(m, r, strict=True))]
 
 
+APART = studies.measures("palm-3x3", studies.toml("method", "hard", burst=0.02), studies.toml("method", "wide", phantom="gaussian"),
+                         studies.toml("motion", "bend", path="M10 5Q30 5 30 35", duration=1.0),
+                         studies.run("apart", "dissimilar", 48, attribute="similarity"))
+# The mean difference of each pair, both orders and the motions alike; cmdscale, and Kruskal's stress of its distances.
+SCALE = """
+methods <- c("park", "soft", "hard", "wide")
+lay <- function(all) {
+  m <- matrix(0, 4, 4)
+  for (i in 1:4) for (k in 1:4) if (i != k) m[i, k] <- mean(sapply(c("east", "bend"), function(motion)
+    mean(all$response[all$motion == motion & ((all$method_1 == methods[i] & all$method_2 == methods[k]) | (all$method_1 == methods[k] & all$method_2 == methods[i]))])))
+  m
+}
+show <- function(m) {
+  p <- cmdscale(m)
+  p <- apply(p, 2, function(v) v * sign(v[which.max(abs(v))]))
+  d <- as.matrix(dist(p))
+  cat(format(c(m, p, sqrt(sum((d - m)^2) / sum(d^2))), digits = 15), "\n")
+}
+each <- lapply(c("01", "02", "03"), function(code) {
+  t <- read.delim(sprintf("apart/sub-%s/beh/sub-%s_task-apart_beh.tsv", code, code), na.strings = "n/a")
+  lay(t[t$void == "false", ])
+})
+show(Reduce("+", each) / 3)
+for (m in each) show(m)
+"""
+
+
+def check_scaling(tool, folder):
+    """Returns where places and stress of methods differ from those of R."""
+    (folder / "apart.toml").write_text(APART)
+    for code in ("01", "02", "03"):
+        run(tool, "experiment", folder / "apart.toml", "--participant", code, "-o", folder / "apart", "--simulate", "seed=1,sigma=8,void=0.1")
+    told = json.loads(run(tool, "analyze", folder / "apart", "--format", "json"))["runs"]["apart"]["scaling"]
+    said = [list(map(float, line.split())) for line in run("Rscript", "-e", SCALE, cwd=folder).splitlines()]
+    mine = [[*(d for row in one["differences"] for d in row), *(p[k] for k in (0, 1) for p in one["places"].values()), one["stress"]]
+            for one in (told, *told["participants"].values())]
+    return [f"{m}, R: {r}" for m, r in zip(mine, said, strict=True) if not all(abs(a - b) <= 1e-9 * max(1, abs(b)) for a, b in zip(m, r, strict=True))]
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -365,6 +404,7 @@ def main():
                     cases["measures, models"] = lambda: check_measures(tool, folder)
                     cases["measures, methods"] = lambda: check_method_errors(tool, folder)
                     cases["drawings"] = lambda: check_drawings(tool, folder)
+                    cases["scaling"] = lambda: check_scaling(tool, folder)
                     cases["measures, comparisons"] = lambda: check_comparisons(tool, folder)
             else:
                 print(f"SKIPPED: {name}, models: lme4 is not here")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Statistics where R has no figure, and the analysis of a study; test_analyze.py compares with R.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "study/analysis/analysis.hpp"
 #include "study/results/result.hpp"
 #include "study/statistics/bradley_terry.hpp"
+#include "study/statistics/scaling.hpp"
 #include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 
@@ -533,6 +535,46 @@ TEST_CASE("an effect too large for an interval is reported")
     CHECK(paired().d_ci);
     d.data = {{rated(1000, 0)}, {rated(1000, 0)}}; // no t at all
     CHECK_FALSE(warns(analyse(d), text));
+}
+
+TEST_CASE("classical scaling finds points again from their distances, turned and mirrored")
+{
+    const std::vector<std::array<double, 2>> truth{
+        {0.0, 0.0}, {30.0, 4.0}, {12.0, 40.0}, {-7.0, 21.0}, {5.0, 5.0}};
+    const auto distance = [](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+        return std::hypot(a[0] - b[0], a[1] - b[1]);
+    };
+    std::vector<std::vector<double>> differences;
+    for (const auto& a : truth) {
+        differences.emplace_back();
+        for (const auto& b : truth)
+            differences.back().push_back(distance(a, b));
+    }
+    const scaled_items found = scale_items(differences);
+    REQUIRE(found.places.size() == truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i)
+        for (std::size_t k = 0; k < truth.size(); ++k)
+            CHECK(distance(found.places[i], found.places[k]) ==
+                  doctest::Approx(differences[i][k]).epsilon(1e-12));
+    CHECK(found.stress < 1e-12);
+    // The centre is at 0, and the first dimension is the longer one.
+    double sum[2] = {};
+    double squares[2] = {};
+    for (const auto& place : found.places)
+        for (int k : {0, 1}) {
+            sum[k] += place[k];
+            squares[k] += place[k] * place[k];
+        }
+    CHECK(std::abs(sum[0]) + std::abs(sum[1]) < 1e-10);
+    CHECK(squares[0] > squares[1]);
+    // Four items that are equally far apart do not fit into a plane.
+    std::vector<std::vector<double>> equal(4, std::vector<double>(4, 10.0));
+    for (std::size_t i = 0; i < 4; ++i)
+        equal[i][i] = 0.0;
+    CHECK(scale_items(equal).stress > 0.1);
+    // Puts all at one place if nothing differs.
+    for (const auto& place : scale_items({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}).places)
+        CHECK(place == std::array{0.0, 0.0});
 }
 
 } // namespace

@@ -281,6 +281,16 @@ public:
                 value_text(v.worths[m].se));
     }
 
+    void operator()(const study::method_map& v) const
+    {
+        const std::size_t w = widest(v.methods);
+        for (std::size_t m = 0; m < v.methods.size(); ++m) {
+            const auto& [x, y] = v.all.scaled.places[m];
+            say(stdout, "    {:<{}} {:>7.2f} {:>7.2f}\n", v.methods[m], w, x, y);
+        }
+        fmt::print("    stress {:.3f}\n", v.all.scaled.stress);
+    }
+
     void operator()(const study::answer_counts& v) const
     {
         const std::size_t w = widest(v.motions);
@@ -394,6 +404,8 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
 {
     say(stdout, "\n{}: {}, {}, {}\n", r.run.name, task_in(r.run).name(), counted(r.n, "participant"),
         counted(r.trials, "trial"));
+    if (r.dropped != 0)
+        say(stdout, "  {} left out: {}\n", counted(r.dropped, "trial"), a.drop_rule);
     if (r.early != 0)
         fmt::print("  {} early (sooner after the stimulus than min_response_s), counted\n",
                    counted(r.early, "answer"));

@@ -50,7 +50,21 @@ void parse_excluded(std::string_view text, study::selection& who)
     }
 }
 
-// Adds --participants and --exclude.
+// Reads two response times, s.
+std::pair<double, double> parse_times(std::string_view text)
+{
+    std::vector<double> times;
+    for (const std::string_view one : detail::split(text, ','))
+        times.push_back(detail::number_in<double>(one).value_or(-1.0));
+    constexpr double longest_s = 1e6;
+    if (times.size() != 2 || !(times[0] >= 0.0 && times[0] < times[1] && times[1] <= longest_s))
+        throw error(error_kind::bad_input, "--response-time",
+                    fmt::format("\"{}\" is not a range of times", text),
+                    "give the shortest and the longest, such as 0.2,5");
+    return {times[0], times[1]};
+}
+
+// Adds the options that select participants and trials.
 void add_selection(CLI::App& command, study::selection& who)
 {
     add_text(command, "--participants", "CODES", "participants to include (default all)",
@@ -58,6 +72,11 @@ void add_selection(CLI::App& command, study::selection& who)
     add_text(command, "--exclude", "CODE[:REASON],...",
              "participants to leave out; the report names them with their reasons",
              [&who](const std::string& t) { parse_excluded(t, who); });
+    command.add_flag("--drop-early", who.drop_early,
+                     "leave out trials whose answers are marked early (default: they count)");
+    add_text(command, "--response-time", "S,S",
+             "leave out trials with a response time outside these two, in s",
+             [&who](const std::string& t) { who.response_time_s = parse_times(t); });
 }
 
 // Makes the folder for what is made of a study, derivatives/tactor in it, if `file` is to lie there.

@@ -51,6 +51,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
+        r.dropped += own.dropped;
         r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
         if (find_run(d, i, which) != r.run)
             continue; // the results of the group have these participants
@@ -76,7 +77,7 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
     for (const left_out& l : r.missing)
         a.warnings.push_back(fmt::format("{}: sub-{} is left out: {}", r.run.name, l.participant, l.why));
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
-        const std::size_t count = d.data[i][which].trials.size();
+        const std::size_t count = d.data[i][which].trials.size() + d.data[i][which].dropped;
         const std::size_t planned = std::size_t{r.run.trials} * d.data[i][which].sessions;
         if (planned != 0 && count != planned && count != 0)
             a.warnings.push_back(fmt::format("{}: sub-{} has {} that count, of {}", r.run.name,
@@ -110,6 +111,7 @@ analysis analyse(const dataset& d, sigmoid kind)
     a.participants = d.participants.size();
     a.simulated = d.simulated;
     a.excluded = d.excluded;
+    a.drop_rule = d.drop_rule;
     a.warnings = d.warnings;
     add_results(a, d, "", kind);
     for (const group_outline& g : d.experiment.groups)

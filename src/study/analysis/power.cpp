@@ -112,11 +112,13 @@ struct simulated_study {
         : run(sessions.front().runs[r]), outcome{r, {}}
     {
         for (const experiment_definition& held : sessions)
-            people.push_back(prepare_people(held, r, most, asked.seed));
+            people.push_back(
+                prepare_people(held, r, run.outline.is_in(held.session.value_or(1)) ? most : 0, asked.seed));
         for (std::size_t i = 0; i < most; ++i) {
             trials.emplace_back();
             for (const auto& session : people)
-                trials[i].insert(trials[i].end(), session[i].trials.begin(), session[i].trials.end());
+                if (!session.empty())
+                    trials[i].insert(trials[i].end(), session[i].trials.begin(), session[i].trials.end());
         }
         for (const std::vector<trial>& own : trials)
             all.all.push_back({"", &own});
@@ -147,6 +149,8 @@ struct simulated_study {
         for (std::size_t i = 0; i < trials.size(); ++i) {
             trials[i].clear();
             for (std::size_t n = 0; n < sessions.size(); ++n) {
+                if (people[n].empty())
+                    continue;
                 person_run& who = people[n][i];
                 answer_all(who, {s, sessions[n], run, stimuli, who.code}, sessions[n], run);
                 trials[i].insert(trials[i].end(), who.trials.begin(), who.trials.end());

@@ -246,8 +246,7 @@ void person::tell(const calibration_record& r)
     if (!settings_.feedback || !r.correct)
         return;
     session::show(*r.correct ? "right\n" : "wrong\n");
-    on_page({.name = *r.correct ? "right" : "wrong",
-             .text = words_[*r.correct ? "calibrate_right" : "calibrate_wrong"]});
+    on_page({.name = *r.correct ? "right" : "wrong", .text = words_[*r.correct ? "right" : "wrong"]});
 }
 
 void person::thank()

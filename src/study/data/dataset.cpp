@@ -163,8 +163,9 @@ public:
         const std::vector<session_number> sessions = list_sessions(folder_, code); // may be empty
         for (const session_number session : sessions)
             add_session(code, session);
-        for (run_data& run : set_.data.back())
-            run.sessions = static_cast<unsigned>(sessions.size());
+        for (std::size_t i = 0; i < set_.data.back().size(); ++i)
+            set_.data.back()[i].sessions = static_cast<unsigned>(std::ranges::count_if(
+                sessions, [&](session_number n) { return set_.experiment.runs[i].is_in(n.value_or(1)); }));
         for (unsigned n = 1; n <= set_.experiment.sessions && set_.experiment.sessions > 1; ++n)
             if (!sessions.empty() && std::ranges::find(sessions, n) == sessions.end())
                 set_.warnings.push_back(fmt::format("sub-{} has no session {}", code, n));
@@ -248,12 +249,15 @@ private:
         for (const fs::path& path : list_folder(beh)) {
             const std::string name = path.filename().string();
             const auto is_its_table = [&](const run_outline& r) {
-                return path.filename() == table_path(code, session, r).filename();
+                return r.is_in(session.value_or(1)) &&
+                       path.filename() == table_path(code, session, r).filename();
             };
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
                 std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), is_its_table))
-                throw error(error_kind::bad_input, source_place{path.string()},
-                            "the experiment has no such run", "move the file away");
+                throw error(
+                    error_kind::bad_input, source_place{path.string()},
+                    fmt::format("the experiment has no such run{}", session ? " in this session" : ""),
+                    "move the file away");
         }
     }
 
@@ -444,6 +448,29 @@ run_data read_run(const text_table& t, const run_outline& run)
     return d;
 }
 
+namespace {
+
+// Leaves out the trials that do not count by the selection.
+void drop_trials(dataset& d, const selection& who)
+{
+    if (who.drop_early)
+        d.drop_rule = "answers marked early";
+    if (who.response_time_s)
+        d.drop_rule += fmt::format("{}response times outside {} to {} s", d.drop_rule.empty() ? "" : "; ",
+                                   who.response_time_s->first, who.response_time_s->second);
+    const auto is_dropped = [&who](const trial& t) {
+        return (who.drop_early && t.early == true) ||
+               (who.response_time_s &&
+                !(t.response_time_s && *t.response_time_s >= who.response_time_s->first &&
+                  *t.response_time_s <= who.response_time_s->second));
+    };
+    for (std::vector<run_data>& runs : d.data)
+        for (run_data& run : runs)
+            run.dropped = std::erase_if(run.trials, is_dropped);
+}
+
+} // namespace
+
 dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
 {
     std::vector<std::string> known;
@@ -464,6 +491,7 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
         r.add(code, homes.at(code));
     dataset d = r.finish();
     d.excluded = std::move(excluded);
+    drop_trials(d, who);
     for (std::size_t i = 0; i < d.participants.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)
             if (are_alike(d.participants[k], d.participants[i]))

@@ -14,6 +14,7 @@
 /// sub-CODE/ses-N/beh/sub-CODE_ses-N_task-NAME_beh.tsv and sourcedata/sub-CODE/ses-N/session.json.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,7 @@ struct run_outline {
     const study::task* task = nullptr;
     std::vector<std::string> motions = {}; ///< names in the order of the definition
     std::vector<std::string> methods = {}; ///< the same; main comparisons are about the last one
+    std::vector<unsigned> sessions = {};   ///< numbers of the sessions that have the run; empty: all
     unsigned trials = 0;                   ///< number of trials; 0 if the definition does not give it
     unsigned scale = 5;                    ///< rate: the highest rating
     bool visual = false;                   ///< rate: a visual analogue scale, without numbers
@@ -54,6 +56,11 @@ struct run_outline {
     std::vector<std::string> choices = {}; ///< words for the two answers; empty for the usual ones
 
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
+    /// Returns true if a session has the run. `session`: its number, from 1.
+    bool is_in(unsigned session) const noexcept
+    {
+        return sessions.empty() || std::ranges::count(sessions, session) != 0;
+    }
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
 
@@ -232,6 +239,7 @@ struct trial {
 struct run_data {
     std::vector<trial> trials = {};
     std::size_t voids = 0;                        ///< number of void lines, which do not count
+    std::size_t dropped = 0;                      ///< number of trials that the selection leaves out
     unsigned sessions = 1;                        ///< number of sessions that the participant has begun
     std::vector<predicted_path> predictions = {}; ///< predictions of the first session, for all runs
 };
@@ -249,6 +257,7 @@ struct dataset {
     std::vector<std::vector<run_data>> data = {}; ///< trials by participant and then by run, see find_run()
     std::vector<std::string> groups = {}; ///< by participant; empty if it is not known or there are no groups
     std::vector<left_out> excluded = {};  ///< participants in participants.tsv who are not selected
+    std::string drop_rule = {};           ///< which trials the selection leaves out, in words; empty: none
     std::vector<std::string> warnings = {};
 };
 
@@ -256,6 +265,9 @@ struct dataset {
 struct selection {
     std::vector<std::string> only = {};              ///< codes to analyse; empty for all
     std::map<std::string, std::string> without = {}; ///< codes to leave out, with reasons, which may be empty
+    bool drop_early = false; ///< true if trials whose answers are marked early do not count
+    /// Response times of trials that count, s; others do not count, nor does a trial without one.
+    std::optional<std::pair<double, double>> response_time_s = {};
 };
 
 /// Returns true if two codes may mean the same person: 1 and 01, 01 and P01, p1 and P01; but not C01 and P01.

@@ -89,6 +89,7 @@ private:
         key(of, "choices", before.choices, now.choices);
         key(of, "motions", before.motions, now.motions);
         key(of, "methods", before.methods, now.methods);
+        key(of, "sessions", before.sessions, now.sessions);
         key(of, "trials", before.trials, now.trials);
         key(of, "vary", before.vary, now.vary);
         key(of, "values", before.values, now.values);

@@ -385,6 +385,25 @@ void check_cells(const toml_table& t, const run_outline& o)
 
 constexpr std::size_t most_texts = 1000; // the definition of a session has stricter bounds
 
+// Reads the numbers of the sessions that have a run; none if all have it.
+std::vector<unsigned> read_sessions(const toml_table& t, unsigned sessions)
+{
+    std::vector<unsigned> all;
+    const toml::array* list = t.list("sessions", "numbers");
+    if (list == nullptr)
+        return all;
+    for (const toml::node& one : *list) {
+        const double n = t.to_number(one, "sessions", {1.0, static_cast<double>(sessions)});
+        if (n != std::floor(n) || std::ranges::count(all, static_cast<unsigned>(n)) != 0)
+            t.fail("sessions", fmt::format("{} is not another session's number", n),
+                   "give each number once, such as [1, 3]");
+        all.push_back(static_cast<unsigned>(n));
+    }
+    if (all.empty())
+        t.fail("sessions", "no session has the run", "leave it out, if all sessions have it");
+    return all;
+}
+
 // Reads the parts of a [[run]] that the analysis needs. `d` must already have the motions, methods and
 // earlier runs.
 run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
@@ -403,6 +422,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
                                other.outline.name, o.name),
                    "make their letters and digits differ");
     o.task = &read_task(t);
+    o.sessions = read_sessions(t, d.outline.sessions);
     r.motions = places_in(t, "motions", d.motions);
     r.methods = places_in(t, "methods", d.methods);
     o.motions = names_at(r.motions, d.motions);
@@ -420,9 +440,10 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
 // Throws error (bad_input) for unknown keys and for keys of other tasks.
 void check_keys(const toml_table& t, const task& own)
 {
-    std::vector<std::string_view> known{"name",   "task",         "attribute",   "question",      "animation",
-                                        "trials", "practice",     "break_s",     "motions",       "methods",
-                                        "blocks", "max_in_a_row", "simulate_as", "min_response_s"};
+    std::vector<std::string_view> known{"name",        "task",           "attribute", "question",
+                                        "animation",   "trials",         "practice",  "break_s",
+                                        "motions",     "methods",        "blocks",    "max_in_a_row",
+                                        "simulate_as", "min_response_s", "sessions",  "training"};
     std::map<std::string_view, std::vector<std::string>> users;
     for (const task* one : list_tasks())
         for (const std::string_view key : one->about().keys)
@@ -462,6 +483,14 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");
     r.practice = t.whole("practice", 0, 10000).value_or(0);
+    r.feedback = t.boolean("feedback").value_or(false);
+    if (const auto training = t.whole("training", 1, 10000)) {
+        if (t.has("practice"))
+            t.fail("training", fmt::format("{} has both practice and training", t.title()),
+                   "keep training, if people are told whether they were right, else practice");
+        r.practice = *training;
+        r.trains = true;
+    }
     r.max_in_a_row =
         t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // not 1: catch trials could not be ordered
     if (t.has("choices") && r.outline.choices.size() != 2)

@@ -89,6 +89,8 @@ struct run_definition {
     std::string simulate_as = {}; ///< similarity or uniformity; empty if no simulated observer can judge it
     bool animation = false;
     unsigned practice = 0;                 ///< number of practice trials, which come first
+    bool trains = false;                   ///< true if people are told in practice whether they were right
+    bool feedback = false;                 ///< true if they are told in all trials
     double break_s = 0.0;                  ///< length of the break after the run
     double min_response_s = 0.15;          ///< shortest response time that is not marked early
     std::vector<std::string> choices = {}; ///< words of both answers, or the page's usual ones; may be empty

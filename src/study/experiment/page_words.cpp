@@ -39,6 +39,9 @@ constexpr std::array english{
     page_word{"confirm", "Confirm"},
     page_word{"any_number", "a number above 0, with a point: 0.5, 12, 1500"},
     page_word{"full_screen", "Full screen"},
+    page_word{"most_different", "As different as can be"},
+    page_word{"right", "That was right."},
+    page_word{"wrong", "That was wrong."},
     // Texts that only the terminal shows.
     page_word{"or", "or"},
     page_word{"to", "to"},
@@ -53,8 +56,6 @@ constexpr std::array english{
               "There are two intervals, one of which vibrates. Which one? Guess if you do not know."},
     page_word{"calibrate_interval", "Interval"},
     page_word{"calibrate_which", "Which one vibrated?"},
-    page_word{"calibrate_right", "That was right."},
-    page_word{"calibrate_wrong", "That was wrong."},
     page_word{"calibrate_adjust", "Something vibrates again and again. Set it so that you just feel it."},
     page_word{"calibrate_set", "Set it so that you just feel it."},
     page_word{"calibrate_much_weaker", "Much weaker"},

@@ -222,6 +222,15 @@ public:
                 {{"name", m}, {"log_worth", all_.at("log_worth").at(m)}, {"se", all_.at("se").at(m)}});
         all_["rows"] = std::move(rows);
     }
+    void operator()(const method_map& v)
+    {
+        kind_ = "scaling";
+        json rows = json::array();
+        for (std::size_t m = 0; m < v.methods.size(); ++m)
+            rows.push_back(
+                {{"name", v.methods[m]}, {"x", v.all.scaled.places[m][0]}, {"y", v.all.scaled.places[m][1]}});
+        all_ = {{"rows", std::move(rows)}, {"stress", v.all.scaled.stress}};
+    }
     // Only the main figure is tested, and only if there is a value to test against.
     void operator()(const psychometric_functions& v)
     {
@@ -253,6 +262,7 @@ json describe_results(const run_analysis& r)
              {"n", r.n},
              {"trials", r.trials},
              {"early", r.early},
+             {"dropped", r.dropped != 0 ? json(r.dropped) : json()},
              {"left_out", left_out_json(r.missing)},
              {"rows", json::array()},
              {"response_time", times_json(r.times)}};
@@ -380,6 +390,9 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
             {"question", r.outline.question},
             {"animation", r.animation ? stream_text(s, "display") : "no"},
             {"practice", r.practice},
+            {"feedback", r.feedback ? "in all trials"
+                         : r.trains ? "in practice"
+                                    : ""},
             {"labels", words_or_none(r.outline.labels)},
             {"choices", words_or_none(r.choices)},
             {"procedure", procedure},
@@ -407,6 +420,8 @@ json describe_outline(const run_outline& o, json each)
             {"motions", join(o.motions)},
             {"attributed", has("has_cells") || any_has(each, "attribute")},
             {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
+            {"only_in", o.sessions.empty() ? json() : json(fmt::format("{}", fmt::join(o.sessions, ", ")))},
+            {"told", any_has(each, "feedback")},
             {"adapts", any_has(each, "procedure")},
             {"vary", o.vary},
             {"standard", files::or_null(o.standard)},
@@ -524,6 +539,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["held"] = !f.sessions.empty();
     all["excluded"] = left_out_json(d.excluded);
+    all["drop_rule"] = d.drop_rule;
     all["results"] = json::array();
     for (const run_analysis& r : a.runs)
         all["results"].push_back(describe_results(r));

@@ -15,6 +15,7 @@
 #include "study/data/dataset.hpp"
 #include "study/statistics/bradley_terry.hpp"
 #include "study/statistics/psychometric_fit.hpp"
+#include "study/statistics/scaling.hpp"
 #include "study/statistics/signal_detection.hpp"
 #include "study/statistics/tests.hpp"
 
@@ -106,6 +107,20 @@ struct figure_comparison {
 struct worth_list {
     std::vector<std::string> methods = {};
     std::vector<worth> worths = {};
+};
+
+/// Methods by the differences between them.
+struct scaled_methods {
+    std::vector<std::vector<double>> differences = {}; ///< by method and method; 0 to 100
+    scaled_items scaled = {};
+};
+
+/// Methods in a plane: for all participants, by their mean differences, and for each.
+struct method_map {
+    std::vector<std::string> methods = {};
+    scaled_methods all = {};
+    std::vector<std::string> codes = {};
+    std::vector<scaled_methods> people = {}; ///< by code
 };
 
 /// Answers of all participants by motion and motion answered.
@@ -203,8 +218,8 @@ struct drawn_answers : measured<drawn_by_person> {
 
 using result_value =
     std::variant<std::monostate, std::string, double, cell_means, interval_share, method_difference,
-                 effect_list, tukey_list, paired_list, figure_comparison, worth_list, answer_counts,
-                 psychometric_functions, sensitivities, exponents, drawn_answers>;
+                 effect_list, tukey_list, paired_list, figure_comparison, worth_list, method_map,
+                 answer_counts, psychometric_functions, sensitivities, exponents, drawn_answers>;
 
 /// A row of a run's results.
 struct result {
@@ -256,6 +271,7 @@ struct run_analysis {
     std::vector<left_out> missing = {}; ///< participants whose trials are not in the figures
     std::size_t trials = 0;             ///< number of valid trials of these n
     std::size_t voids = 0;              ///< number of void trials of all selected participants
+    std::size_t dropped = 0;            ///< number of their trials that the selection leaves out
     std::size_t early = 0;              ///< number of early answers of all selected participants; they count
     response_times times = {};          ///< response times of the n
     /// Group of the participants; the name of `run` has it, too. Empty for the participants whose group does
@@ -270,6 +286,7 @@ struct analysis {
     std::size_t participants = 0;
     bool simulated = false;
     std::vector<left_out> excluded = {}; ///< participants who are not selected
+    std::string drop_rule = {};          ///< which trials are left out; empty: none
     /// Results of everybody, then the results of each group in the runs that it does.
     std::vector<run_analysis> runs = {};
     std::vector<std::string> warnings = {};   ///< about files and participants

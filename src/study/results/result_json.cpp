@@ -31,6 +31,7 @@ void end_members(Io& io, const run_analysis& r)
 {
     io("trials", r.trials, {"trials that count"});
     io("early", r.early, {"answers marked early"});
+    io("dropped", r.dropped, {"trials left out by drop_rule"});
     io("response_time", r.times, {"response times"});
     io("left_out", r.missing, {"participants who lack a cell"});
 }
@@ -105,7 +106,8 @@ nlohmann::ordered_json left_out_json(const std::vector<left_out>& all)
 nlohmann::ordered_json make_analysis_json(const analysis& a)
 {
     json j{{"schema", "tactor-analysis/1"}, {"experiment", a.experiment}, {"participants", a.participants},
-           {"simulated", a.simulated},      {"runs", json::object()},     {"void", json::object()}};
+           {"simulated", a.simulated},      {"drop_rule", a.drop_rule},   {"runs", json::object()},
+           {"void", json::object()}};
     for (const run_analysis& r : a.runs)
         if (r.group.empty()) {
             j["runs"][r.whole] = run_json(r);
@@ -125,6 +127,7 @@ nlohmann::ordered_json analysis_schema()
         io("experiment", std::string(), {"name of the experiment"});
         io("participants", std::size_t{}, {"participants in the analysis", detail::above_0});
         io("simulated", bool{}, {"whether the answers are those of simulated observers"});
+        io("drop_rule", std::string(), {"which trials are left out, in words; empty: none"});
         io("runs", by_name<bool>(), {"by name, in the order of the experiment"});
         io("void", by_name<std::size_t>(), {"by run: trials of all participants that do not count"});
         io("warnings", std::vector<std::string>(), {"texts, as on standard error"});

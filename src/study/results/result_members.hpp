@@ -224,6 +224,28 @@ void row_member(Io& io, const char* name, const worth_list& v)
 }
 
 template <class Io>
+void map_members(Io& io, const std::vector<std::string>& methods, const scaled_methods& m)
+{
+    by_name<std::array<double, 2>> places;
+    for (std::size_t i = 0; i < m.scaled.places.size(); ++i)
+        places.all.emplace_back(methods[i], m.scaled.places[i]);
+    io("differences", m.differences, {"by method and method, in their order", {0.0, 100.0}});
+    io("places", places, {"x and y by method, in the unit of the differences"});
+    io("stress", m.scaled.stress, {"Kruskal's stress-1 of the distances between places", detail::from_0});
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const method_map& v)
+{
+    io.object(name, {"methods in a plane, by classical scaling of the differences"}, [&](auto& inner) {
+        inner("methods", v.methods, {"names in the order of the definition"});
+        map_members(inner, v.methods, v.all);
+        inner.named_objects("participants", v.codes, v.people, {"the same by code"},
+                            [&](auto& one, const scaled_methods& m) { map_members(one, v.methods, m); });
+    });
+}
+
+template <class Io>
 void row_member(Io& io, const char* name, const answer_counts& v)
 {
     by_name<by_name<std::size_t>> all;

@@ -136,6 +136,12 @@ void take_session(experiment_definition& d, session_number session)
                             : fmt::format("the definition has {} sessions, but none is given", all),
                     several ? fmt::format("use 1 to {}", all) : "leave it out");
     d.session = session;
+    std::erase_if(d.runs, [n = session.value_or(1)](const run_definition& r) { return !r.outline.is_in(n); });
+    if (d.runs.empty())
+        throw error(error_kind::bad_input, "--session",
+                    fmt::format("session {} has no run{}", session.value_or(1),
+                                d.group.empty() ? "" : fmt::format(" of group \"{}\"", d.group)),
+                    "add it to sessions of a [[run]]");
 }
 
 // Throws error (bad_input) if a limit changes a trial even on an array that has rested: the trial would

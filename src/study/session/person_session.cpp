@@ -466,14 +466,17 @@ void person_session::trial(const session_step& s)
     if (t.method_2 && g.first_frame && g.frames > p_.stimuli.second(t))
         row.frame_2 = *g.first_frame + p_.stimuli.second(t);
     std::string flaw = g.flaw;
+    std::optional<bool> right;
     if (flaw.empty()) {
         const question q = ask_about_trial(p_, s);
         const auto a = ask(q);
         if (!a) {
             flaw = "the experimenter repeated it";
         } else {
-            set_response(row, r, read_trial_answer(q, *a, p_.where.tactors),
-                         std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
+            const trial_answer answer = read_trial_answer(q, *a, p_.where.tactors);
+            set_response(row, r, answer, std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
+            if (r.feedback || (s.practice && r.trains))
+                right = task_in(r.outline).was_right(p_.definition, r, t, answer);
             codes_.send(code_event::answer, s, t, row.response);
         }
     }
@@ -488,7 +491,18 @@ void person_session::trial(const session_step& s)
     flow_.took(row.is_void);
     // Comes after add(), so that a kill during the code does not lose the answer.
     codes_.write(r, row, held_->table(s));
+    if (right)
+        tell(*right);
     find_device();
+}
+
+void person_session::tell(bool right)
+{
+    const std::string& word = p_.definition.page[right ? "right" : "wrong"];
+    session::show(word + "\n");
+    on_page({.name = right ? "right" : "wrong", .text = word});
+    constexpr double shown_s = 0.7;
+    stage_.pass(shown_s, [&](double) { return heed(); });
 }
 
 // Returns nothing if the experimenter changed the next step.

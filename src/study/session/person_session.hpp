@@ -65,6 +65,8 @@ private:
     void begin_store();
     void introduce(const session_step& s);
     void trial(const session_step& s);
+    /// Tells the participant whether the answer was right.
+    void tell(bool right);
     void introduce(const questionnaire& q);
     void ask_item(const session_step& s);
     void rest(const session_step& s);

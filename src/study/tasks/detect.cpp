@@ -24,7 +24,7 @@ public:
                 .trial = "One stimulus or none",
                 .response = "Answer to the question of whether a stimulus was felt: 1 yes, 2 no",
                 .questions = {"Did you feel it?", "Did you feel it?", "Did you feel it?"},
-                .keys = {"choices", "catch", "vary", "values", "trials_per_value"}})
+                .keys = {"choices", "feedback", "catch", "vary", "values", "trials_per_value"}})
     {
     }
 
@@ -63,6 +63,12 @@ public:
         task::score(r, o, method_1, answer);
         r.positive = r.response == 1;
         r.signal = !o.catches || method_1 != catch_name;
+    }
+
+    std::optional<bool> was_right(const experiment_definition& d, const run_definition&,
+                                  const planned_trial& t, const trial_answer& answer) const override
+    {
+        return (answer.number == 1) != d.methods[t.method_1].silent;
     }
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override

@@ -73,7 +73,8 @@ public:
               {.name = "identify",
                .trial = "One stimulus; the participant names its motion",
                .response = "The motion that the participant named",
-               .questions = {"Which movement was it?", "Which movement was it?", "Which movement was it?"}},
+               .questions = {"Which movement was it?", "Which movement was it?", "Which movement was it?"},
+               .keys = {"feedback"}},
               list_methods)
     {
     }
@@ -109,6 +110,12 @@ public:
     void score(trial& r, const run_outline&, std::string_view, const trial_answer& answer) const override
     {
         r.response = static_cast<unsigned>(answer.number) - 1;
+    }
+
+    std::optional<bool> was_right(const experiment_definition&, const run_definition& r,
+                                  const planned_trial& t, const trial_answer& answer) const override
+    {
+        return r.motions.at(static_cast<std::size_t>(answer.number) - 1) == t.motion;
     }
 
     void prepare(simulated_run& who) const override

@@ -40,7 +40,7 @@ public:
                 .response = "Interval in which the participant felt the stimulus: 1 or 2",
                 .questions = {"In which interval did you feel it?", "In which interval did you feel it?",
                               "In which interval did you feel it?"},
-                .keys = add_procedure_keys({"vary", "values", "trials_per_value"}),
+                .keys = add_procedure_keys({"feedback", "vary", "values", "trials_per_value"}),
                 .column = "track",
                 .has_silences = true})
     {
@@ -81,6 +81,12 @@ public:
     {
         task::score(r, o, method_1, answer);
         r.positive = is_right(o, method_1, r.response);
+    }
+
+    std::optional<bool> was_right(const experiment_definition& d, const run_definition&,
+                                  const planned_trial& t, const trial_answer& answer) const override
+    {
+        return (answer.number == 2) == d.methods[t.method_1].silent;
     }
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override

@@ -23,7 +23,7 @@ public:
                 .trial = "Two stimuli, one after the other",
                 .response = "Answer of the participant: 1 the stimuli are the same, 2 they differ",
                 .questions = {"Were both the same?", "Were both the same?", "Were both the same?"},
-                .keys = {"choices"}})
+                .keys = {"choices", "feedback"}})
     {
     }
 
@@ -64,6 +64,12 @@ public:
         task::score(r, o, method_1, answer);
         r.positive = r.response == 2;
         r.signal = r.method_1 != r.method_2;
+    }
+
+    std::optional<bool> was_right(const experiment_definition&, const run_definition&, const planned_trial& t,
+                                  const trial_answer& answer) const override
+    {
+        return (answer.number == 2) == (t.method_1 != *t.method_2);
     }
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override

@@ -152,6 +152,12 @@ public:
     virtual std::string write_target(const motion_definition&) const { return {}; }
     /// Sets the cells of an answer in the row of its trial.
     virtual void take(trial_row& row, const run_definition& r, const trial_answer& answer) const;
+    /// Returns whether an answer is right; nothing if it can be neither right nor wrong.
+    virtual std::optional<bool> was_right(const experiment_definition&, const run_definition&,
+                                          const planned_trial&, const trial_answer&) const
+    {
+        return {};
+    }
     /// Lists the responses in its tables that have separate numbers in [sync.codes]; empty if all share a
     /// number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
