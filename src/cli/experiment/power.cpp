@@ -73,9 +73,22 @@ std::string comparison_text(const study::tested_power& t)
                                 : fmt::format("{} by {}, analysis of variance (p_gg)", t.figure, t.factor);
 }
 
-double share(std::size_t n, std::size_t studies)
+// Outcome for one number of participants, as it is printed.
+struct listed_power {
+    study::power_at counts = {};
+    double power = 0.0;
+    std::array<double, 2> ci = {};
+};
+
+std::vector<listed_power> list_powers(const study::tested_power& t, std::size_t studies)
 {
-    return static_cast<double>(n) / static_cast<double>(studies);
+    std::vector<listed_power> all;
+    for (const study::power_at& at : t.at) {
+        const study::interval ci = study::binomial_interval(at.significant, studies);
+        all.push_back(
+            {at, static_cast<double>(at.significant) / static_cast<double>(studies), {ci.first, ci.second}});
+    }
+    return all;
 }
 
 void print_power_text(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
@@ -94,13 +107,11 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
             say(stdout, "\n{}: {}\n", r.name, has_main(t) ? comparison_text(r) : comparison_text(t));
             say(stdout, "  {:>12} {:>11} {:>15} {:>11} {:>8}\n", "participants", "p < 0.05 in", "95 %",
                 "for last in", "untested");
-            for (const study::power_at& at : t.at) {
-                const study::interval ci = study::binomial_interval(at.significant, studies);
-                say(stdout, "  {:>12} {:>9.1f} % {:>15} {:>9.1f} % {:>8}\n", at.participants,
-                    100.0 * share(at.significant, studies),
-                    fmt::format("{:.1f} ... {:.1f}", 100.0 * ci.first, 100.0 * ci.second),
-                    100.0 * share(at.for_last, studies), at.untested);
-            }
+            for (const listed_power& one : list_powers(t, studies))
+                say(stdout, "  {:>12} {:>9.1f} % {:>15} {:>9.1f} % {:>8}\n", one.counts.participants,
+                    100.0 * one.power, fmt::format("{:.1f} ... {:.1f}", 100.0 * one.ci[0], 100.0 * one.ci[1]),
+                    100.0 * static_cast<double>(one.counts.for_last) / static_cast<double>(studies),
+                    one.counts.untested);
         }
     }
 }
@@ -117,13 +128,6 @@ void count_members(Io& io, const study::power_at& at)
     io("for_last", at.for_last, significant);
     io("untested", at.untested, {"studies without a test"});
 }
-
-// Outcome for one number of participants, as JSON.
-struct listed_power {
-    study::power_at counts = {};
-    double power = 0.0;
-    std::array<double, 2> ci = {};
-};
 
 template <class Io, detail::either<listed_power> Power>
 void members(Io& io, Power& v)
@@ -201,16 +205,11 @@ void print_power_json(const study::prepared_experiment& e, const std::vector<stu
         const study::run_outline& r = e.definition.runs[p.run].outline;
         listed.runs.push_back({r.name, std::string(task_in(r).name()), comparison_text(r)});
         for (const study::tested_power& t : p.tests) {
-            std::vector<listed_power> power;
-            for (const study::power_at& at : t.at) {
-                const study::interval ci = study::binomial_interval(at.significant, studies);
-                power.push_back({at, share(at.significant, studies), {ci.first, ci.second}});
-            }
             if (t.factor.empty())
-                listed.runs.back().power = std::move(power);
+                listed.runs.back().power = list_powers(t, studies);
             else
                 listed.runs.back().comparisons.push_back(
-                    {t.factor, t.figure, comparison_text(t), std::move(power)});
+                    {t.factor, t.figure, comparison_text(t), list_powers(t, studies)});
         }
     }
     fmt::print("{}", study::json_text(files::make_document(listed)));

@@ -26,6 +26,7 @@
 #include "study/experiment/trials.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
 
 namespace tactor::study {
 namespace {
@@ -389,17 +390,13 @@ constexpr std::size_t most_texts = 1000; // the definition of a session has stri
 std::vector<unsigned> read_sessions(const toml_table& t, unsigned sessions)
 {
     std::vector<unsigned> all;
-    const toml::array* list = t.list("sessions", "numbers");
-    if (list == nullptr)
-        return all;
-    for (const toml::node& one : *list) {
-        const double n = t.to_number(one, "sessions", {1.0, static_cast<double>(sessions)});
+    for (const double n : read_numbers(t, "sessions", {1.0, static_cast<double>(sessions)})) {
         if (n != std::floor(n) || std::ranges::count(all, static_cast<unsigned>(n)) != 0)
             t.fail("sessions", fmt::format("{} is not another session's number", n),
                    "give each number once, such as [1, 3]");
         all.push_back(static_cast<unsigned>(n));
     }
-    if (all.empty())
+    if (t.has("sessions") && all.empty())
         t.fail("sessions", "no session has the run", "leave it out, if all sessions have it");
     return all;
 }

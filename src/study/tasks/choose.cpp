@@ -110,10 +110,7 @@ public:
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
-        r.method_1 = find_place(t, row, "method_1", o.methods);
-        r.method_2 = find_place(t, row, "method_2", o.methods);
-        if (r.method_1 == r.method_2)
-            t.refuse(row, "both stimuli have the same method", "give two different methods");
+        read_pair(r, t, row, o);
         r.response = read_one_of_two(t, row);
     }
 

@@ -20,39 +20,39 @@ namespace {
 
 constexpr unsigned most_different = 100;
 
-// Lists all pairs of methods; the draw adds the other order of each.
-std::vector<planned_trial> list_all_pairs(std::size_t motion, const std::vector<std::size_t>& methods)
+using method_pair = std::pair<std::size_t, std::size_t>;
+
+// Lists all pairs of so many methods, the smaller place first.
+std::vector<method_pair> list_places(std::size_t methods)
 {
-    std::vector<planned_trial> all;
-    for (std::size_t a = 0; a < methods.size(); ++a)
-        for (std::size_t b = a + 1; b < methods.size(); ++b)
-            all.push_back({motion, methods[a], methods[b]});
+    std::vector<method_pair> all;
+    for (std::size_t a = 0; a < methods; ++a)
+        for (std::size_t b = a + 1; b < methods; ++b)
+            all.emplace_back(a, b);
     return all;
 }
 
-// Returns the place of the pair a, b in list_all_pairs().
-std::size_t find_pair(std::size_t a, std::size_t b, std::size_t methods)
+// Lists a trial for each pair; the draw adds the other order.
+std::vector<planned_trial> list_all_pairs(std::size_t motion, const std::vector<std::size_t>& methods)
 {
-    const auto [low, high] = std::minmax(a, b);
-    return low * (2 * methods - low - 1) / 2 + high - low - 1;
-}
-
-std::vector<std::string> name_pairs(const run_outline& o)
-{
-    std::vector<std::string> all;
-    for (std::size_t a = 0; a < o.methods.size(); ++a)
-        for (std::size_t b = a + 1; b < o.methods.size(); ++b)
-            all.push_back(fmt::format("{} - {}", o.methods[a], o.methods[b]));
+    std::vector<planned_trial> all;
+    for (const auto& [a, b] : list_places(methods.size()))
+        all.push_back({motion, methods[a], methods[b]});
     return all;
 }
 
 // Plans mean differences by pair, of both orders.
 cell_plan plan_pairs(const run_outline& o)
 {
-    return {name_pairs(o),
-            [methods = o.methods.size()](const trial& t) {
+    const std::vector<method_pair> pairs = list_places(o.methods.size());
+    std::vector<std::string> names;
+    for (const auto& [a, b] : pairs)
+        names.push_back(fmt::format("{} - {}", o.methods[a], o.methods[b]));
+    return {names,
+            [pairs](const trial& t) {
+                const auto at = std::ranges::find(pairs, method_pair(std::minmax(t.method_1, t.method_2)));
                 return std::vector<std::pair<std::size_t, double>>{
-                    {find_pair(t.method_1, t.method_2, methods), t.response}};
+                    {static_cast<std::size_t>(at - pairs.begin()), t.response}};
             },
             {0.0, most_different},
             {},
@@ -60,15 +60,13 @@ cell_plan plan_pairs(const run_outline& o)
             "difference"};
 }
 
-// Places the methods by the differences of pairs, each the mean over motions.
-scaled_methods scale_methods(const run_outline& o, const std::vector<double>& pairs)
+// Places methods by the differences of all pairs.
+scaled_methods scale_methods(std::size_t methods, const std::vector<double>& pairs)
 {
-    const std::size_t n = o.methods.size();
-    scaled_methods s{std::vector<std::vector<double>>(n, std::vector<double>(n))};
-    for (std::size_t a = 0; a < n; ++a)
-        for (std::size_t b = 0; b < n; ++b)
-            if (a != b)
-                s.differences[a][b] = pairs[find_pair(a, b, n)];
+    scaled_methods s{std::vector<std::vector<double>>(methods, std::vector<double>(methods))};
+    auto difference = pairs.begin();
+    for (const auto& [a, b] : list_places(methods))
+        s.differences[a][b] = s.differences[b][a] = *difference++;
     s.scaled = scale_items(s.differences);
     return s;
 }
@@ -113,10 +111,7 @@ public:
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
-        r.method_1 = find_place(t, row, "method_1", o.methods);
-        r.method_2 = find_place(t, row, "method_2", o.methods);
-        if (r.method_1 == r.method_2)
-            t.refuse(row, "both methods are the same", "give each trial two");
+        read_pair(r, t, row, o);
         const auto response = t.whole(row, "response", 0, most_different);
         if (!response)
             t.refuse(row, "the response is missing", "give one, or make the trial void");
@@ -126,10 +121,9 @@ public:
     void prepare(simulated_run& who) const override { prepare_judge(who); }
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        // A unit of -ln cost is a quarter of the line, as it is in ratings.
-        constexpr double points = 25.0;
         const double apart =
-            points * std::abs(std::log(who.cost(t.motion, t.method_1) / who.cost(t.motion, *t.method_2)));
+            line_points *
+            std::abs(std::log(who.cost(t.motion, t.method_1) / who.cost(t.motion, *t.method_2)));
         const double noise = who.truth.sigma * r.normal();
         return std::clamp(std::round(apart + noise), 0.0, static_cast<double>(most_different));
     }
@@ -160,9 +154,9 @@ public:
             for (std::size_t k = 0; k < own.size(); ++k)
                 pairs[k] += own[k] / static_cast<double>(all.size());
             map.codes.push_back(people.all[i].code);
-            map.people.push_back(scale_methods(o, own));
+            map.people.push_back(scale_methods(o.methods.size(), own));
         }
-        map.all = scale_methods(o, pairs);
+        map.all = scale_methods(o.methods.size(), pairs);
         for (const cell_means& m : test_cells(o, plan, all))
             rows.push_back({{"means", m.method},
                             fmt::format("Mean difference of {}, 0 to {}", m.method, most_different),

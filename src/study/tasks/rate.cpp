@@ -111,8 +111,7 @@ public:
     {
         const double lowest = who.run.outline.lowest_rating();
         const double highest = who.run.outline.scale;
-        // On a line from 0 to 100 a unit of -ln cost is a quarter of the line, as it is from 1 to 5.
-        const double points = who.run.outline.visual ? 25.0 : 1.0;
+        const double points = who.run.outline.visual ? line_points : 1.0;
         const double utility = -std::log(who.cost(t.motion, t.method_1)) - who.mean_utility;
         const double felt = points * utility + deviate(who, t.method_1, r);
         return std::clamp(std::round((highest + lowest) / 2.0 + felt), lowest, highest);

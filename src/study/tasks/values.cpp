@@ -140,6 +140,14 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
     return static_cast<std::size_t>(at - known.begin());
 }
 
+void read_pair(trial& r, const text_table& t, std::size_t row, const run_outline& o)
+{
+    r.method_1 = find_place(t, row, "method_1", o.methods);
+    r.method_2 = find_place(t, row, "method_2", o.methods);
+    if (r.method_1 == r.method_2)
+        t.refuse(row, "both stimuli have the same method", "give two different methods");
+}
+
 unsigned read_one_of_two(const text_table& t, std::size_t row)
 {
     const auto response = t.whole(row, "response", 1, 2);

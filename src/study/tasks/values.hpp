@@ -48,6 +48,8 @@ void add_comparison(std::vector<planned_trial>& cells, std::size_t motion, const
 /// Returns the index of a cell's name in a list.
 std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
                        const std::vector<std::string>& known);
+/// Reads both methods of a trial, which must differ.
+void read_pair(trial& r, const text_table& t, std::size_t row, const run_outline& o);
 /// Reads the answer 1 or 2.
 unsigned read_one_of_two(const text_table& t, std::size_t row);
 /// Reads the methods and the value of a trial, which may have a standard.
@@ -88,6 +90,8 @@ double simulate_comparison(const simulated_run& who, const planned_trial& t, ran
 /// Throws error (bad_input) if an observer cannot judge the run's attribute; else computes the mean of its
 /// judgements.
 void prepare_judge(simulated_run& who);
+/// Points of a line from 0 to 100 for a unit of -ln cost: a quarter of the line, as from 1 to 5.
+inline constexpr double line_points = 25.0;
 /// Returns how far a judgement of a method is from the mean of all people's: what the method is worth to this
 /// person, plus noise.
 double deviate(const simulated_run& who, std::size_t method, random_numbers& r);
