@@ -341,6 +341,36 @@ TEST_CASE("a difference between methods is found by the test of its own figure")
     CHECK(moved[0].tests[0].at[0].significant <= 6); // their mean is the standard
 }
 
+TEST_CASE("each method of a list has its own d' and exponent")
+{
+    const power_rig r("park2016",
+                      "[[run]]\nname = \"there\"\ntask = \"detect\"\ncatch = 0.5\ntrials = 10000\n"
+                      "[[run]]\nname = \"size\"\ntask = \"estimate\"\nquestion = \"?\"\ntrials = 48\n"
+                      "vary = \"speed_mm_s\"\nvalues = [30, 60]\nstandard = 30\n");
+    const simulation s{.sigma = 0.0, .dprime = {1.0, 3.0}, .exponent = {0.4, 1.2}};
+    const simulated_observer detector(s, r.d, r.d.runs[0], r.stimuli, "01");
+    std::map<std::string, std::pair<double, double>> counts; // of yes and of all, by method or silence
+    unsigned place = 0;
+    for (const planned_trial& t : make_run(r.d, 0, "01", 7).trials) {
+        const method_definition& m = r.d.methods[t.method_1];
+        auto& [yes, all] = counts[m.silent ? "none" : m.name];
+        yes += detector.answer(t, ++place, 1, false).response.number == 1 ? 1 : 0;
+        ++all;
+    }
+    const auto z = [&counts](const char* name) {
+        return boost::math::quantile(boost::math::normal(), counts.at(name).first / counts.at(name).second);
+    };
+    CHECK(z("a") - z("none") == doctest::Approx(1.0).epsilon(0.1));
+    CHECK(z("b") - z("none") == doctest::Approx(3.0).epsilon(0.05));
+    const simulated_observer estimator(s, r.d, r.d.runs[1], r.stimuli, "01");
+    std::set<double> numbers; // of the second value, twice the standard: 100 times 2 to the exponent
+    place = 0;
+    for (const planned_trial& t : make_run(r.d, 1, "01", 7).trials)
+        if (find_value(r.d, t) == 60.0)
+            numbers.insert(estimator.answer(t, ++place, 1, false).response.number);
+    CHECK(numbers == std::set{132.0, 230.0});
+}
+
 TEST_CASE("people who differ need larger studies, but do not make differences that are not there")
 {
     const power_rig r("park2016", measured);

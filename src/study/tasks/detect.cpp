@@ -80,8 +80,11 @@ public:
             return 2;
         if (find_value(who.definition, t))
             return feels_more(who, t, r) ? 1 : 2;
-        const double dprime = find_dprime(who, t);
-        return (is_silent ? 0.0 : dprime) + r.normal() > 0.5 * dprime ? 1 : 2;
+        // Uses one criterion for all methods, which share the trials without a stimulus.
+        std::vector<double> all;
+        for (const std::size_t method : who.run.methods)
+            all.push_back(find_dprime(who, {t.motion, method}));
+        return (is_silent ? 0.0 : find_dprime(who, t)) + r.normal() > 0.5 * mean(all) ? 1 : 2;
     }
 
     // Results.
