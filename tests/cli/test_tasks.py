@@ -40,8 +40,9 @@ WEST = toml("motion", "west", path="M20 0H0", duration=0.2)
 
 
 def define(task):
-    third = toml("method", "hard", burst=0.02) if task == "dissimilar" else ""
-    text = measures("desk.toml", third, toml("run", "only", task=task, **TASKS[task][0]), keys="gap_s = 0.1\n")
+    # Four methods have six pairs: neither number is that of the other.
+    more = toml("method", "hard", burst=0.02) + toml("method", "wide", phantom="gaussian") if task == "dissimilar" else ""
+    text = measures("desk.toml", more, toml("run", "only", task=task, **TASKS[task][0]), keys="gap_s = 0.1\n")
     return text.replace("[[method]]", WEST + "[[method]]", 1)
 
 
@@ -78,6 +79,8 @@ class EveryTask(ExperimentTest):
                     self.simulate(code, definition="t.toml", folder=task, spec=f"seed={code},jnd=3,dprime=2,sigma=0.3")
                 told = self.valid(self.ok("analyze", task, "--format", "json").stdout)["runs"]["only"]
                 self.assertEqual((told["n"], told["trials"]), (3, 3 * len(dry["runs"][0]["trials"])))
+                if task == "dissimilar":
+                    self.assertEqual(list(told["means"]), ["park - soft", "park - hard", "park - wide", "soft - hard", "soft - wide", "hard - wide"])
                 mean = told
                 for key in main_figure.split("."):
                     mean = mean[key]

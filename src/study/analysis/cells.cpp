@@ -120,9 +120,9 @@ std::vector<cell_means> test_cells(const run_outline& run, const cell_plan& plan
                                    const std::vector<cell_values>& all)
 {
     std::vector<cell_means> rows;
+    const bool is_joint = plan.methods.size() == 1 && run.methods.size() > 1; // a row of all methods
     for (const std::string& method : plan.methods)
-        rows.push_back({plan.methods.size() == run.methods.size() ? method : "", plan.axis, plan.against,
-                        plan.possible, plan.methods.size(),
+        rows.push_back({is_joint ? "" : method, plan.axis, plan.against, plan.possible, plan.methods.size(),
                         test_row(all, rows.size(), run.motions, plan.against.value_or(0.0))});
     add_within_intervals(rows, all, run.motions.size(), plan.rounding());
     return rows;

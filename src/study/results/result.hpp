@@ -51,7 +51,7 @@ struct cell_mean {
 
 /// Means of a method: first "all", for the participants' unweighted means over motions, then each motion.
 struct cell_means {
-    std::string method = {};            ///< empty if the run has only one row
+    std::string method = {};            ///< empty if the row is of all methods together
     std::string axis = {};              ///< title of an axis: "correct (%)"
     std::optional<double> against = {}; ///< value expected from guessing; if missing, not tested
     interval possible = {};             ///< possible range of a mean
