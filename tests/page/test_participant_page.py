@@ -524,6 +524,27 @@ class ParticipantPage(BrowserTest, PageTest):
         self.assertEqual([[r["response"] for r in self.rows("01", name) if r["void"] == "false"] for name in ("marks", "steps", "pairs", "eleven")],
                          [["0", "51", "100"], ["1"], ["2"], ["11"]])
 
+    def test_differences_are_set_on_a_line_and_answers_are_called_right_or_wrong(self):
+        self.write("apart.toml", BARE.replace("gap_s = 0.1", 'gap_s = 0.1\norder = "latin"') + toml("method", "Cedar", burst=0.02)
+                   + toml("run", "apart", task="dissimilar", attribute="similarity", motions=["east"], trials=3)
+                   + IDENTIFY.replace("trials = 2", "trials = 2\nfeedback = true"))
+        s = self.start(definition="apart.toml")
+        p = self.open(s)
+        ask = self.click(p, "introduce", 1, self.walk(p))
+        for share in (0, 0.25, 1):
+            ask = self.mark(p, share, ask, "apart")
+            self.assertEqual(p.value("document.querySelector('#answers').innerText.split('\\n').filter(t => t).slice(0, 2)"), ["The same", "As different as can be"])
+            p.click("#answers button")
+        ask = self.click(p, "introduce", 1, ask)
+        told = []
+        for _ in range(2):
+            ask = self.click(p, "question", 1, ask)
+            told.append(p.until("['right', 'wrong'].includes(state.screen) && [state.screen, document.body.innerText.match(/That was (right|wrong)\\./)?.[1]]"))
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([r["response"] for r in self.rows("01", "apart")], ["0", "25", "100"])
+        truth = ["right" if r["motion"] == "east" else "wrong" for r in self.rows("01", "what")]
+        self.assertEqual(told, [[t, t] for t in truth])
+
     def test_thresholds_are_measured_on_it(self):
         for method in ("staircase", "adjustment"):
             s = Session(self, ("calibrate", "--participant", "01", "-o", f"{method}.toml", "-D", "null", "--tactors", "0", "--interval", "0.05",
