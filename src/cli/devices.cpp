@@ -78,7 +78,7 @@ std::string pcm_text(const pcm_info& p, const session::device_list& d)
     s += row("held by", process_names(p.holders));
     if (!p.can)
         return s + row("cannot", p.error);
-    s += p.misfit.empty() ? row("fits", d.array_name) : row("unfit", p.misfit);
+    s += p.misfit.empty() ? row("fits", shown(d.array_name)) : row("unfit", p.misfit);
     s += row("channels", channels_text(*p.can));
     s += row("rates", rates_text(*p.can));
     s += row("formats", formats_text(*p.can));
@@ -212,8 +212,8 @@ std::string process_names(const std::vector<process_info>& all)
 
 std::string devices_text(const session::device_list& d)
 {
-    return fmt::format("{} needs {} at {} Hz.\n\n", d.array_name, counted(d.wanted.channels, "channel"),
-                       d.wanted.rate) +
+    return fmt::format("{} needs {} at {} Hz.\n\n", shown(d.array_name),
+                       counted(d.wanted.channels, "channel"), d.wanted.rate) +
            pcms_text(d) + chips_text(d.chips);
 }
 

@@ -144,7 +144,7 @@ void refuse_samples(const std::string& argument)
 
 std::string shown_name(const std::string& argument)
 {
-    return argument == "-" ? "standard input" : argument;
+    return argument == "-" ? "standard input" : shown(argument);
 }
 
 std::string name_stroke(const piece& p, std::size_t i, const environment& e)
@@ -152,9 +152,9 @@ std::string name_stroke(const piece& p, std::size_t i, const environment& e)
     const std::string argument = shown_name(p.name);
     const std::string& own = p.strokes[i].name;
     if (e.plans.contains(p.name))
-        return own;
+        return shown(own);
     return p.strokes.size() == 1 && own == default_name(p.name) ? argument
-                                                                : fmt::format("{}: {}", argument, own);
+                                                                : fmt::format("{}: {}", argument, shown(own));
 }
 
 error of_stroke(const error& x, const piece& p, std::size_t i)

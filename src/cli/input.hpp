@@ -33,7 +33,7 @@ bool names_samples(std::string_view argument);
 /// Refuses a WAV file, for commands that plan strokes. \throws error (bad_input).
 void refuse_samples(const std::string& argument);
 
-/// Returns a STROKE argument as people read it: "standard input" for -.
+/// Returns a STROKE argument as people read it: "standard input" for -, and escapes for control characters.
 std::string shown_name(const std::string& argument);
 
 /// Returns the name of stroke i of a piece, as every command prints it: the STROKE argument, then the

@@ -54,7 +54,7 @@ std::string heading(const std::string& title, const stroke& s, const plan& p, do
     return fmt::format(
         "{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
         "vibration: {}{}, level {}\n",
-        title, a.name, p.algorithm, plot::describe_phantom(p), bursts, soa, seconds_text(start_s, 9),
+        title, shown(a.name), p.algorithm, plot::describe_phantom(p), bursts, soa, seconds_text(start_s, 9),
         plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s), seconds_text(p.total_s),
         p.wave.kind == waveform_kind::sine ? "sine of " : "", plot::describe_sound(p), level_text(sound, s));
 }

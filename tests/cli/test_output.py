@@ -139,6 +139,17 @@ class Readers(Output):
         self.assertIn("\\x1b[31m", self.ok("plan", "s.toml").stdout)
         self.assertEqual(self.plan("s.toml")["stroke"]["name"], "a\x1b[31mred\x9b2J\x7f")
 
+    def test_a_line_end_in_a_name_begins_no_line(self):
+        self.write("s.toml", '[stroke]\nname = "a\\ntactor: forged"\npath = "M 0 0 L 40 0"\n')
+        self.write("two.toml", '[[stroke]]\nname = "a\\ntactor: forged"\npath = "M 0 0 L 40 0"\nduration_s = 9e9\n[[stroke]]\npath = "M 0 0 H 9"\n')
+        self.write("a.toml", '[array]\nname = "r\\ntactor: forged"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n')
+        self.write("b\ntactor: forged.toml", '[stroke]\npath = "M 0 0 L 40 0"\n')
+        for args in (("plan", "s.toml"), ("compare", "s.toml"), ("play", "s.toml", "-D", "null"), ("plan", "two.toml"), ("plan", "s.toml", "--array", "a.toml"),
+                     ("compare", "s.toml", "--array", "a.toml"), ("plan", "b\ntactor: forged.toml"), ("play", "b\ntactor: forged.toml", "-D", "null"),
+                     ("a\ntactor: forged",), ("plan", "no\ntactor: forged"), ("check", "--array", "a.toml", "-D", "null"), ("devices", "--array", "a.toml"), ("experiment", "park2016", "--dry-run", "--array", "a.toml")):
+            r = self.run_tool(*args)
+            self.assertNotRegex(r.stdout + r.stderr, "(?m)^tactor: forged", args)
+
     def test_long_work_shows_its_progress(self):
         # Half a minute of planning: work that ends within half a second shows nothing.
         self.write("s.toml", "".join(f'[[stroke]]\npath = "M 0 {i % 40} L 40 20"\nduration_s = 20\n' for i in range(100_000)))

@@ -342,6 +342,7 @@ class Protocol(ServeTest):
         who = r["who"]
         self.assertEqual([(x["client"], x["name"], x["from"]) for x in who],
                          [(mine, "Ann \u2766", "this computer"), (theirs, "Bob", "127.0.0.1"), (who[-1]["client"], "", "127.0.0.1")])
+        self.refused(3, "status", "--socket", self.write("file", ""), says=["it is not a socket"])
         said = self.ok("status", "--socket", s.where["socket"]).stdout
         for line in (f"  {mine} Ann \u2766 from this computer\n", f"  {theirs} Bob from 127.0.0.1\n", f"  {who[-1]['client']} from 127.0.0.1\n"):
             self.assertIn(line, said)

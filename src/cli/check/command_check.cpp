@@ -81,7 +81,7 @@ std::string findings_text(const std::vector<finding>& all)
 {
     std::string s;
     for (auto f = all.begin(); f != all.end(); ++f) {
-        s += wrapped(fmt::format("{:<8} {:<14} ", to_string(f->how), f->check), f->found);
+        s += wrapped(fmt::format("{:<8} {:<14} ", to_string(f->how), f->check), shown(f->found));
         const auto first =
             std::find_if(all.begin(), f, [&](const finding& earlier) { return earlier.cure == f->cure; });
         if (!f->cure.empty())

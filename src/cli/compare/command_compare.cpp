@@ -240,7 +240,7 @@ void print_one(const comparison& c, const std::string& title, const array& a)
     const trajectory& m = c.target.motion;
     const std::string faces =
         c.faces == faces_kind::delaunay ? "" : fmt::format(", faces {}", to_string(c.faces));
-    say(stdout, "{} on {}: {} mm in {}{}\n", title, a.name, plain_number(m.length_mm()),
+    say(stdout, "{} on {}: {} mm in {}{}\n", title, shown(a.name), plain_number(m.length_mm()),
         seconds_text(m.duration_s()), faces);
     if (c.target.note != note_kind::none)
         say(stdout, "note: {}\n", files::note_text(c.target.note));

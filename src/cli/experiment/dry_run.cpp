@@ -309,7 +309,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         d.title, p.participant,
         (d.group.empty() ? "" : ", group " + d.group) +
             (d.session ? fmt::format(", session {} of {}", *d.session, d.outline.sessions) : ""),
-        p.row, study::count_rows(d), p.seed, p.where.tactors.name, level_text(p.render));
+        p.row, study::count_rows(d), p.seed, shown(p.where.tactors.name), level_text(p.render));
     for (const study::method_definition& m : d.methods)
         if (m.has_level() && !m.is_variant())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));
