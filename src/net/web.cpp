@@ -75,7 +75,7 @@ private:
     // WebSocket.
     void look_after(bool is_read);
     void read() override;
-    void received();
+    void handle_message();
     void write() override;
     void say_farewell() override;
 
@@ -257,11 +257,11 @@ void web_connection::read()
                                  return;
                              if (e)
                                  return close(); // Beast has sent the reason, if the peer is still there
-                             within_memory([this] { received(); });
+                             within_memory([this] { handle_message(); });
                          });
 }
 
-void web_connection::received()
+void web_connection::handle_message()
 {
     if (!ws_->is_message_done()) {
         message_begins();

@@ -145,14 +145,14 @@ private:
         const double y = top_ - 4.0 - starts_height(time_);
         canvas_.text({x_.page_from - 3.0, y}, lanes_.heading,
                      {.size = small_text, .anchor = align::end, .ink = dark_grey});
-        if (with_peaks())
+        if (shows_peaks())
             canvas_.text({where_.right(), y}, "peak (dBFS)",
                          {.size = small_text, .anchor = align::end, .ink = dark_grey});
         else
             notes_.push_back("no space for the peaks of rows");
     }
 
-    bool with_peaks() const { return lanes_.height >= least_peak_row - 1e-9; }
+    bool shows_peaks() const { return lanes_.height >= least_peak_row - 1e-9; }
 
     void draw_row(std::size_t row)
     {
@@ -173,7 +173,7 @@ private:
             for (std::vector<spot>& shape : outline(wave_.by_channel[k], columns, {0.0, peak_, middle, top}))
                 canvas_.poly(std::move(shape), true, {.fill = grey, .stroke = ink, .width = 0.35},
                              {.kind = "envelope"});
-        if (with_peaks())
+        if (shows_peaks())
             canvas_.text({where_.right(), middle + cap_height(small_text) / 2.0},
                          fmt::format("{:.1f}", 20.0 * std::log10(static_cast<double>(loudest))),
                          {.size = small_text, .anchor = align::end}, {.kind = "peak"});

@@ -464,8 +464,8 @@ void serve(const endpoints& at, service_options o, stream_options s, int signals
     // sets the priority of this thread only.
     constexpr int before_others = -10;
     ::setpriority(PRIO_PROCESS, 0, before_others);
-    asio::posix::stream_descriptor signalled(io, ::fcntl(signals, F_DUPFD_CLOEXEC, 0));
-    signalled.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
+    asio::posix::stream_descriptor signal_input(io, ::fcntl(signals, F_DUPFD_CLOEXEC, 0));
+    signal_input.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
         if (!e)
             all.stop();
     });

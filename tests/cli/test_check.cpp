@@ -306,7 +306,7 @@ TEST_CASE("bad input wins over a missing device in the exit status, warnings do 
     const finding input = failure("levels", error(error_kind::bad_input, "a", "b"));
     const finding other = failure("x", error(error_kind::runtime, "a", "b"));
     CHECK(worst_status({}) == 0);
-    CHECK(worst_status({warning("a", "b", "c"), fine("a", "b")}) == 0);
+    CHECK(worst_status({warning("a", "b", "c"), passed("a", "b")}) == 0);
     CHECK(worst_status({device, input}) == 2);
     CHECK(worst_status({other, device}) == 3);
     CHECK(worst_status({other}) == 1);
@@ -315,7 +315,7 @@ TEST_CASE("bad input wins over a missing device in the exit status, warnings do 
 TEST_CASE("findings have this form")
 {
     const std::vector<finding> all{
-        fine("array", "palm-3x3: 9 tactors"),
+        passed("array", "palm-3x3: 9 tactors"),
         warning("sound servers", "pipewire (process 812): may use card Tactor at any time",
                 "call the card Tactor"),
         failure("device", error(error_kind::not_available, "PCM \"x\"", "no such PCM", "try y"))};
@@ -327,7 +327,7 @@ TEST_CASE("findings have this form")
           "                        -> try y\n"
           "\n1 error, 1 warning, 1 ok\n");
     CHECK(check_text(all, true).find("palm-3x3") == std::string::npos);
-    CHECK(check_text({fine("a", "b")}, true) == "0 errors, 0 warnings, 1 ok\n");
+    CHECK(check_text({passed("a", "b")}, true) == "0 errors, 0 warnings, 1 ok\n");
 }
 
 TEST_CASE("a machine without faults needs no hint")

@@ -514,7 +514,7 @@ void print_summary(const study::analysis& a)
     }
     if (!a.excluded.empty()) {
         std::vector<std::string> who;
-        for (const study::left_out& one : a.excluded)
+        for (const study::excluded_person& one : a.excluded)
             who.push_back(fmt::format("sub-{} ({})", one.participant, one.why));
         say(stdout, "excluded: {}\n", fmt::join(who, ", "));
         --room;

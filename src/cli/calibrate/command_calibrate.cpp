@@ -451,7 +451,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
 }
 
 // Warns of another session's thresholds, which this session removes.
-void warn_of_others(const environment& e, const study::calibration_settings& s)
+void warn_of_replaced_thresholds(const environment& e, const study::calibration_settings& s)
 {
     const auto& earlier = e.config.calibration;
     if (!earlier || !study::is_foreign(*earlier, s))
@@ -515,7 +515,7 @@ int calibrate(settings& s, calibrate_options& o)
         return status_ok;
     }
     print_ceilings(begun);
-    warn_of_others(e, begun);
+    warn_of_replaced_thresholds(e, begun);
 
     study::calibration_log log(o.log, o.resume, begun);
     study::calibration c(begun);

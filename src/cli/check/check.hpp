@@ -33,7 +33,7 @@ struct finding {
     error_kind kind = error_kind::runtime; ///< kind of an error, for the exit status
 };
 
-inline finding fine(std::string check, std::string found, std::string cure = {})
+inline finding passed(std::string check, std::string found, std::string cure = {})
 {
     return {std::move(check), level::ok, std::move(found), std::move(cure)};
 }

@@ -79,11 +79,12 @@ finding check_places(const array& a)
         return warning("array", found, "places are in millimetres: see x_mm, y_mm and pitch_mm");
     // Plaisier et al., Perception 2024; Lee, Scientific Reports 2025.
     if (std::min(width, height) >= trunk_mm)
-        return fine("array", found,
-                    "people distinguish places on the back about twice as well across the body as along it, "
-                    "so rows may be further apart than columns; on trunk and shank people followed a circle "
-                    "best with --phantom linear");
-    return fine("array", found);
+        return passed(
+            "array", found,
+            "people distinguish places on the back about twice as well across the body as along it, "
+            "so rows may be further apart than columns; on trunk and shank people followed a circle "
+            "best with --phantom linear");
+    return passed("array", found);
 }
 
 finding check_channels(const render_options& r, const array& a)
@@ -100,7 +101,7 @@ finding check_channels(const render_options& r, const array& a)
                                               : fmt::format("{}", fmt::join(used, ", ")));
     if (r.marker_channel)
         found += fmt::format("; {} marks strokes", *r.marker_channel);
-    return fine("channels", found);
+    return passed("channels", found);
 }
 
 // Frequency of the thresholds that count, if they are known at several.
@@ -149,7 +150,7 @@ finding check_levels(const render_options& r, const array& a, const plan_options
             "levels",
             fmt::format("{}; not above the threshold of tactors {}", found, fmt::join(unfelt, ", ")),
             "raise --level-dbfs or gain_db, or use --sl");
-    return fine("levels", found);
+    return passed("levels", found);
 }
 
 // Returns the default values of the limits that a file or an option made weaker.
@@ -179,7 +180,7 @@ finding check_limits(const drive_limits& l, std::size_t tactors)
 {
     const std::vector<std::string> usual = lifted(l, tactors);
     if (usual.empty())
-        return fine("limits", limit_text(l));
+        return passed("limits", limit_text(l));
     return warning(
         "limits", limit_text(l) + ": more than by default",
         fmt::format("set [limits] {}, unless you know that actuators, amplifier and skin bear more",
@@ -252,11 +253,12 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     if (into.size() != before)
         return;
     const bool unknown = !select_kind(a, actuator_kind::unknown).empty();
-    into.push_back(fine("actuators", kinds(a),
-                        unknown ? fmt::format("set actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
-                                              "under [array]: {} need one that starts within a few ms",
-                                              burst)
-                                : ""));
+    into.push_back(passed("actuators", kinds(a),
+                          unknown
+                              ? fmt::format("set actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
+                                            "under [array]: {} need one that starts within a few ms",
+                                            burst)
+                              : ""));
 }
 
 finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsigned rate)
@@ -277,7 +279,7 @@ finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsign
     if (has_bursts && cycles < fewest_cycles)
         return warning("bursts", fmt::format("{}: too few cycles to feel as vibration", found),
                        "raise --carrier, --burst or --soa");
-    return fine("bursts", found);
+    return passed("bursts", found);
 }
 
 } // namespace
@@ -290,8 +292,8 @@ std::vector<finding> check_array(const settings& s, const environment& e)
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
     all.push_back(check_limits(session::find_limits(s.stream, e), e.tactors.tactors.size()));
-    all.push_back(fine("service", "clients of tactor serve get at most " +
-                                      session::ceiling_text(session::find_ceiling(e))));
+    all.push_back(passed("service", "clients of tactor serve get at most " +
+                                        session::ceiling_text(session::find_ceiling(e))));
     return all;
 }
 
@@ -313,7 +315,7 @@ std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigne
     // Noise and recordings have no carrier whose cycles could be counted.
     if (p.wave.kind == waveform_kind::noise || p.wave.kind == waveform_kind::recording)
         all.push_back(
-            fine("bursts", plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am})));
+            passed("bursts", plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am})));
     else
         all.push_back(check_carrier(p.carrier_hz, burst_s, has_bursts, rate));
     return all;

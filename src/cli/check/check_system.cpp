@@ -154,18 +154,19 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
                     const char* usual_group, bool needed)
 {
     if (nodes.empty())
-        return fine(check, fmt::format("no device to open{}", f.root ? "; you are root" : ""),
-                    f.root || contains(f.groups, usual_group) || !needed ? "" : how_to_join(f, usual_group));
+        return passed(check, fmt::format("no device to open{}", f.root ? "; you are root" : ""),
+                      f.root || contains(f.groups, usual_group) || !needed ? ""
+                                                                           : how_to_join(f, usual_group));
     for (const device_node& n : nodes) {
         if (n.may_open)
             continue;
         return insist(
             warning(check, fmt::format("no permission to open {}", n.path), how_to_join(f, n.group)), needed);
     }
-    return fine(check,
-                fmt::format("you may open {}{}",
-                            nodes.size() == 1 ? nodes.front().path : fmt::format("{} devices", nodes.size()),
-                            f.root ? "; you are root" : ", group " + nodes.front().group));
+    return passed(
+        check, fmt::format("you may open {}{}",
+                           nodes.size() == 1 ? nodes.front().path : fmt::format("{} devices", nodes.size()),
+                           f.root ? "; you are root" : ", group " + nodes.front().group));
 }
 
 const int asked_priority = player_options{}.priority;
@@ -180,8 +181,8 @@ finding check_priority(const system_facts& f, const system_needs& n)
                     "allow SCHED_FIFO in the container or the service"),
             n.require_realtime);
     if (f.rights.priority >= asked_priority)
-        return fine("real time",
-                    fmt::format("SCHED_FIFO up to {}, {} requested", f.rights.priority, asked_priority));
+        return passed("real time",
+                      fmt::format("SCHED_FIFO up to {}, {} requested", f.rights.priority, asked_priority));
     const std::string found =
         f.rights.priority == 0
             ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
@@ -195,10 +196,10 @@ finding check_memory(const system_facts& f, const system_needs& n)
     constexpr std::uint64_t mib = 1U << 20;
     const std::uint64_t wanted = (f.memory_bytes + mib - 1) / mib;
     if (!f.rights.lockable_bytes)
-        return fine("memory", "locked memory without limit");
+        return passed("memory", "locked memory without limit");
     const std::uint64_t most = *f.rights.lockable_bytes / mib;
     if (*f.rights.lockable_bytes >= f.memory_bytes)
-        return fine("memory", fmt::format("{} MiB of locked memory, {} MiB needed", most, wanted));
+        return passed("memory", fmt::format("{} MiB of locked memory, {} MiB needed", most, wanted));
     return insist(
         warning("memory",
                 fmt::format("{} MiB of locked memory (RLIMIT_MEMLOCK), {} MiB needed, including a reserve",
@@ -213,9 +214,9 @@ finding check_servers(const system_facts& f, const system_needs& n)
         "name the card Tactor in the udev rules (70-tactor.rules), which keep sound servers off it; for now: "
         "systemctl --user stop pipewire.socket pipewire wireplumber pulseaudio.socket pulseaudio";
     if (!n.card)
-        return fine("sound servers",
-                    fmt::format("{}; no card of this machine has \"{}\"",
-                                f.servers.empty() ? "none" : process_names(f.servers), n.pcm));
+        return passed("sound servers",
+                      fmt::format("{}; no card of this machine has \"{}\"",
+                                  f.servers.empty() ? "none" : process_names(f.servers), n.pcm));
     const auto is_server = [&](const process_info& p) {
         return std::any_of(f.servers.begin(), f.servers.end(), [&](const auto& s) { return s.pid == p.pid; });
     };
@@ -230,10 +231,10 @@ finding check_servers(const system_facts& f, const system_needs& n)
     std::copy_if(f.servers.begin(), f.servers.end(), std::back_inserter(desktop),
                  [](const process_info& p) { return p.program.rfind("jack", 0) != 0; });
     if (desktop.empty())
-        return fine("sound servers", "none that would use the card");
+        return passed("sound servers", "none that would use the card");
     if (n.ignored)
-        return fine("sound servers",
-                    fmt::format("{}; udev keeps them off card {}", process_names(desktop), n.card->id));
+        return passed("sound servers",
+                      fmt::format("{}; udev keeps them off card {}", process_names(desktop), n.card->id));
     return warning(
         "sound servers",
         fmt::format("{}: may use card {} at any time, and beep on it", process_names(desktop), n.card->id),
@@ -256,16 +257,16 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
                                     f.keeps_outputs),
                         cure)};
     if (f.releases_outputs)
-        return {fine("GPIO release", "GPIO lines become inputs when their program ends")};
+        return {passed("GPIO release", "GPIO lines become inputs when their program ends")};
     if (f.raspberry_pi)
         return {warning("GPIO release",
                         "this kernel does not say whether GPIO lines keep their level after a program ends",
                         cure)};
-    return {
-        fine("GPIO release",
-             "the chip decides what a GPIO line does after a program ends: if player and holder are both "
-             "killed, the amplifier may stay on",
-             "wire a pull-down resistor to the amplifier's enable input; after such an end run tactor off")};
+    return {passed(
+        "GPIO release",
+        "the chip decides what a GPIO line does after a program ends: if player and holder are both "
+        "killed, the amplifier may stay on",
+        "wire a pull-down resistor to the amplifier's enable input; after such an end run tactor off")};
 }
 
 } // namespace

@@ -127,7 +127,7 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
     const std::vector<session::device_note> notes = session::wiring_notes(e.tactors, made);
     if (!notes.empty())
         return warning("device", found + note_text(notes), notes.front().cure);
-    return fine("device", found);
+    return passed("device", found);
 }
 
 std::string line_words(const gpio_line_place& p)
@@ -141,7 +141,7 @@ finding check_line(const char* check, const gpio_line_name& name, line_finder fi
     try {
         const gpio_line_place p = find(name);
         if (p.line.consumer.empty())
-            return fine(check, line_words(p) + ", free");
+            return passed(check, line_words(p) + ", free");
         const bool own = p.line.consumer == "tactor";
         return {check, level::error, fmt::format("{}: held by \"{}\"", line_words(p), p.line.consumer),
                 own ? "another tactor runs: stop it" : "stop that program, or choose another line",
@@ -200,7 +200,7 @@ alsa_options device_for(const settings& s, const environment& e)
 finding check_drive_time(const std::string& device)
 {
     const std::string why = drive_time_fault(device);
-    return why.empty() ? fine("drive time", "continues from run to run")
+    return why.empty() ? passed("drive time", "continues from run to run")
                        : warning("drive time", why + ": a run does not know the drive time of others",
                                  "set XDG_RUNTIME_DIR to a folder that belongs to you and has space, as a "
                                  "login does, and remove an unreadable file from it");

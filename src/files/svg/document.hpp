@@ -134,7 +134,7 @@ public:
     }
 
     /// Reads a length in user units, of which a millimetre has `per_mm`; 0 if it is missing.
-    /// \throws left_out
+    /// \throws value_fault
     double length(pugi::xml_node n, const char* attribute, double per_mm) const;
 
     /// Reads a number from low to high.
@@ -180,7 +180,7 @@ bool is_svg_shape(std::string_view tag) noexcept;
 
 /// Returns the subpaths of a shape in user units, of which a millimetre has `per_mm`. Returns none for a
 /// shape that SVG does not draw (no data, a radius or a side of 0).
-/// \throws error (bad_input), left_out
+/// \throws error (bad_input), value_fault
 std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, double per_mm);
 
 } // namespace tactor::detail

@@ -113,7 +113,7 @@ public:
         const layout::impl& l = detail::access::of(layout_);
         const auto clear = l.clear_face(p);
         if (clear && l.faces[*clear].size() <= few && l.clear_of_diagonals(*clear, p) &&
-            in_face(*clear, p, a_v, out))
+            play_in_face(*clear, p, a_v, out))
             return;
         std::vector<unsigned> faces;
         l.faces_at(p, faces);
@@ -122,7 +122,7 @@ public:
         else if (const auto segment = segment_at(l, faces, p))
             add_two(layout_, *segment, p, a_v, out);
         else
-            in_faces(faces, p, a_v, out);
+            play_in_faces(faces, p, a_v, out);
     }
 
     double three_around(point p, rank_triple& three) const override
@@ -162,7 +162,7 @@ public:
     }
 
 private:
-    bool in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const
+    bool play_in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const
     {
         const auto three = triangle_at(detail::access::of(layout_), face, p);
         if (!three)
@@ -171,10 +171,10 @@ private:
         return true;
     }
 
-    void in_faces(const std::vector<unsigned>& faces, point p, double a_v, std::vector<drive>& out) const
+    void play_in_faces(const std::vector<unsigned>& faces, point p, double a_v, std::vector<drive>& out) const
     {
         for (const unsigned f : faces)
-            if (in_face(f, p, a_v, out))
+            if (play_in_face(f, p, a_v, out))
                 return;
         // Rounding can leave a gap between two faces; p may lie in it.
         add_two(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);

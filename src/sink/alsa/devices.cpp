@@ -262,12 +262,12 @@ count_range range(const hw_params& p, int (*least)(const snd_pcm_hw_params_t*, N
     return {bounded(low + (above > 0 ? 1U : 0U)), bounded(high - (below < 0 && high > 0 ? 1U : 0U))};
 }
 
-int buffer_least(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
+int get_least_buffer(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
 {
     return snd_pcm_hw_params_get_buffer_size_min(p, v);
 }
 
-int buffer_most(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
+int get_greatest_buffer(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
 {
     return snd_pcm_hw_params_get_buffer_size_max(p, v);
 }
@@ -306,7 +306,7 @@ pcm_abilities read_abilities(snd_pcm_t* p, const hw_params& space)
     a.period_frames =
         range(space, snd_pcm_hw_params_get_period_size_min, snd_pcm_hw_params_get_period_size_max);
     a.periods = range(space, snd_pcm_hw_params_get_periods_min, snd_pcm_hw_params_get_periods_max);
-    a.buffer_frames = range(space, buffer_least, buffer_most);
+    a.buffer_frames = range(space, get_least_buffer, get_greatest_buffer);
     return a;
 }
 
@@ -350,7 +350,7 @@ std::string without_name(std::string text, const std::string& name)
 
 // Returns why a PCM is not opened for the list. Empty: it can be opened without effect, or the user wants
 // this one, which may start what it needs.
-std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
+std::string explain_untried(const std::vector<std::string>& route, bool wanted)
 {
     if (writes(route))
         return "not tried: opening a PCM of type file empties its file or starts its command";
@@ -364,7 +364,7 @@ std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
 
 void probe(const std::optional<alsa_options>& wanted, snd_config_t* top, pcm_info& p)
 {
-    p.error = p.hardware ? "" : why_not_tried(find_route(top, p.name), p.wanted);
+    p.error = p.hardware ? "" : explain_untried(find_route(top, p.name), p.wanted);
     p.tried = p.error.empty();
     if (!p.tried)
         return;

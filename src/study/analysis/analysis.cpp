@@ -74,7 +74,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
 
 void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::size_t which)
 {
-    for (const left_out& l : r.missing)
+    for (const excluded_person& l : r.missing)
         a.warnings.push_back(fmt::format("{}: sub-{} is left out: {}", r.run.name, l.participant, l.why));
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const std::size_t count = d.data[i][which].trials.size() + d.data[i][which].dropped;

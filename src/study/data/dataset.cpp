@@ -105,7 +105,7 @@ std::string find_code(const std::vector<std::string>& known, const std::string& 
 
 // Returns the selected codes, and adds the others to `excluded`.
 std::vector<std::string> select(const std::vector<std::string>& known, const selection& who,
-                                std::vector<left_out>& excluded)
+                                std::vector<excluded_person>& excluded)
 {
     std::set<std::string> only;
     for (const std::string& wanted : who.only)
@@ -486,7 +486,7 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
             known.push_back(code);
         }
     reader r;
-    std::vector<left_out> excluded;
+    std::vector<excluded_person> excluded;
     for (const std::string& code : select(known, who, excluded))
         r.add(code, homes.at(code));
     dataset d = r.finish();

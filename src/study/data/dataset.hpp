@@ -245,7 +245,7 @@ struct run_data {
 };
 
 /// A participant whose trials are left out, with the reason.
-struct left_out {
+struct excluded_person {
     std::string participant;
     std::string why;
 };
@@ -256,8 +256,8 @@ struct dataset {
     std::vector<std::string> participants = {};   ///< codes, without sub-
     std::vector<std::vector<run_data>> data = {}; ///< trials by participant and then by run, see find_run()
     std::vector<std::string> groups = {}; ///< by participant; empty if it is not known or there are no groups
-    std::vector<left_out> excluded = {};  ///< participants in participants.tsv who are not selected
-    std::string drop_rule = {};           ///< which trials the selection leaves out, in words; empty: none
+    std::vector<excluded_person> excluded = {}; ///< participants in participants.tsv who are not selected
+    std::string drop_rule = {}; ///< which trials the selection leaves out, in words; empty: none
     std::vector<std::string> warnings = {};
 };
 

@@ -263,7 +263,7 @@ json describe_results(const run_analysis& r)
              {"trials", r.trials},
              {"early", r.early},
              {"dropped", r.dropped != 0 ? json(r.dropped) : json()},
-             {"left_out", left_out_json(r.missing)},
+             {"left_out", excluded_json(r.missing)},
              {"rows", json::array()},
              {"response_time", times_json(r.times)}};
     for (const result& row : r.results)
@@ -538,7 +538,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["ordered"] =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["held"] = !f.sessions.empty();
-    all["excluded"] = left_out_json(d.excluded);
+    all["excluded"] = excluded_json(d.excluded);
     all["drop_rule"] = d.drop_rule;
     all["results"] = json::array();
     for (const run_analysis& r : a.runs)

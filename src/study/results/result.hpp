@@ -267,13 +267,13 @@ struct response_times {
 
 struct run_analysis {
     run_outline run;
-    std::size_t n = 0;                  ///< number of participants with a valid trial in each cell
-    std::vector<left_out> missing = {}; ///< participants whose trials are not in the figures
-    std::size_t trials = 0;             ///< number of valid trials of these n
-    std::size_t voids = 0;              ///< number of void trials of all selected participants
-    std::size_t dropped = 0;            ///< number of their trials that the selection leaves out
-    std::size_t early = 0;              ///< number of early answers of all selected participants; they count
-    response_times times = {};          ///< response times of the n
+    std::size_t n = 0;                         ///< number of participants with a valid trial in each cell
+    std::vector<excluded_person> missing = {}; ///< participants whose trials are not in the figures
+    std::size_t trials = 0;                    ///< number of valid trials of these n
+    std::size_t voids = 0;                     ///< number of void trials of all selected participants
+    std::size_t dropped = 0;                   ///< number of their trials that the selection leaves out
+    std::size_t early = 0;     ///< number of early answers of all selected participants; they count
+    response_times times = {}; ///< response times of the n
     /// Group of the participants; the name of `run` has it, too. Empty for the participants whose group does
     /// the whole run.
     std::string group = {};
@@ -285,8 +285,8 @@ struct analysis {
     std::string experiment; ///< name of the experiment
     std::size_t participants = 0;
     bool simulated = false;
-    std::vector<left_out> excluded = {}; ///< participants who are not selected
-    std::string drop_rule = {};          ///< which trials are left out; empty: none
+    std::vector<excluded_person> excluded = {}; ///< participants who are not selected
+    std::string drop_rule = {};                 ///< which trials are left out; empty: none
     /// Results of everybody, then the results of each group in the runs that it does.
     std::vector<run_analysis> runs = {};
     std::vector<std::string> warnings = {};   ///< about files and participants

@@ -98,7 +98,7 @@ nlohmann::ordered_json times_json(const response_times& t)
     return files::make_document(t);
 }
 
-nlohmann::ordered_json left_out_json(const std::vector<left_out>& all)
+nlohmann::ordered_json excluded_json(const std::vector<excluded_person>& all)
 {
     return files::make_document(all);
 }

@@ -20,6 +20,6 @@ nlohmann::ordered_json analysis_schema();
 // Return parts of this object.
 nlohmann::ordered_json value_json(const result_value& v);
 nlohmann::ordered_json times_json(const response_times& t);
-nlohmann::ordered_json left_out_json(const std::vector<left_out>& all);
+nlohmann::ordered_json excluded_json(const std::vector<excluded_person>& all);
 
 } // namespace tactor::study

@@ -401,7 +401,7 @@ void members(Io& io, Times& v)
     io("by", by, {"the same by condition"});
 }
 
-template <class Io, detail::either<left_out> Person>
+template <class Io, detail::either<excluded_person> Person>
 void members(Io& io, Person& v)
 {
     io("participant", v.participant, {"code"});
