@@ -16,7 +16,7 @@ import subprocess
 import unittest
 
 from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
-from harness import ROOT, TOOL, main, wav_bytes
+from harness import PATIENCE_S, ROOT, TOOL, main, wav_bytes
 from studies import toml
 
 FORM = (toml("run", "about", task="questionnaire", when="before", title="About you") + toml("run.item", "hand", question="Hand?", kind="choice", choices=["left", "right"])
@@ -528,13 +528,38 @@ class Folder(ExperimentTest):
         told = self.simulate("03", definition="small.toml").stderr
         self.assertIn("warning: study: sub-01, sub-02 had another text of this definition", told)
 
-    def test_two_experimenters_in_one_folder_are_refused(self):
+    def test_a_second_session_of_a_participant_is_refused(self):
         self.simulate()
-        holder = os.open(self.dir / "study", os.O_RDONLY)
+        holder = os.open(self.dir / "study/.sub-p02.lock", os.O_RDWR | os.O_CREAT)
         fcntl.flock(holder, fcntl.LOCK_EX)
-        self.simulate("02", status=2)
-        os.close(holder)
+        for code in ("P02", "p02"):  # one name on a disk that ignores capitals
+            self.simulate(code, status=2)
+        self.simulate("03")
+        os.close(holder)  # as a crash does, with the file left behind
+        self.simulate("P02")
+        self.assertEqual([f.name for f in (self.dir / "study").iterdir() if f.name.endswith(".lock")], [])
+
+    def test_a_session_waits_while_another_changes_what_they_share(self):
         self.simulate("02")
+        folder = os.open(self.dir / "study", os.O_RDONLY)
+        fcntl.flock(folder, fcntl.LOCK_EX)
+        booth = self.start_tool("experiment", self.small(), "--participant", "01", "-o", "study", "--simulate", "seed=1,sigma=1")
+        self.until(lambda: re.search(rf"-> FLOCK .* {booth.pid} ", pathlib.Path("/proc/locks").read_text()), booth)
+        os.close(folder)
+        self.assertEqual(booth.wait(PATIENCE_S), 0)
+
+    def test_several_booths_fill_one_folder_at_once(self):
+        definition = self.small()
+        codes = [f"{n:02}" for n in range(1, 9)]
+        booths = [self.start_tool("experiment", definition, "--participant", code, "-o", "study", "--simulate", "seed=1,sigma=1") for code in codes]
+        for booth in booths:
+            self.assertEqual(booth.wait(PATIENCE_S), 0)
+        rows = (self.dir / "study/participants.tsv").read_text().splitlines()[1:]
+        self.assertEqual(sorted(row.split("\t")[0] for row in rows), [f"sub-{code}" for code in codes])
+        self.ok("analyze", "study")
+        for code in codes:
+            self.simulate(code, folder="alone", definition=definition)
+        self.assertEqual(sorted(contents(self.dir / "study")), sorted(contents(self.dir / "alone")))
 
     def test_a_folder_of_other_things_is_left_alone(self):
         self.write("study/letter.txt", "dear")

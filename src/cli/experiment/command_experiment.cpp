@@ -235,7 +235,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         devices = check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
     study::study_folder folder(o.folder, p.definition, p.participant, o.simulate.has_value());
-    for (const std::string& w : folder.warnings())
+    for (const std::string& w : folder.check_others())
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
     if (study::find_codes(p.where) == nullptr && folder.has_codes())
         say(stderr,

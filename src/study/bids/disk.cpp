@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -33,6 +34,18 @@ namespace fs = std::filesystem;
                             code == ENOSPC || code == EDQUOT ? "free some space, and "
                             : code == EROFS                  ? "make the disk writable again, and "
                                                              : ""));
+}
+
+// Throws the error of a file that cannot be written before the session begins.
+[[noreturn]] void refuse_place(const fs::path& file, int code)
+{
+    const bool named_so = code == ENAMETOOLONG;
+    throw error(named_so || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file.string(),
+                fmt::format("it cannot be written: {}", std::strerror(code)),
+                named_so ? "use a shorter participant code, or a shorter name for the run"
+                : code == ENOSPC || code == EDQUOT
+                    ? "free some space; the session has not begun"
+                    : "name a folder that can be written; the session has not begun");
 }
 
 detail::owned_fd open_file(const fs::path& file, int flags)
@@ -147,13 +160,7 @@ void try_to_write(const fs::path& file, std::size_t bytes)
     ::unlink(probe.c_str());
     if (possible)
         return;
-    const bool named_so = code == ENAMETOOLONG;
-    throw error(named_so || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file.string(),
-                fmt::format("it cannot be written: {}", std::strerror(code)),
-                named_so ? "use a shorter participant code, or a shorter name for the run"
-                : code == ENOSPC || code == EDQUOT
-                    ? "free some space; the session has not begun"
-                    : "name a folder that can be written; the session has not begun");
+    refuse_place(file, code);
 }
 
 void remove_leftovers(const fs::path& folder) noexcept
@@ -175,14 +182,32 @@ detail::owned_fd lock_folder(const fs::path& folder)
     if (!fd)
         throw error(error_kind::runtime, folder.string(), std::strerror(errno),
                     "name a folder that can be read and written");
-    if (::flock(fd.get(), LOCK_EX | LOCK_NB) == 0)
-        return fd;
-    const int code = errno;
-    if (code == EWOULDBLOCK)
-        throw error(error_kind::bad_input, folder.string(), "another session is running in this folder",
-                    "end it first, or use another folder");
-    throw error(error_kind::runtime, folder.string(), std::strerror(code),
-                "name a folder that can be locked");
+    while (::flock(fd.get(), LOCK_EX) != 0)
+        if (errno != EINTR)
+            throw error(error_kind::runtime, folder.string(), std::strerror(errno),
+                        "name a folder that can be locked");
+    return fd;
+}
+
+lock_file::lock_file(fs::path file, const error& taken) : file_(std::move(file))
+{
+    struct stat now {};
+    // After 0, the process that had the file has removed it. A file that is open to be written would keep the
+    // disk from being made read-only.
+    while (now.st_nlink == 0) {
+        fd_ = detail::owned_fd(::open(file_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+        if (!fd_)
+            refuse_place(file_, errno);
+        if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
+            throw taken;
+        if (::fstat(fd_.get(), &now) != 0)
+            refuse_place(file_, errno);
+    }
+}
+
+lock_file::~lock_file()
+{
+    ::unlink(file_.c_str());
 }
 
 } // namespace tactor::study

@@ -10,6 +10,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <tactor/error.hpp>
+
 #include "core/owned.hpp"
 
 namespace tactor::study {
@@ -49,8 +51,23 @@ void try_to_write(const std::filesystem::path& file, std::size_t bytes = 0);
 /// Removes the files that a crash in write_whole() left in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 
-/// Keeps other processes out of a folder as long as the result lives. \throws error: bad_input if another
-/// process has it, runtime for what the system refuses.
+/// Waits until no other process has the lock of a folder, and has it as long as the result lives. A process
+/// must not take it twice. \throws error (runtime).
 detail::owned_fd lock_folder(const std::filesystem::path& folder);
+
+/// A file that only one process has at a time. The destructor removes it.
+class lock_file {
+public:
+    /// Does not wait. \throws error: bad_input with `taken` if another process has the file, else as
+    ///         try_to_write().
+    lock_file(std::filesystem::path file, const error& taken);
+    ~lock_file();
+    lock_file(const lock_file&) = delete;
+    lock_file& operator=(const lock_file&) = delete;
+
+private:
+    std::filesystem::path file_;
+    detail::owned_fd fd_ = {};
+};
 
 } // namespace tactor::study

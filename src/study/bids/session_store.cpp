@@ -132,6 +132,7 @@ session_store::~session_store()
 
 void session_store::try_to_write(const std::vector<stimulus>& stimuli) const
 {
+    const detail::owned_fd alone = folder_.lock(); // the files of all participants are tried by one name
     std::vector<fs::path> files = folder_.list_files();
     std::erase_if(files, [](const fs::path& p) { return is_on_disk(p) && p.extension() != ".tsv"; });
     for (const run_definition* r : runs_)
@@ -146,6 +147,9 @@ void session_store::try_to_write(const std::vector<stimulus>& stimuli) const
 
 void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& events)
 {
+    const detail::owned_fd alone = folder_.lock();
+    if (!resumed_)
+        folder_.check_others(); // others may have begun since this session was prepared
     begun_ = true;
     try {
         make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");

@@ -229,27 +229,32 @@ void check_code(const std::string& code)
 study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)
     : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
       is_new_(make_study_folder(folder_)),
-      lock_(lock_folder(folder_)),
       definition_(d),
       code_(std::move(code)),
       simulated_(simulated)
 {
+    const detail::owned_fd alone = lock();
     remove_leftovers(folder_);
     if (!is_on_disk(folder_ / "dataset_description.json") && has_other_things(folder_))
         throw error(error_kind::bad_input, folder_.string(), "it contains other files",
                     "give the study its own folder");
-    refuse_others();
+    own_.emplace(folder_ / fmt::format(".sub-{}.lock", in_small_letters(code_)),
+                 error(error_kind::bad_input, folder_.string(),
+                       fmt::format("another session of {} is running in this folder", code_),
+                       "end it first, or use another code"));
 }
 
 study_folder::~study_folder()
 {
+    own_.reset();
     std::error_code not_empty;
     if (is_new_)
         fs::remove(folder_, not_empty);
 }
 
-void study_folder::refuse_others()
+std::vector<std::string> study_folder::check_others() const
 {
+    std::vector<std::string> warnings;
     const auto kind = [](bool simulated) { return simulated ? "simulated" : "real"; };
     constexpr const char* one_kind = "keep simulated and real sessions in different folders";
     std::vector<std::string> otherwise;
@@ -290,15 +295,15 @@ void study_folder::refuse_others()
     std::set<std::string> alike;
     for (const auto& [code, session] : all)
         if (code != code_ && are_alike(code, code_) && alike.insert(code).second)
-            warnings_.push_back(fmt::format("sub-{} and sub-{}: {}", code, code_, alike_codes));
+            warnings.push_back(fmt::format("sub-{} and sub-{}: {}", code, code_, alike_codes));
     for (unsigned n = 1; n < definition_.session.value_or(1); ++n)
         if (std::ranges::count(all, std::pair(code_, session_number(n))) == 0)
-            warnings_.push_back(fmt::format("the folder has no {}", session_name(code_, n)));
+            warnings.push_back(fmt::format("the folder has no {}", session_name(code_, n)));
     if (!otherwise.empty()) {
         std::sort(otherwise.begin(), otherwise.end());
-        warnings_.push_back(fmt::format("{} had another text of this definition: levels, gaps, methods and "
-                                        "motions may differ (session.json has them)",
-                                        fmt::join(otherwise, ", ")));
+        warnings.push_back(fmt::format("{} had another text of this definition: levels, gaps, methods and "
+                                       "motions may differ (session.json has them)",
+                                       fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
     if (is_on_disk(description) && says_simulated(read_file(description)) == !simulated_)
@@ -306,6 +311,7 @@ void study_folder::refuse_others()
                     fmt::format("the study has {} sessions, but this session is {}", kind(!simulated_),
                                 kind(simulated_)),
                     one_kind);
+    return warnings;
 }
 
 std::vector<fs::path> study_folder::list_files() const
@@ -392,6 +398,7 @@ bool study_folder::has_answers(const questionnaire& q, const std::string& after)
 void study_folder::change_answer(const questionnaire& q, const std::string& after, std::size_t item,
                                  const std::string& answer) const
 {
+    const detail::owned_fd alone = lock();
     const text_table t = read_answers(folder_, q, session());
     if (const auto row = find_row(t, find_key(q, code_, session(), after)))
         write_whole(folder_ / answers_path(q),
@@ -401,6 +408,7 @@ void study_folder::change_answer(const questionnaire& q, const std::string& afte
 void study_folder::add_answers(const questionnaire& q, const std::string& after,
                                const std::vector<std::string>& answers) const
 {
+    const detail::owned_fd alone = lock();
     write_whole(
         folder_ / answers_path(q),
         read_answers(folder_, q, session()).with_line(make_cells(q, code_, session(), after, answers)));
@@ -408,6 +416,7 @@ void study_folder::add_answers(const questionnaire& q, const std::string& after,
 
 bool study_folder::add_participant()
 {
+    const detail::owned_fd alone = lock();
     const fs::path file = folder_ / "participants.tsv";
     const text_table t = read_or_begin(file, new_participants(definition_));
     const std::string id = "sub-" + code_;
@@ -438,6 +447,7 @@ void study_folder::add_scan(const std::string& file_name, const std::string& acq
 
 void study_folder::ignore_cut_lines() const
 {
+    const detail::owned_fd alone = lock();
     ignore("*.cut-*");
 }
 

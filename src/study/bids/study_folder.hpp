@@ -21,14 +21,14 @@ void check_code(const std::string& code);
 /// Returns the name of the file that describes the events of a run's trials, if codes are sent.
 std::string events_description(const run_definition& r);
 
-/// A study's folder with a participant's session, locked as long as this lives. One thread.
+/// A study's folder with a participant's session. Sessions of several participants may run in it at once.
+/// One thread.
 class study_folder {
 public:
     /// Makes the folder, or takes an existing folder of a study. `d` must live as long. The destructor
     /// removes a folder that this made, if it is empty.
-    /// \throws error: bad_input if the folder has other things in it, another session is running in it,
-    ///         somebody in it had another experiment, the participant was in another group, or real and
-    ///         simulated sessions would meet; runtime for what the system refuses.
+    /// \throws error: bad_input if the folder has other things in it or another session of the participant
+    ///         is running in it, and as check_others(); runtime for what the system refuses.
     study_folder(std::filesystem::path folder, const experiment_definition& d, std::string code,
                  bool simulated);
     ~study_folder();
@@ -40,9 +40,15 @@ public:
     const std::string& code() const noexcept { return code_; }
     session_number session() const noexcept { return definition_.session; }
 
-    /// Sentences about allowed differences from earlier sessions, and about an earlier session that is
-    /// missing.
-    const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+    /// Compares this session with all that have begun in the folder. Returns sentences about allowed
+    /// differences, and about an earlier session that is missing.
+    /// \throws error (bad_input) if somebody had another experiment, the participant was in another group, or
+    ///         real and simulated sessions would meet.
+    std::vector<std::string> check_others() const;
+
+    /// Returns the lock under which sessions change the files that they share. The caller must not have it,
+    /// neither here nor in the functions below that take it.
+    detail::owned_fd lock() const { return lock_folder(folder_); }
 
     /// Tests whether a session in the folder sent codes to a recorder.
     bool has_codes() const;
@@ -51,7 +57,8 @@ public:
     std::filesystem::path scans() const;
 
     /// Writes the descriptions that do not exist yet: dataset_description.json, README, participants.json,
-    /// and one for each run's tables. Call it after session.json is written. \throws error (runtime).
+    /// and one for each run's tables. Call it under lock(), after session.json is written. \throws error
+    /// (runtime).
     void describe() const;
 
     /// Lists the files that the session makes: descriptions and lists, without plans and trials.
@@ -62,8 +69,8 @@ public:
     ///         group for the participant; if a questionnaire's table lacks a column.
     void check_lists() const;
 
-    /// Adds a line to participants.tsv, with the group, and n/a in the other columns. Returns false if the
-    /// participant has a line.
+    /// Adds a line to participants.tsv under lock(), with the group, and n/a in the other columns. Returns
+    /// false if the participant has a line.
     bool add_participant();
 
     /// Enters a run's table, named relative to its session's folder, into scans(). If it is there already,
@@ -77,27 +84,25 @@ public:
     /// run before it, empty unless it is asked between runs.
     bool has_answers(const questionnaire& q, const std::string& after) const;
 
-    /// Adds the answers in the order of the items, or changes one of them. Writes the whole table anew.
-    /// \throws error.
+    /// Adds the answers in the order of the items, or changes one of them. Writes the whole table anew under
+    /// lock(). \throws error.
     void add_answers(const questionnaire& q, const std::string& after,
                      const std::vector<std::string>& answers) const;
     void change_answer(const questionnaire& q, const std::string& after, std::size_t item,
                        const std::string& answer) const;
 
-    /// Tells programs that read BIDS to ignore the files of cut_file(), by .bidsignore.
+    /// Tells programs that read BIDS to ignore the files of cut_file(), by .bidsignore. Takes lock().
     void ignore_cut_lines() const;
 
 private:
-    void refuse_others();
     void ignore(const std::string& pattern) const;
 
     std::filesystem::path folder_;
     bool is_new_;
-    detail::owned_fd lock_;
     const experiment_definition& definition_;
     std::string code_;
     bool simulated_;
-    std::vector<std::string> warnings_ = {};
+    std::optional<lock_file> own_ = {}; ///< keeps out another session of the participant
 };
 
 /// Returns dataset_description.json, which says so if the study is simulated.
