@@ -21,8 +21,8 @@ void check_code(const std::string& code);
 /// Returns the name of the file that describes the events of a run's trials, if codes are sent.
 std::string events_description(const run_definition& r);
 
-/// A study's folder with a participant's session. Sessions of several participants may run in it at once.
-/// One thread.
+/// A study's folder with a participant's session, for one thread. Sessions of several participants may run in
+/// it at once.
 class study_folder {
 public:
     /// Makes the folder, or takes an existing folder of a study. `d` must live as long. The destructor
