@@ -294,6 +294,7 @@ class Documents(ToolTest):
         self.write(name, block.text)
         if block.text.startswith("[experiment]"):
             self.ok("experiment", name, "--dry-run")
+            self.write(re.search(r'^name = "(.+)"', block.text, re.M)[1] + ".toml", block.text)  # for the commands after it
         elif block.text.startswith("[[stroke]]") or block.text.startswith("[stroke]"):
             self.ok("plan", name)
         else:
