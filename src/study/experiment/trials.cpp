@@ -451,8 +451,12 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         const options::option* const option = options::find(e.field());
         const std::string hint = spell_for_definition(e.hint(), method.has_level());
         if (method.value) {
-            if (option == nullptr || option != options::find(vary))
-                make(d, motion_at, *method.made_of, {}, faces); // throws if the method fails with every value
+            try { // fails in the same words if the value is not the cause
+                make(d, motion_at, *method.made_of, {}, faces);
+            } catch (const error& without_value) {
+                if (without_value.why().ends_with(e.why()))
+                    throw;
+            }
             throw error(e.kind(), method.where,
                         fmt::format("{} = {} of motion \"{}\" with method \"{}\": {}: {}", vary,
                                     *method.value, motion.name, d.methods[*method.made_of].name,
