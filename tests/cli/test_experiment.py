@@ -549,13 +549,14 @@ class Folder(ExperimentTest):
         self.assertEqual(booth.wait(PATIENCE_S), 0)
 
     def test_several_booths_fill_one_folder_at_once(self):
-        definition = self.small()
+        definition = self.small(SMALL + FORM)
         codes = [f"{n:02}" for n in range(1, 9)]
         booths = [self.start_tool("experiment", definition, "--participant", code, "-o", "study", "--simulate", "seed=1,sigma=1") for code in codes]
         for booth in booths:
             self.assertEqual(booth.wait(PATIENCE_S), 0)
-        rows = (self.dir / "study/participants.tsv").read_text().splitlines()[1:]
-        self.assertEqual(sorted(row.split("\t")[0] for row in rows), [f"sub-{code}" for code in codes])
+        for table in ("participants.tsv", "phenotype/about.tsv"):
+            rows = (self.dir / "study" / table).read_text().splitlines()[1:]
+            self.assertEqual(sorted(row.split("\t")[0] for row in rows), [f"sub-{code}" for code in codes], table)
         self.ok("analyze", "study")
         for code in codes:
             self.simulate(code, folder="alone", definition=definition)
