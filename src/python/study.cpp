@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Study functions, which call the code of the tool.
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,10 +42,14 @@ py::list read_study(const std::string& folder, const codes& only, const codes& w
     return trials;
 }
 
-std::string analyze_study(const std::string& folder, const codes& only, const codes& without)
+std::string analyze_study(const std::string& folder, const codes& only, const codes& without, bool drop_early,
+                          std::optional<std::pair<double, double>> response_time_s)
 {
     const without_lock free;
-    const study::dataset d = study::read_dataset({folder}, select_participants(only, without));
+    study::selection chosen = select_participants(only, without);
+    chosen.drop_early = drop_early;
+    chosen.response_time_s = response_time_s;
+    const study::dataset d = study::read_dataset({folder}, chosen);
     return study::make_analysis_json(study::analyse(d)).dump();
 }
 

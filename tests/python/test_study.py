@@ -3,6 +3,7 @@
 import collections
 import csv
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -80,6 +81,17 @@ def test_participants_are_chosen_as_by_the_tool(studies, tool):
         assert tactor.study.analyze(folder, **chosen) == some
         assert {t["participant"] for t in tactor.study.read(folder, **chosen)} == {"02", "11"}
     assert "11" not in {t["participant"] for t in tactor.study.read(folder, exclude="11")}
+
+
+def test_trials_are_left_out_as_by_the_tool(studies, tool):
+    folder = studies["simulated"]
+    times = sorted(t["response_time"] for t in tactor.study.read(folder) if not t["void"])
+    low, high = times[len(times) // 4], times[-2]
+    rest = json.loads(tool("analyze", folder, "--drop-early", "--response-time", f"{low},{high}", "--format", "json"))
+    assert 0 < sum(r["dropped"] for r in rest["runs"].values()) < len(times)
+    assert tactor.study.analyze(folder, drop_early=True, response_time=(low, high)) == rest
+    for times in ((1.0, 0.5), (0.2,), (-1.0, 1.0), (0.0, math.inf)):
+        assert refused(lambda: tactor.study.analyze(folder, response_time=times)).field == "response_time"
 
 
 @pytest.mark.parametrize("call", [tactor.study.read, tactor.study.analyze])

@@ -50,7 +50,8 @@ def read(folder: str | os.PathLike[str], *, participants: _t.Iterable[str] | Non
 
 
 def analyze(folder: str | os.PathLike[str], *, participants: _t.Iterable[str] | None = None,
-            exclude: _t.Iterable[str] | None = None) -> dict[str, _t.Any]:
+            exclude: _t.Iterable[str] | None = None, drop_early: bool = False,
+            response_time: tuple[float, float] | None = None) -> dict[str, _t.Any]:
     """Returns the statistics of a study as `tactor analyze --format json` prints them: a tactor-analysis/1 object.
 
     tactor-json(5) describes it. Void trials do not count. None stands for a figure that cannot be computed; "warnings" has the
@@ -62,14 +63,23 @@ def analyze(folder: str | os.PathLike[str], *, participants: _t.Iterable[str] | 
         Folder of the study.
     participants, exclude : str or iterable of str, optional
         As in `read`.
+    drop_early : bool, optional
+        True: trials whose answers are marked early do not count.
+    response_time : tuple of two floats, optional
+        Shortest and longest response time of trials that count, in seconds, from 0 to 1e6. A trial without one does not count.
 
     Raises
     ------
     InputError
-        As in `read`.
+        As in `read`; for two times that are not a range.
     """
     import json
-    text = _tactor.analyze_study(encoded(folder, "folder"), *_selection(participants, exclude))
+    if response_time is not None:
+        _need(response_time, tuple, "response_time")
+        if len(response_time) != 2 or not 0 <= response_time[0] < response_time[1] <= 1e6:
+            raise InputError("response_time", f"{response_time} is not a range of times", "give the shortest and the longest, such as (0.2, 5)",
+                             field="response_time")
+    text = _tactor.analyze_study(encoded(folder, "folder"), *_selection(participants, exclude), bool(drop_early), response_time)
     return json.loads(text)  # type: ignore[no-any-return]
 
 
