@@ -21,6 +21,7 @@
 #include "rt/clock.hpp"
 #include "server/faults.hpp"
 #include "server/view.hpp"
+#include "synth/score/levels.hpp"
 
 namespace tactor::server {
 namespace {
@@ -30,8 +31,6 @@ using net::reply_json;
 using options::option;
 
 constexpr double rounding_db = 1e-9;
-constexpr double most_excess_db = 100.0; // no sum of planned strokes exceeds the level by more
-constexpr double least_excess_db = 0.01;
 constexpr double most_bursts = 250'000.0;
 
 options::value plain_value(const json& v)
@@ -218,30 +217,15 @@ double highest_level(const planning& with, const options::option_values& s, doub
 // \throws error if no level helps.
 double find_excess_db(const planning& with, planned& p)
 {
-    const auto try_to_play = [&](double weaker_db) {
-        render_options weaker = p.render;
-        (weaker.sl_db ? *weaker.sl_db : weaker.level_dbfs) -= weaker_db;
-        p.weakened = session::make_score(p, with.tactors, weaker).weakened();
-    };
-    const auto can_play = [&](double weaker_db) {
+    render_options weaker = p.render;
+    for (double excess_db = 0.0;;)
         try {
-            try_to_play(weaker_db);
-            return true;
-        } catch (const error&) {
-            return false;
+            p.weakened = session::make_score(p, with.tactors, weaker).weakened();
+            return excess_db;
+        } catch (const synth::level_error& e) {
+            excess_db += e.over_db;
+            (weaker.sl_db ? *weaker.sl_db : weaker.level_dbfs) -= e.over_db;
         }
-    };
-    if (can_play(0.0))
-        return 0.0;
-    if (!can_play(most_excess_db))
-        try_to_play(0.0); // throws
-    double low = 0.0;
-    double high = most_excess_db;
-    while (high - low > least_excess_db) {
-        const double middle = (low + high) / 2.0;
-        (can_play(middle) ? high : low) = middle;
-    }
-    return high;
 }
 
 } // namespace

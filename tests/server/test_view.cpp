@@ -3,6 +3,7 @@
 #include <cmath>
 #include <new>
 #include <string>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
@@ -210,6 +211,33 @@ TEST_CASE("a view answers where play would refuse for the level, and says by how
     picture["options"]["level_dbfs"] = 0.0;
     picture["toml"] = "[stroke]\npath = 'M 0 0 H 40'\nduration_s = 1.0\n";
     CHECK(rig.ok(c, "plan", picture)["warnings"].back()["over_db"] == 1.0);
+}
+
+TEST_CASE("the excess of a view is what brings the strongest tactor to its limit")
+{
+    tactor::test::running_rig rig([](service_options& o, stream_options&) {
+        o.plans.max_level_dbfs = 0.0;
+        o.plans.tactors.tactors[0].max_dbfs = -12.0;
+        o.plans.tactors.tactors[1].gain_db = 2.0; // full scale at -2 dBFS
+    });
+    const auto c = rig.client();
+    const std::string one = "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n";
+    for (const auto& [toml, together, expected_db] :
+         {std::tuple(one, "sum", 12.0),
+          {one + one, "sum", 12.0 + 20.0 * std::log10(2.0)},
+          {one + one, "weaken", 12.0 - 20.0 * std::log10(2.0) /* of each alone */}}) {
+        json params{{"toml", toml}, {"options", {{"level_dbfs", 0.0}, {"together", together}}}};
+        const auto plays_at = [&](double level_dbfs) {
+            params["options"]["level_dbfs"] = level_dbfs;
+            return rig.code(c, "plan", params) == 0;
+        };
+        json picture = params;
+        picture["view"] = "peaks";
+        const double over_db = rig.ok(c, "plan", picture)["warnings"].back()["over_db"];
+        CHECK(std::abs(over_db - expected_db) <= 0.0051);
+        CHECK(plays_at(-over_db - 0.0051));
+        CHECK_FALSE(plays_at(-over_db + 0.0051));
+    }
 }
 
 TEST_CASE("bursts: each burst of each stroke, by the clock of all together")

@@ -28,16 +28,16 @@ namespace tactor::synth {
 
 namespace {
 
-/// Throws error (bad_input) with the tactor's number and its line in the array file.
-[[noreturn]] void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
-                                std::string_view hint)
+/// Returns an error (bad_input) with the tactor's number and its line in the array file.
+error tactor_error(const array& a, std::size_t i, const render_options& o, std::string_view why,
+                   std::string_view hint)
 {
     const source_place& at = a.tactors[i].where;
     const std::string name = fmt::format("tactor {}", i);
     if (at.text().empty())
-        throw error(error_kind::bad_input, name, fmt::format("it {}", why), hint)
+        return error(error_kind::bad_input, name, fmt::format("it {}", why), hint)
             .with_field(o.sl_db ? "sl_db" : "level_dbfs");
-    throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
+    return {error_kind::bad_input, at, fmt::format("{} {}", name, why), hint};
 }
 
 // Returns a tactor's level, dBFS. A tactor without a threshold gets full scale, so that check_peaks() finds
@@ -51,23 +51,32 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     }
     const double level = o.level_dbfs + t.gain_db;
     if (!(level <= 1e-9)) {
-        refuse_tactor(
-            a, i, o,
-            fmt::format("would play at {:.4g} dBFS, above full scale: gain_db is {} at a level of {} dBFS",
-                        level, t.gain_db, o.level_dbfs),
-            fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db));
+        throw level_error(
+            tactor_error(
+                a, i, o,
+                fmt::format(
+                    "would play at {:.4g} dBFS, above full scale: gain_db is {} at a level of {} dBFS", level,
+                    t.gain_db, o.level_dbfs),
+                fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db)),
+            level);
     }
     return level;
+}
+
+/// Returns the limit of a tactor, dBFS.
+double limit_db(const array& a, std::size_t i)
+{
+    return std::min(0.0, a.tactors[i].max_dbfs);
 }
 
 } // namespace
 
 void refuse_unmeasured(const array& a, std::size_t i, const render_options& o)
 {
-    refuse_tactor(a, i, o,
-                  fmt::format("has no threshold_dbfs, but the level is a sensation level of {} dB",
-                              o.sl_db.value_or(0.0)),
-                  "run {command:calibrate}, or use {level_dbfs}");
+    throw tactor_error(a, i, o,
+                       fmt::format("has no threshold_dbfs, but the level is a sensation level of {} dB",
+                                   o.sl_db.value_or(0.0)),
+                       "run {command:calibrate}, or use {level_dbfs}");
 }
 
 std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o)
@@ -89,7 +98,7 @@ double threshold_factor(const tactor_spec& t, double hz)
 
 double tactor_limit(const array& a, std::size_t i)
 {
-    return std::pow(10.0, std::min(0.0, a.tactors[i].max_dbfs) / 20.0) * (1.0 + 1e-9);
+    return std::pow(10.0, limit_db(a, i) / 20.0) * (1.0 + 1e-9);
 }
 
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
@@ -258,26 +267,30 @@ sweep sweep_items(const score::impl& s, bool exact)
     return all;
 }
 
-/// Checks the peak of a tactor. `factor`: as sweep::factors().
-void check(const array& a, std::size_t i, double peak, double factor, const render_options& o)
+/// Checks the peak of a tactor. `factor`: as sweep::factors(). `over_db`: excess of the whole score.
+void check(const array& a, std::size_t i, double peak, double factor, const render_options& o, double over_db)
 {
-    const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
     if (peak <= tactor_limit(a, i))
         return;
-    const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
-    const bool limited = limit_db < 0.0;
-    const std::string limit = limited ? fmt::format("its max_dbfs of {:.4g} dBFS", limit_db) : "full scale";
+    const double most_db = limit_db(a, i);
+    const double excess_db = std::max(0.01, std::ceil((in_db(peak) - most_db) * 100.0) / 100.0);
+    const bool limited = most_db < 0.0;
+    const std::string limit = limited ? fmt::format("its max_dbfs of {:.4g} dBFS", most_db) : "full scale";
     const std::string driven = fmt::format("would play at {:.4g} dBFS, above {}", in_db(peak), limit);
     const char* raise = limited ? ", or raise max_dbfs" : "";
     if (o.sl_db)
-        refuse_tactor(a, i, o,
-                      fmt::format("{}: its threshold of {:.4g} dBFS is {:.2f} dB too high", driven,
-                                  threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
-                                  excess_db),
-                      fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise));
-    refuse_tactor(
-        a, i, o, driven,
-        fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
+        throw level_error(
+            tactor_error(a, i, o,
+                         fmt::format("{}: its threshold of {:.4g} dBFS is {:.2f} dB too high", driven,
+                                     threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
+                                     excess_db),
+                         fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise)),
+            over_db);
+    throw level_error(
+        tactor_error(a, i, o, driven,
+                     fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}",
+                                 excess_db, raise)),
+        over_db);
 }
 
 /// Refuses drives that cannot be rendered. Those of a curve are already in order of tactor.
@@ -375,8 +388,12 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
     for (const std::size_t i : s.unmeasured)
         if (peaks[i] > 0.0)
             refuse_unmeasured(a, i, o);
+    const std::vector<double>& refused = weakens ? all.loudest() : peaks;
+    double over_db = 0.0;
     for (std::size_t i = 0; i < peaks.size(); ++i)
-        check(a, i, peaks[i], all.factors()[i], o);
+        over_db = std::max(over_db, in_db(refused[i]) - limit_db(a, i));
+    for (std::size_t i = 0; i < peaks.size(); ++i)
+        check(a, i, peaks[i], all.factors()[i], o, over_db);
     for (const std::size_t i : s.unmeasured)
         s.tactors[i].gain = 0.0; // nothing may sound there at full scale
     return peaks;

@@ -7,9 +7,18 @@
 #include <memory>
 #include <vector>
 
+#include <tactor/error.hpp>
+
 #include "synth/score/score.hpp"
 
 namespace tactor::synth {
+
+/// Error of a score that is too loud.
+struct level_error : error {
+    level_error(const error& e, double by_db) : error(e), over_db(by_db) {}
+
+    double over_db; ///< amount by which this score is too loud, above 0; a weaker one may have other faults
+};
 
 /// Frequency at which the levels of tactors with thresholds at several frequencies hold. A factor applies at
 /// other carriers.
@@ -19,7 +28,7 @@ inline constexpr double reference_hz = 250.0;
 double in_db(double amplitude);
 
 /// Returns the gain of each tactor. For unmeasured_tactors() it is full scale, and they must not sound.
-/// \throws error (bad_input) for levels over full scale.
+/// \throws level_error for levels over full scale; error (bad_input).
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
 
 /// Returns the tactors without a threshold if the level is in dB SL.
@@ -50,7 +59,7 @@ std::vector<double> continuous_bounds(const plan& p, std::size_t tactors);
 /// continuous strokes. Returns the greatest level of each tactor, linear. Tactors without a measured
 /// threshold must not be driven; their gain becomes 0.
 /// \pre The items of the score are measured, by start.
-/// \throws error (bad_input) with the tactor's line.
+/// \throws level_error with the tactor's line; error (bad_input).
 std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const array& a,
                                 const render_options& o);
 
