@@ -22,6 +22,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "core/owned.hpp"
+#include "net/rpc.hpp"
 
 namespace tactor::net {
 
@@ -38,6 +39,11 @@ public:
 
     /// Queues a message. Drops the peer if too many bytes wait.
     virtual void send(std::string message) = 0;
+    /// Queues a notification.
+    virtual void notify(std::string_view method, const reply_json& params)
+    {
+        send(json_line(notification(method, params)));
+    }
     /// Queues a message of any size that the peer requested. It does not count towards the bytes that may
     /// wait.
     virtual void send_file(std::string message) { send(std::move(message)); }

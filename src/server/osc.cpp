@@ -264,6 +264,9 @@ osc_request read_osc(const osc_message& m)
              near_address(address) +
                  "use /tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
     osc_request r{.method = std::string(found->first)};
+    for (const osc_value& v : m.values)
+        if (const auto* s = std::get_if<std::string>(&v))
+            r.bytes += s->size();
     value_list v(m);
     found->second(v, r);
     v.end();
@@ -274,7 +277,11 @@ osc_request read_osc(const osc_message& m)
 class osc_clients::sender_link final : public client_link {
 public:
     sender_link(osc_clients& all, endpoint to) : all_(all), to_(std::move(to)) {}
-    void send(std::string message) override { all_.deliver(to_, message); }
+    void send(std::string /*message*/) override {} // answers go to their requests
+    void notify(std::string_view method, const net::reply_json& params) override
+    {
+        all_.notify(to_, method, params);
+    }
     // A datagram is sent, or lost.
     std::size_t waiting() const override { return 0; }
     void finish() override {}
@@ -366,11 +373,11 @@ std::int64_t osc_clients::lead_ns()
 // Stops everything, also for an unknown sender and when there is no place for another client.
 void osc_clients::stop(const endpoint& from)
 {
-    if (sender* s = find(from))
-        return ask(*s, {.method = "stop"});
+    if (find(from) != nullptr)
+        return ask(from, {.method = "stop"});
     const client_number n =
         service_.connect(std::make_shared<sender_link>(*this, from), client_kind::datagram);
-    service_.receive(n, R"({"jsonrpc":"2.0","method":"stop"})");
+    service_.receive(n, net::rpc_request{.method = "stop"}, 0, {});
     service_.disconnect(n);
 }
 
@@ -380,7 +387,7 @@ void osc_clients::subscribe(const osc_request& r, const endpoint& from)
     s.port = r.port;
     if (s.unsubscribes)
         held_.erase(*std::exchange(s.unsubscribes, {}));
-    ask(s, r);
+    ask(from, r);
     if (r.params["events"].empty())
         return;
     osc_request end{.method = r.method};
@@ -406,7 +413,7 @@ void osc_clients::move(osc_request r, const endpoint& from)
     // Keeps only the last place before it begins.
     if (d.held && r.method == "to" && !d.waiting.empty() && d.waiting.back().method == "to")
         d.waiting.pop_back();
-    ask_about(*s, d, std::move(r));
+    ask_about(from, d, std::move(r));
 }
 
 // Handles play, begin and drive: their first sample is at the DAC at that time.
@@ -428,7 +435,7 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
     }
     if (at_ns)
         r.params["start"] = {{"monotonic_s", seconds(*at_ns)}};
-    ask(s, r);
+    ask(from, std::move(r));
 }
 
 std::optional<std::int64_t> osc_clients::next_ns() const
@@ -449,7 +456,7 @@ void osc_clients::act()
             --s.held;
             s.drawn_as.at(h.request.number).held = false;
         }
-        ask(s, h.request);
+        ask(h.from, h.request);
         check_later(h.from);
     }
 }
@@ -502,22 +509,25 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
     return senders_[from] = {.client = n};
 }
 
-void osc_clients::ask(sender& s, const osc_request& r)
+void osc_clients::ask(const endpoint& from, osc_request r)
 {
-    const std::uint64_t id = ++s.last_id;
-    s.open_requests[id] = {r.method, r.number};
+    sender& s = senders_.at(from);
+    ++s.unanswered;
+    net::rpc_request wanted{.method = r.method, .params = std::exchange(r.params, {})};
+    const std::size_t bytes = r.bytes;
     service_.receive(
-        s.client,
-        net::json_line(
-            {{"jsonrpc", "2.0"}, {"id", id}, {"method", r.method}, {"params", net::reply_json(r.params)}}));
+        s.client, std::move(wanted), bytes,
+        [this, from, r = std::move(r)](const net::reply_json& result, const net::rpc_fault* why) {
+            answer(from, r, result, why);
+        });
 }
 
 // Makes a request about a stroke of the sender; if its number is not known yet, waits for it.
-void osc_clients::ask_about(sender& s, drawn& d, osc_request r)
+void osc_clients::ask_about(const endpoint& from, drawn& d, osc_request r)
 {
     if (d.stroke && d.waiting.empty()) {
         r.params["stroke"] = *d.stroke;
-        return ask(s, r);
+        return ask(from, std::move(r));
     }
     if (d.waiting.size() >= most_waiting)
         limit_reached("messages", "too many points wait for a stroke that has not begun");
@@ -534,55 +544,46 @@ void osc_clients::flush(const endpoint& from, std::int32_t number)
         osc_request r = std::move(d.waiting.front());
         d.waiting.pop_front();
         r.params["stroke"] = *d.stroke;
-        ask(*s, r);
+        ask(from, std::move(r));
     }
     check_later(from);
 }
 
-void osc_clients::deliver(const endpoint& to, const std::string& text)
+void osc_clients::answer(const endpoint& to, const osc_request& r, const net::reply_json& result,
+                         const net::rpc_fault* why)
 {
-    sender* s = find(to);
-    if (s == nullptr)
-        return;
-    const net::json m = net::json::parse(text);
-    if (m.contains("method"))
-        deliver_news(*s, to, m);
-    else
-        deliver_answer(*s, to, m);
+    sender& s = senders_.at(to);
+    --s.unanswered;
     check_later(to);
-}
-
-void osc_clients::deliver_answer(sender& s, const endpoint& to, const net::json& m)
-{
-    const auto node = s.open_requests.extract(m["id"].get<std::uint64_t>());
-    if (node.empty())
-        return;
-    const open_request& a = node.mapped();
-    const bool draws = a.method == "play" || a.method == "begin" || a.method == "drive";
-    if (m.contains("error")) {
-        const auto& why = m["error"]["message"].get_ref<const std::string&>();
-        refuse(to, "/tactor/" + a.method, a.number == 0 ? why : fmt::format("stroke {}: {}", a.number, why));
+    const bool draws = r.method == "play" || r.method == "begin" || r.method == "drive";
+    if (why != nullptr) {
+        const std::string text = net::fault_text(*why);
+        refuse(to, "/tactor/" + r.method,
+               r.number == 0 ? text : fmt::format("stroke {}: {}", r.number, text));
         if (draws)
-            s.drawn_as.erase(a.number);
+            s.drawn_as.erase(r.number);
     } else if (draws) {
-        const auto n = m["result"]["stroke"].get<std::uint32_t>();
-        s.numbers[n] = a.number;
-        if (const auto d = s.drawn_as.find(a.number); d != s.drawn_as.end()) {
+        const auto n = result["stroke"].get<std::uint32_t>();
+        s.numbers[n] = r.number;
+        if (const auto d = s.drawn_as.find(r.number); d != s.drawn_as.end()) {
             d->second.stroke = n;
             if (!d->second.waiting.empty())
-                later([this, to, number = a.number] { flush(to, number); });
+                later([this, to, number = r.number] { flush(to, number); });
         }
     }
 }
 
-void osc_clients::deliver_news(sender& s, const endpoint& to, const net::json& m)
+void osc_clients::notify(const endpoint& to, std::string_view method, const net::reply_json& p)
 {
-    const net::json& p = m["params"];
-    const auto& name = m["method"].get_ref<const std::string&>();
+    sender* const known = find(to);
+    if (known == nullptr)
+        return;
+    check_later(to);
+    sender& s = *known;
     endpoint listener = to;
     if (s.port != 0)
         listener.port(s.port);
-    if (name == "stroke") {
+    if (method == "stroke") {
         const auto found = s.numbers.find(p["stroke"].get<std::uint32_t>());
         if (found == s.numbers.end())
             return;
@@ -597,12 +598,12 @@ void osc_clients::deliver_news(sender& s, const endpoint& to, const net::json& m
             s.drawn_as.erase(number);
         }
         send_stroke(to, number, state);
-    } else if (name == "levels") {
+    } else if (method == "levels") {
         std::vector<net::osc_value> dbfs;
-        for (const net::json& v : p["dbfs"])
+        for (const net::reply_json& v : p["dbfs"])
             dbfs.emplace_back(v.is_number() ? v.get<double>() : silent_dbfs);
         outside_.send(listener, net::osc_packet("/tactor/levels", dbfs));
-    } else if (name == "stream") {
+    } else if (method == "stream") {
         outside_.send(listener, net::osc_packet("/tactor/stream", {p["state"].get<std::string>()}));
     }
 }

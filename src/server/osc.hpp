@@ -29,6 +29,7 @@ struct osc_request {
     net::json params = net::json::object();
     std::int32_t number = 0; ///< the sender's number for its stroke; 0: none
     std::uint16_t port = 0;  ///< port at which a subscriber listens; 0: the port from which it sends
+    std::size_t bytes = 0;   ///< bytes of its texts
 };
 
 /// Returns true for messages that a server sends: they are never answered, so that two servers do not talk
@@ -84,12 +85,6 @@ private:
     };
     using held_messages = std::multimap<std::int64_t, held>; ///< by due time
 
-    /// A request to the service that has not been answered yet.
-    struct open_request {
-        std::string method;
-        std::int32_t number = 0;
-    };
-
     /// A stroke with a number of the sender's choice.
     struct drawn {
         std::optional<std::uint32_t> stroke = {}; ///< number of the service, once it is known
@@ -101,8 +96,7 @@ private:
 
     struct sender {
         client_number client = 0;
-        std::uint64_t last_id = 0;
-        std::map<std::uint64_t, open_request> open_requests = {};
+        std::size_t unanswered = 0; ///< requests to the service
         std::map<std::int32_t, drawn> drawn_as = {};
         std::map<std::uint32_t, std::int32_t> numbers =
             {}; ///< current strokes: the sender's by the service's
@@ -112,7 +106,7 @@ private:
 
         bool idle() const
         {
-            return open_requests.empty() && drawn_as.empty() && numbers.empty() && held == 0 && !unsubscribes;
+            return unanswered == 0 && drawn_as.empty() && numbers.empty() && held == 0 && !unsubscribes;
         }
     };
 
@@ -127,11 +121,11 @@ private:
     std::int64_t lead_ns();
     sender* find(const endpoint& from);
     sender& admit(const endpoint& from);
-    void ask(sender& s, const osc_request& r);
-    void ask_about(sender& s, drawn& d, osc_request r);
-    void deliver(const endpoint& to, const std::string& text);
-    void deliver_answer(sender& s, const endpoint& to, const net::json& m);
-    void deliver_news(sender& s, const endpoint& to, const net::json& m);
+    void ask(const endpoint& from, osc_request r);
+    void ask_about(const endpoint& from, drawn& d, osc_request r);
+    void answer(const endpoint& to, const osc_request& r, const net::reply_json& result,
+                const net::rpc_fault* why);
+    void notify(const endpoint& to, std::string_view method, const net::reply_json& params);
     void flush(const endpoint& from, std::int32_t number);
     void send_stroke(const endpoint& to, std::int32_t number, const std::string& state);
     void refuse(const endpoint& to, const std::string& address, const std::string& why);

@@ -85,9 +85,21 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
     owner.check_all_sent(to);
 }
 
-void service::answer::result(reply_json r, const std::vector<std::uint32_t>& strokes) const
+void service::pending::give(std::size_t at, const reply_json& result, const net::rpc_fault* why,
+                            const std::vector<std::uint32_t>& strokes)
 {
-    all->give(at, net::json_line(net::result_reply(all->places[at].id, std::move(r))), strokes);
+    std::string reply;
+    if (!answered)
+        reply = net::json_line(why == nullptr ? net::result_reply(places[at].id, result)
+                                              : net::error_reply(places[at].id, *why));
+    else if (owner.find(to) != nullptr)
+        answered(result, why);
+    give(at, std::move(reply), strokes);
+}
+
+void service::answer::result(const reply_json& r, const std::vector<std::uint32_t>& strokes) const
+{
+    all->give(at, r, nullptr, strokes);
 }
 
 std::string service::answer::write_reply(std::string_view result) const
@@ -106,7 +118,7 @@ void service::answer::whole_reply(std::string reply, bool file) const
 
 void service::answer::fault(const net::rpc_fault& f) const
 {
-    all->give(at, net::json_line(net::error_reply(all->places[at].id, f)), {});
+    all->give(at, {}, &f, {});
 }
 
 service::service(boost::asio::io_context& io, service_options o, stream_options s)
@@ -188,11 +200,6 @@ service::client* service::find(client_number c)
     return found == clients_.end() ? nullptr : found->second.get();
 }
 
-void service::send(client& c, const reply_json& message)
-{
-    c.link->send(net::json_line(message));
-}
-
 // Returns false for a connection of the network that does not begin with hello, such as a browser's POST.
 bool service::admitted(client& c, const net::rpc_message& m)
 {
@@ -214,6 +221,14 @@ bool service::receive(client_number number, std::string_view text)
     return receive(number, m, text.size(), mark(*c));
 }
 
+void service::receive(client_number number, net::rpc_request r, std::size_t bytes, answer_handler answered)
+{
+    net::rpc_message m;
+    m.parts.emplace_back(std::move(r));
+    if (const client* c = find(number))
+        receive(number, m, bytes, mark(*c), std::move(answered));
+}
+
 // Parses on a planner's thread. Stops that come in the meantime apply to the message.
 void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
 {
@@ -223,7 +238,7 @@ void service::receive_large(client_number number, std::string text, std::functio
     if (c == nullptr || !c->greeted)
         return done(false);
     if (!c->admitted) {
-        send(*c, net::error_reply(nullptr, no_hello()));
+        c->link->send(net::json_line(net::error_reply(nullptr, no_hello())));
         return done(true);
     }
     const auto l = std::make_shared<message_aside>(message_aside{std::move(text)});
@@ -266,12 +281,14 @@ void service::give_memory_back_when_quiet()
     });
 }
 
-bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since)
+bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since,
+                      answer_handler answered)
 {
     client* c = find(number);
     if (c == nullptr || !admitted(*c, m))
         return false;
-    const auto all = std::make_shared<pending>(pending{*this, number, m.batch, {}, m.parts.size()});
+    const auto all =
+        std::make_shared<pending>(pending{*this, number, m.batch, std::move(answered), {}, m.parts.size()});
     for (const auto& part : m.parts) {
         const auto* r = std::get_if<net::rpc_request>(&part);
         all->places.push_back(
@@ -380,10 +397,9 @@ void service::disconnect(client_number number)
 
 void service::tell_stream(stream_state s, const std::string& reason)
 {
-    const reply_json n = net::notification("stream", {{"state", to_string(s)}, {"reason", reason}});
     for (const auto& [number, c] : clients_)
         if (c->admitted && c->greeted && (c->events.contains("stream") || s == stream_state::closing))
-            send(*c, n);
+            c->link->notify("stream", {{"state", to_string(s)}, {"reason", reason}});
 }
 
 void service::close(std::function<void()> done)

@@ -61,6 +61,9 @@ struct allowance {
 /// another call.
 using client_link = net::peer;
 
+/// Receives the answer to a request of this process: a result, or the reason why there is none.
+using answer_handler = std::function<void(const net::reply_json& result, const net::rpc_fault* why)>;
+
 struct service_options {
     planning plans = {};
     service_limits limits = {};
@@ -106,6 +109,9 @@ public:
     client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
+    /// Handles a request of `bytes` that is no message. Calls `answered`, if there is one, unless the client
+    /// has gone.
+    void receive(client_number number, net::rpc_request r, std::size_t bytes, answer_handler answered);
     /// Handles a large message, which another thread parses. Calls `done` with the result in this
     /// thread.
     void receive_large(client_number number, std::string text, std::function<void(bool)> done);
@@ -208,10 +214,13 @@ private:
         };
 
         void give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes);
+        void give(std::size_t at, const reply_json& result, const net::rpc_fault* why,
+                  const std::vector<std::uint32_t>& strokes);
 
         service& owner;
         client_number to;
         bool batch = false;
+        answer_handler answered = {}; ///< takes the only reply as values
         std::vector<place> places = {};
         std::size_t open = 0;
         std::vector<std::uint32_t> numbers = {}; ///< strokes to release when the replies are sent
@@ -231,7 +240,7 @@ private:
         stop_mark since = {};
 
         /// Sends the result. `strokes`: new ones, whose notifications are sent from now on.
-        void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
+        void result(const reply_json& r, const std::vector<std::uint32_t>& strokes = {}) const;
         /// Returns the reply with a result that is already JSON text on one line. Any thread.
         std::string write_reply(std::string_view result) const;
         /// Sends a reply of write_reply(). `file`: it may be longer than the limit of waiting bytes.
@@ -266,11 +275,11 @@ private:
     };
 
     // service.cpp
-    bool receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since);
+    bool receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since,
+                 answer_handler answered = {});
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);
-    void send(client& c, const reply_json& message);
     /// Returns stream options with handlers that call this service.
     stream_options with_handlers(stream_options s);
     void tell_stream(stream_state s, const std::string& reason);
@@ -284,7 +293,7 @@ private:
     void list_options(client& c, const net::json& params, const answer& to);
     void make_qr(client& c, const net::json& params, const answer& to);
     void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
-    void send_to_listeners(const stroke_record& r, const net::reply_json& message);
+    void send_to_listeners(const stroke_record& r, const net::reply_json& told);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();

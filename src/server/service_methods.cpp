@@ -245,28 +245,27 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
     const auto from = [&](std::int64_t origin_ns) {
         return sounded ? reply_json(seconds(at_ns + origin_ns)) : reply_json(nullptr);
     };
-    reply_json n = net::notification("stroke", {{"stroke", r.number},
-                                                {"state", state},
-                                                {"reason", how.why},
-                                                {"frames", how.frames},
-                                                {"started_s", from(0)},
-                                                {"started_unix_s", from(rt::unix_ns() - options_.now_ns())},
-                                                {"late_s", how.late_s},
-                                                {"held_points", how.held_points},
-                                                {"outside_points", how.outside_points},
-                                                {"doubt", how.doubt}});
-    if (!r.released) {
-        r.held.push_back(std::move(n));
-        return;
-    }
-    send_to_listeners(r, n);
+    reply_json told{{"stroke", r.number},
+                    {"state", state},
+                    {"reason", how.why},
+                    {"frames", how.frames},
+                    {"started_s", from(0)},
+                    {"started_unix_s", from(rt::unix_ns() - options_.now_ns())},
+                    {"late_s", how.late_s},
+                    {"held_points", how.held_points},
+                    {"outside_points", how.outside_points},
+                    {"doubt", how.doubt}};
+    if (r.released)
+        send_to_listeners(r, told);
+    else
+        r.held.push_back(std::move(told));
 }
 
-void service::send_to_listeners(const stroke_record& r, const reply_json& message)
+void service::send_to_listeners(const stroke_record& r, const reply_json& told)
 {
     for (const auto& [number, c] : clients_)
         if (number == r.owner || (c->admitted && c->events.contains("strokes")))
-            send(*c, message);
+            c->link->notify("stroke", told);
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)
@@ -330,7 +329,7 @@ void service::send_levels(client_number number)
                                         : reply_json(nullptr));
             }
             std::fill(c->levels.begin(), c->levels.end(), 0.0F);
-            send(*c, net::notification("levels", {{"t_s", seconds(options_.now_ns())}, {"dbfs", dbfs}}));
+            c->link->notify("levels", {{"t_s", seconds(options_.now_ns())}, {"dbfs", dbfs}});
         }
         const auto step = std::chrono::nanoseconds(std::llround(1e9 / c->levels_hz));
         const auto next = c->levels_timer.expiry() + step;
@@ -343,13 +342,9 @@ void service::send_levels(client_number number)
 // Notifies the subscribers of an event, except for one client. Clients that are behind get nothing.
 void service::tell_subscribers(const std::string& event, const reply_json& params, client_number except)
 {
-    std::string line;
     for (const auto& [number, c] : clients_)
-        if (number != except && c->events.contains(event) && c->link->waiting() < enough_waiting) {
-            if (line.empty())
-                line = net::json_line(net::notification(event, params));
-            c->link->send(line);
-        }
+        if (number != except && c->events.contains(event) && c->link->waiting() < enough_waiting)
+            c->link->notify(event, params);
 }
 
 // Shows the last point of a live stroke to others, as often as touch_step allows: now or later.
