@@ -502,7 +502,7 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
 {
     if (sender* s = find(from))
         return *s;
-    if (!service_.has_place(client_kind::datagram))
+    if (!service_.clients().has_place(client_kind::datagram))
         limit_reached("max_clients", "all places are taken");
     const client_number n = service_.connect(std::make_shared<sender_link>(*this, from),
                                              client_kind::datagram, net::plain(from.address()).to_string());

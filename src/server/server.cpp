@@ -155,7 +155,7 @@ private:
     void refuse(const std::string& from)
     {
         if (refused_.size() < most_refused && refused_.insert(from).second)
-            service_.log_refusal(from, "a sender of OSC that osc_peers does not list");
+            service_.clients().log_refusal(from, "a sender of OSC that osc_peers does not list");
     }
     void arm()
     {
@@ -216,7 +216,7 @@ public:
                 [this](socket_type c) { take_browser(std::move(c)); }, [this] { log_full(); }));
         if (at.osc)
             osc_.emplace(io, at.osc.get(), service_, at.osc_peers);
-        service_.on_all_sent([this](client_number n) { finish(n); });
+        service_.clients().on_all_sent([this](client_number n) { finish(n); });
     }
 
     void start(std::function<void()> ready)
@@ -263,10 +263,10 @@ private:
         const std::string from = net::peer_address(s.native_handle());
         const auto c = std::make_shared<line_connection>(std::move(s), message_limits_);
         ++open_;
-        if (!service_.has_place(kind)) {
+        if (!service_.clients().has_place(kind)) {
             c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
             c->send(refusal("max_clients", no_place(kind), "try again later"));
-            service_.log_refusal(from, "a connection without a free place");
+            service_.clients().log_refusal(from, "a connection without a free place");
             return c->finish();
         }
         const client_number n = service_.connect(c, kind, from);
@@ -277,10 +277,11 @@ private:
                 finish(n);
         };
         h.fault = [this, n, from](connection_fault f) {
-            const std::string why = why_given_up(f, limits_, service_.is_admitted(n));
+            const std::string why = why_given_up(f, limits_, service_.clients().is_admitted(n));
             if (f != connection_fault::gone)
-                service_.log_refusal(from, f == connection_fault::too_slow ? "a message that takes too long"
-                                                                           : "a message that is too large");
+                service_.clients().log_refusal(from, f == connection_fault::too_slow
+                                                         ? "a message that takes too long"
+                                                         : "a message that is too large");
             if (const auto found = links_.find(n); found != links_.end() && !why.empty())
                 found->second->send(why);
         };
@@ -292,21 +293,21 @@ private:
     {
         return {.message = [this, n](std::string_view text) { return service_.receive(*n, text); },
                 .closed = [this, n] { closed(*n); },
-                .met = [this, n] { return service_.is_admitted(*n); },
+                .met = [this, n] { return service_.clients().is_admitted(*n); },
                 .large =
                     [this, n](std::string text, std::function<void(bool)> done) {
                         service_.receive_large(*n, std::move(text), std::move(done));
                     }};
     }
 
-    std::string no_place(client_kind kind) const
+    std::string no_place(client_kind kind)
     {
-        const std::size_t kept = limits_.max_clients - service_.places(kind);
+        const std::size_t kept = limits_.max_clients - service_.clients().places(kind);
         return fmt::format("all {} places for clients are taken{}", limits_.max_clients,
                            kept == 0 ? "" : fmt::format(", {} of them only for this machine's socket", kept));
     }
 
-    void log_full() { service_.log_refusal("somebody", "a connection without a free descriptor"); }
+    void log_full() { service_.clients().log_refusal("somebody", "a connection without a free descriptor"); }
 
     void finish(client_number n)
     {
@@ -319,7 +320,7 @@ private:
     {
         const std::string from = net::peer_address(s.native_handle());
         if (visitors_.size() >= limits_.max_clients + short_visits) {
-            service_.log_refusal(from, "a browser without a free place");
+            service_.clients().log_refusal(from, "a browser without a free place");
             return net::turn_away(s.native_handle()); // the socket closes at the end of the scope
         }
         const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
@@ -336,10 +337,10 @@ private:
         h.get = [this, from](std::string_view path, std::string_view host, std::string_view token) {
             return page(path, host, token, from);
         };
-        h.refused = [this, from](const std::string& why) { service_.log_refusal(from, why); };
+        h.refused = [this, from](const std::string& why) { service_.clients().log_refusal(from, why); };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
-            if (!service_.has_place(client_kind::web)) {
-                service_.log_refusal(from, "a browser without a free place");
+            if (!service_.clients().has_place(client_kind::web)) {
+                service_.clients().log_refusal(from, "a browser without a free place");
                 return false;
             }
             const auto link = weak.lock();
@@ -357,11 +358,11 @@ private:
             return net::make_page(studio_page, host);
         if (path != "/status")
             return {404, "text/plain", "there are / and /rpc and /status\n", ""};
-        if (token.empty() && !service_.admits(token))
-            service_.log_refusal(from, "no token");
-        if (!service_.admits(token))
+        if (token.empty() && !service_.clients().admits(token))
+            service_.clients().log_refusal(from, "no token");
+        if (!service_.clients().admits(token))
             return {401, "text/plain", "a token is required: Authorization: Bearer TOKEN\n",
-                    "",  "",           token.empty() ? 0.0 : service_.count_wrong_token(from)};
+                    "",  "",           token.empty() ? 0.0 : service_.clients().count_wrong_token(from)};
         return {200, "application/json", net::json_line(service_.status_now()) + "\n", ""};
     }
 

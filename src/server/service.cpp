@@ -60,7 +60,7 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
     numbers.insert(numbers.end(), strokes.begin(), strokes.end());
     if (--open != 0)
         return;
-    client* c = owner.find(to);
+    client* c = owner.clients_.find(to);
     if (c != nullptr) {
         --c->unanswered;
         std::string all;
@@ -82,7 +82,7 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
             c->link->send(std::move(all));
     }
     owner.release(numbers);
-    owner.check_all_sent(to);
+    owner.clients_.check_all_sent(to);
 }
 
 void service::pending::give(std::size_t at, const reply_json& result, const net::rpc_fault* why,
@@ -92,7 +92,7 @@ void service::pending::give(std::size_t at, const reply_json& result, const net:
     if (!answered)
         reply = net::json_line(why == nullptr ? net::result_reply(places[at].id, result)
                                               : net::error_reply(places[at].id, *why));
-    else if (owner.find(to) != nullptr)
+    else if (owner.clients_.find(to) != nullptr)
         answered(result, why);
     give(at, std::move(reply), strokes);
 }
@@ -138,7 +138,7 @@ stream_options service::with_handlers(stream_options s)
     s.changed = [this, owner = std::move(s.changed)](stream_state state, const std::string& why) {
         if (owner)
             owner(state, why);
-        tell_stream(state, why);
+        clients_.tell_stream(state, why);
     };
     return s;
 }
@@ -146,58 +146,6 @@ stream_options service::with_handlers(stream_options s)
 service::~service()
 {
     ending_ = true;
-}
-
-std::size_t service::places(client_kind k) const noexcept
-{
-    const service_limits& l = options_.limits;
-    return k == client_kind::local ? l.max_clients : l.max_clients - l.kept_clients;
-}
-
-bool service::has_place(client_kind k) const
-{
-    constexpr std::size_t osc_part = 4; // a quarter, in addition to the places for sockets
-    const bool datagram = k == client_kind::datagram;
-    const auto taken =
-        static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [&](const auto& c) {
-            return !c.second->input_over && (c.second->kind == client_kind::datagram) == datagram;
-        }));
-    return taken < (datagram ? std::max<std::size_t>(1, options_.limits.max_clients / osc_part) : places(k));
-}
-
-client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
-{
-    const bool is_local = k == client_kind::local;
-    // The origin of a WebSocket was checked, and datagrams come only from accepted peers.
-    client c{.number = ++last_client_,
-             .link = std::move(link),
-             .kind = k,
-             .from = is_local ? "this computer" : std::move(from),
-             .greeted = k != client_kind::network,
-             .admitted = is_local || k == client_kind::datagram || options_.token.empty(),
-             .levels_timer = boost::asio::steady_timer(io_)};
-    clients_.emplace(last_client_, std::make_unique<client>(std::move(c)));
-    return last_client_;
-}
-
-bool service::is_admitted(client_number number) const
-{
-    const auto found = clients_.find(number);
-    return found != clients_.end() && found->second->admitted;
-}
-
-void service::log_refusal(const std::string& from, std::string_view why)
-{
-    constexpr double most_a_second = 10.0;
-    if (options_.log && refusals_.take(1.0, most_a_second, options_.now_ns()))
-        options_.log(log_kind::warning,
-                     fmt::format("refused: {} from {}", why, from.empty() ? "this computer" : from));
-}
-
-service::client* service::find(client_number c)
-{
-    const auto found = clients_.find(c);
-    return found == clients_.end() ? nullptr : found->second.get();
 }
 
 // Returns false for a connection of the network that does not begin with hello, such as a browser's POST.
@@ -208,13 +156,13 @@ bool service::admitted(client& c, const net::rpc_message& m)
     const auto* first = m.batch ? nullptr : std::get_if<net::rpc_request>(&m.parts.front());
     c.greeted = first != nullptr && first->method == "hello";
     if (!c.greeted)
-        log_refusal(c.from, "a connection that does not begin with hello");
+        clients_.log_refusal(c.from, "a connection that does not begin with hello");
     return c.greeted;
 }
 
 bool service::receive(client_number number, std::string_view text)
 {
-    const client* c = find(number);
+    const client* c = clients_.find(number);
     if (c == nullptr)
         return false;
     net::rpc_message m = within_memory([&] { return net::parse_rpc(text, options_.limits.max_nesting); });
@@ -225,16 +173,16 @@ void service::receive(client_number number, net::rpc_request r, std::size_t byte
 {
     net::rpc_message m;
     m.parts.emplace_back(std::move(r));
-    if (const client* c = find(number))
+    if (const client* c = clients_.find(number))
         receive(number, m, bytes, mark(*c), std::move(answered));
 }
 
 // Parses on a planner's thread. Stops that come in the meantime apply to the message.
 void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
 {
-    client* c = find(number);
+    client* c = clients_.find(number);
     if (c != nullptr && !c->greeted)
-        log_refusal(c->from, "a connection that does not begin with hello");
+        clients_.log_refusal(c->from, "a connection that does not begin with hello");
     if (c == nullptr || !c->greeted)
         return done(false);
     if (!c->admitted) {
@@ -256,7 +204,7 @@ void service::receive_large(client_number number, std::string text, std::functio
                    .work = [l, parse] { l->message = within_memory(parse); },
                    .done =
                        [this, number, l, done = std::move(done), since = mark(*c)] {
-                           if (client* then = find(number))
+                           if (client* then = clients_.find(number))
                                --then->unanswered;
                            const bool go_on = receive(number, l->message, l->bytes, since);
                            planners_.aside([l] {}); // the job frees it
@@ -284,7 +232,7 @@ void service::give_memory_back_when_quiet()
 bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since,
                       answer_handler answered)
 {
-    client* c = find(number);
+    client* c = clients_.find(number);
     if (c == nullptr || !admitted(*c, m))
         return false;
     const auto all =
@@ -301,7 +249,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
     const std::uint64_t stops = stops_;
     const std::uint64_t cancels = *c->cancels;
     for (std::size_t i = 0; i < m.parts.size(); ++i) {
-        c = find(number);
+        c = clients_.find(number);
         if (c == nullptr)
             return false;
         // A stop within the message comes before the requests that follow it.
@@ -347,7 +295,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
 
 bool service::input_ended(client_number number)
 {
-    client* c = find(number);
+    client* c = clients_.find(number);
     if (c == nullptr)
         return true;
     c->input_over = true;
@@ -365,41 +313,19 @@ bool service::input_ended(client_number number)
             r.live->end();
         end_rounds(r);
     }
-    // A TCP client that sends no more may still read. It gets its answers, but takes no place. If there are
-    // more such clients than places, disconnects the first one. Its strokes play on.
-    const auto is_silent = [](const auto& one) { return one.second->input_over; };
-    const auto silent = std::count_if(clients_.begin(), clients_.end(), is_silent);
-    if (all_sent_ && static_cast<std::size_t>(silent) > options_.limits.max_clients)
-        all_sent_(std::find_if(clients_.begin(), clients_.end(), is_silent)->first);
+    // A TCP client that sends no more may still read. It gets its answers, but takes no place. Its strokes
+    // play on, even if there are too many such clients.
+    clients_.limit_silent();
     return c->unanswered == 0 && c->strokes.empty();
-}
-
-void service::check_all_sent(client_number number)
-{
-    const client* c = find(number);
-    if (c != nullptr && c->input_over && c->unanswered == 0 && c->strokes.empty() && all_sent_)
-        all_sent_(number);
 }
 
 void service::disconnect(client_number number)
 {
-    const auto found = clients_.find(number);
-    if (found == clients_.end())
+    if (clients_.find(number) == nullptr)
         return;
     input_ended(number);
-    client& c = *found->second;
-    c.levels_timer.cancel();
-    const auto kept = std::move(found->second); // its answers look for it, and must not find it
-    clients_.erase(found);
+    const auto kept = clients_.remove(number); // its answers look for it, and must not find it
     planners_.forget(number);
-    gather_levels();
-}
-
-void service::tell_stream(stream_state s, const std::string& reason)
-{
-    for (const auto& [number, c] : clients_)
-        if (c->admitted && c->greeted && (c->events.contains("stream") || s == stream_state::closing))
-            c->link->notify("stream", {{"state", to_string(s)}, {"reason", reason}});
 }
 
 void service::close(std::function<void()> done)
@@ -407,7 +333,7 @@ void service::close(std::function<void()> done)
     ending_ = true;
     planners_.drop_all();
     stream_.close(std::move(done));
-    tell_stop(0);
+    clients_.tell_stop(0);
 }
 
 } // namespace tactor::server

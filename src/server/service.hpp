@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The service without its sockets: clients, their strokes, and notifications.
+/// The service without its sockets: requests of clients, and their strokes.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <limits>
-#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,9 +22,9 @@
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
 
-#include "net/connection.hpp"
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
+#include "server/clients.hpp"
 #include "server/planners.hpp"
 #include "server/request.hpp"
 #include "server/stream.hpp"
@@ -36,30 +33,6 @@
 namespace tactor::server {
 
 using service_limits = options::serve_limits;
-
-/// Number of bytes waiting for a client from which on it is behind. It misses levels, touches and stops until
-/// it has caught up.
-inline constexpr std::size_t enough_waiting = 64U << 10;
-
-/// Rate limit: the number of actions that are allowed at once. It is full again after a second.
-struct allowance {
-    double remaining = std::numeric_limits<double>::infinity();
-    std::int64_t at_ns = 0;
-
-    /// Takes `n` of at most `per_s`. Returns false if fewer are left.
-    bool take(double n, double per_s, std::int64_t now_ns) noexcept
-    {
-        remaining = std::min(per_s, remaining + seconds(now_ns - std::exchange(at_ns, now_ns)) * per_s);
-        if (remaining < n)
-            return false;
-        remaining -= n;
-        return true;
-    }
-};
-
-/// Link to a client. Its finish() must not call the service back at once, which may be in the middle of
-/// another call.
-using client_link = net::peer;
 
 /// Receives the answer to a request of this process: a result, or the reason why there is none.
 using answer_handler = std::function<void(const net::reply_json& result, const net::rpc_fault* why)>;
@@ -87,9 +60,6 @@ struct submissions {
     std::optional<std::uint64_t> begun = {}; ///< frame in which its request began
 };
 
-/// Kind of connection of a client.
-enum class client_kind { local, network, web, datagram };
-
 /// Clients and their strokes on one stream. Members are called in the context's thread.
 class service {
 public:
@@ -99,14 +69,11 @@ public:
     service& operator=(const service&) = delete;
 
     void start() { stream_.start(); }
-    /// Returns the greatest total of clients at which another one of this kind may come.
-    std::size_t places(client_kind k) const noexcept;
-    /// Returns true if there is a place for another client.
-    bool has_place(client_kind k) const;
-    /// Returns true if the client is connected and needs no token any more.
-    bool is_admitted(client_number number) const;
     /// Adds a client. `from`: its address; a local one needs none.
-    client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
+    client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {})
+    {
+        return clients_.add(std::move(link), k, std::move(from)).number;
+    }
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
     /// Handles a request of `bytes` that is no message. Calls `answered`, if there is one, unless the client
@@ -118,8 +85,6 @@ public:
     /// Ends the live and held strokes of a client that sends no more. Returns true if it has been sent all
     /// its messages.
     bool input_ended(client_number number);
-    /// Sets the handler for the moment when such a client has been sent all its messages.
-    void on_all_sent(std::function<void(client_number)> f) { all_sent_ = std::move(f); }
     /// Removes a client: its live and held strokes end, its other strokes play on.
     void disconnect(client_number number);
     /// Sets the handler for a stop of everything.
@@ -127,50 +92,16 @@ public:
     /// Fades everything out and notifies all clients; calls `done` when all ends were sent.
     void close(std::function<void()> done);
 
+    client_list& clients() noexcept { return clients_; }
     stream& output() noexcept { return stream_; }
     /// Returns the result of `status`.
     net::reply_json status_now();
-    /// Returns true if a token is right, or if none is needed.
-    bool admits(std::string_view token) const;
-    /// Counts and logs a wrong token from an address. Returns the delay of its answer, s, which grows with
-    /// the number of wrong tokens from there.
-    double count_wrong_token(const std::string& from);
-    /// Logs the refusal of a connection or a message. `from`: its address; empty: this computer. Writes at
-    /// most some ten lines a second.
-    void log_refusal(const std::string& from, std::string_view why);
 
 private:
     using reply_json = net::reply_json;
 
     /// Reason of a held stroke's end.
     static constexpr const char* connection_ended = "its client's connection has ended";
-
-    struct client {
-        client_number number;
-        std::shared_ptr<client_link> link;
-        client_kind kind;
-        std::string from;      ///< address, as other clients see it
-        std::string name = {}; ///< name that the client chose
-        bool greeted = false;  ///< network: its first message was hello
-        bool admitted = false; ///< its token was right, or it needs none
-        bool input_over = false;
-        unsigned wrong_tokens = 0;
-        unsigned refusals_waiting = 0; ///< delayed answers to wrong tokens
-        std::set<std::string> events = {};
-        double levels_hz = 30.0;
-        boost::asio::steady_timer levels_timer;
-        std::vector<float> levels = {}; ///< peaks by channel since the last notification
-        std::size_t coming = 0;         ///< requests whose strokes have no number yet
-        std::size_t bytes = 0;          ///< bytes of requests that wait to be planned
-        std::size_t unanswered = 0;
-        std::set<std::uint32_t> strokes = {}; ///< strokes that have not ended
-        std::size_t live = 0;
-        /// Number of times that the client cancelled all its strokes. Its requests share the count, and may
-        /// outlive the client.
-        std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
-        allowance points = {}; ///< points that it may still send now
-        double level_db = 0.0; ///< level of its strokes, relative to their own
-    };
 
     struct stroke_record {
         std::uint32_t number = 0;
@@ -279,30 +210,21 @@ private:
                  answer_handler answered = {});
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
-    client* find(client_number c);
     /// Returns stream options with handlers that call this service.
     stream_options with_handlers(stream_options s);
-    void tell_stream(stream_state s, const std::string& reason);
-    void check_all_sent(client_number number);
     void give_memory_back_when_quiet();
 
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
-    void refuse_token(client& c, const answer& to, bool is_missing);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
     void make_qr(client& c, const net::json& params, const answer& to);
     void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
-    void send_to_listeners(const stroke_record& r, const net::reply_json& told);
     void subscribe(client& c, const net::json& params, const answer& to);
-    void send_levels(client_number number);
-    void gather_levels();
     reply_json hello_result(const client& c);
     reply_json limits_json() const;
-    void tell_subscribers(const std::string& event, const reply_json& params, client_number except = 0);
     void touch(stroke_record& r);
     void tell_touch(const stroke_record& r, bool down);
-    void tell_stop(client_number by);
 
     // service_jobs.cpp
     void add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
@@ -367,8 +289,7 @@ private:
     service_options options_;
     layout faces_;
     stream stream_;
-    std::map<client_number, std::unique_ptr<client>> clients_;
-    client_number last_client_ = 0;
+    client_list clients_{io_, options_, stream_.peaks()};
     std::map<std::uint32_t, stroke_record> strokes_;
     std::map<std::pair<std::uint64_t, stroke_id>, std::uint32_t> by_player_;
     std::uint32_t last_stroke_ = 0;
@@ -377,12 +298,8 @@ private:
     boost::asio::steady_timer touch_timer_;
     std::set<std::uint32_t> touches_due_ = {}; ///< live strokes with a place to be sent
     allowance touches_ = {};
-    allowance refusals_ = {};                               ///< lines of refusals that may be logged
-    std::map<std::string, double> wrong_token_wait_s_ = {}; ///< delay of the last answer, by address
-    std::list<boost::asio::steady_timer> late_answers_ = {};
     std::size_t jobs_ = 0;            ///< number of jobs that wait for planning or are being planned
     std::atomic<bool> ending_{false}; ///< a planner also checks it between strokes
-    std::function<void(client_number)> all_sent_;
     std::function<void()> stopped_;
     planners planners_{io_};
 };

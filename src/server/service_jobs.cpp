@@ -148,7 +148,7 @@ std::string service::make_text(const plan_job& j, const go_on_check& go_on)
 
 void service::job_done(const std::shared_ptr<plan_job>& j)
 {
-    const client* c = find(j->to.all->to);
+    const client* c = clients_.find(j->to.all->to);
     if (ending_ && !j->fault)
         j->fault = server_ends();
     if (!j->fault && j->is_file() && c != nullptr && c->link->has_file())
@@ -177,7 +177,7 @@ void service::forget(const plan_job& j)
     --jobs_;
     if (j.bytes > net::large_message)
         give_memory_back_when_quiet();
-    if (client* c = find(j.to.all->to))
+    if (client* c = clients_.find(j.to.all->to))
         c->bytes -= j.bytes;
 }
 
@@ -185,7 +185,7 @@ void service::forget(const plan_job& j)
 void service::uncount(const plan_job& j)
 {
     forget(j);
-    if (client* c = find(j.to.all->to))
+    if (client* c = clients_.find(j.to.all->to))
         --c->coming;
 }
 
@@ -219,12 +219,12 @@ void service::submit_all(const plan_job& job)
     const client_number number = job.to.all->to;
     const planned& p = *job.made;
     const std::vector<score>& scores = job.scores;
-    if (const client* c = find(number);
+    if (const client* c = clients_.find(number);
         c != nullptr && scores.size() > 1 &&
         c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
         too_many_strokes(scores.size(), options_.limits.max_strokes);
     const char* ended_by = stop_reason_since(job.to);
-    if (const client* c = find(number); job.held && (c == nullptr || c->input_over))
+    if (const client* c = clients_.find(number); job.held && (c == nullptr || c->input_over))
         ended_by = connection_ended;
     const auto numbers = submit(number, job.start, p, scores, ended_by, job.gain_db, job.rounds == 0);
     for (const std::uint32_t n : numbers)

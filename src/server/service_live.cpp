@@ -47,7 +47,7 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.live;
     const double intensity_max = s.intensity_max.value_or(1.0);
     once_ready(to, "options", [this, number = c.number, o, to, intensity_max] {
-        if (client* then = find(number)) {
+        if (client* then = clients_.find(number)) {
             --then->live;
             begin_now(*then, o, intensity_max, to);
         }

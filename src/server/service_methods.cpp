@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// hello, status, options, qr, subscribe, and notifications of strokes, levels, touches and stops.
+// hello, status, options, qr, subscribe, and notifications of strokes and touches.
 #include "server/service.hpp"
 
 #include <algorithm>
@@ -29,10 +29,6 @@ namespace {
 using net::json;
 using net::reply_json;
 
-constexpr unsigned most_wrong_tokens = 3;
-constexpr double first_wrong_token_s = 0.2; // delay of the first answer; doubles with each
-constexpr double longest_wrong_token_s = 10.0;
-constexpr std::size_t most_addresses = 1024;
 constexpr std::array<std::string_view, 5> event_names{"strokes", "levels", "stream", "touches", "stops"};
 
 // Returns a row for each format of stroke files.
@@ -47,15 +43,6 @@ reply_json formats_json()
                         {"written", f->write != nullptr},
                         {"only_points", f->only_points}});
     return rows;
-}
-
-// Compares in constant time, so that the time does not show how much is right.
-bool same_secret(const std::string& a, const std::string& b)
-{
-    unsigned char differs = a.size() == b.size() ? 0 : 1;
-    for (std::size_t i = 0; i < b.size(); ++i)
-        differs |= static_cast<unsigned char>(b[i] ^ (i < a.size() ? a[i] : 0));
-    return differs == 0;
 }
 
 // Returns true for a name without a letter, and for names that pages use for their reader and for the owner.
@@ -108,57 +95,15 @@ void service::hello(client& c, const json& params, const answer& to)
         bad_param("name", "it " + why, label_hint);
     if (name != nullptr && is_taken_name(name->get<std::string>()))
         bad_param("name", "it is reserved for the pages", "choose another name");
-    if (!c.admitted) {
-        // Counts tokens that come before the answer to a wrong one as wrong, so that guessing is slow.
-        const bool compares = c.refusals_waiting == 0 && c.wrong_tokens < most_wrong_tokens;
-        if (!compares || token == nullptr || !same_secret(token->get<std::string>(), options_.token))
-            return refuse_token(c, to, token == nullptr);
-        c.admitted = true;
-        wrong_token_wait_s_.erase(c.from);
-    }
+    const std::string* given = token == nullptr ? nullptr : token->get_ptr<const std::string*>();
+    const auto refuse = [to, why = given == nullptr ? "a token is required" : "it is wrong"] {
+        to.fault({net::code_no_token, "token", "token", why, "give the token in the server's token_file"});
+    };
+    if (!clients_.admit(c, given, refuse))
+        return;
     if (name != nullptr)
         c.name = name->get<std::string>();
     to.result(hello_result(c));
-}
-
-double service::count_wrong_token(const std::string& from)
-{
-    if (wrong_token_wait_s_.size() > most_addresses)
-        wrong_token_wait_s_.clear();
-    double& wait_s = wrong_token_wait_s_[from];
-    wait_s = wait_s == 0.0 ? first_wrong_token_s : std::min(2.0 * wait_s, longest_wrong_token_s);
-    log_refusal(from, "a wrong token");
-    return wait_s;
-}
-
-// Answers a missing token at once, and a wrong one late.
-void service::refuse_token(client& c, const answer& to, bool is_missing)
-{
-    if (++c.wrong_tokens > most_wrong_tokens)
-        return; // the connection is closed when the previous one is answered
-    if (is_missing)
-        log_refusal(c.from, "no token");
-    const auto refuse = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
-        to.fault({net::code_no_token, "token", "token", is_missing ? "a token is required" : "it is wrong",
-                  "give the token in the server's token_file"});
-        client* const guest = find(number);
-        if (guest == nullptr)
-            return;
-        guest->refusals_waiting -= is_missing ? 0 : 1;
-        if (last)
-            guest->link->dismiss("three wrong tokens");
-    };
-    if (is_missing)
-        return refuse();
-    ++c.refusals_waiting;
-    const auto timer = late_answers_.emplace(late_answers_.end(), io_);
-    timer->expires_after(std::chrono::nanoseconds(std::llround(count_wrong_token(c.from) * 1e9)));
-    timer->async_wait([=, this](const boost::system::error_code& gone) {
-        if (gone)
-            return; // the service is ending
-        refuse();
-        late_answers_.erase(timer);
-    });
 }
 
 reply_json service::limits_json() const
@@ -178,16 +123,11 @@ void service::status(client& /*c*/, const json& params, const answer& to)
     to.result(status_now());
 }
 
-bool service::admits(std::string_view token) const
-{
-    return options_.token.empty() || same_secret(std::string(token), options_.token);
-}
-
 reply_json service::status_now()
 {
     const player_stats s = stream_.stats();
     reply_json clients = reply_json::array();
-    for (const auto& [number, c] : clients_)
+    for (const auto& [number, c] : clients_.all())
         clients.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
     reply_json strokes = reply_json::array();
     for (const auto& [number, r] : strokes_)
@@ -201,7 +141,7 @@ reply_json service::status_now()
               {"uptime_s", rate > 0.0 ? static_cast<double>(s.frames) / rate : 0.0},
               {"realtime", s.realtime}}},
             {"amplifier", to_string(stream_.amplifier())},
-            {"clients", clients_.size()},
+            {"clients", clients_.all().size()},
             {"who", clients},
             {"strokes", strokes},
             {"max_level_dbfs", options_.plans.max_level_dbfs},
@@ -256,16 +196,9 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
                     {"outside_points", how.outside_points},
                     {"doubt", how.doubt}};
     if (r.released)
-        send_to_listeners(r, told);
+        clients_.tell_stroke(r.owner, told);
     else
         r.held.push_back(std::move(told));
-}
-
-void service::send_to_listeners(const stroke_record& r, const reply_json& told)
-{
-    for (const auto& [number, c] : clients_)
-        if (number == r.owner || (c->admitted && c->events.contains("strokes")))
-            c->link->notify("stroke", told);
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)
@@ -286,65 +219,8 @@ void service::subscribe(client& c, const json& params, const answer& to)
     }
     constexpr double usual_hz = 30.0;
     constexpr double most_hz = 100.0;
-    c.levels_hz = number_or(params, "levels_hz", {0.01, most_hz}, usual_hz);
-    c.events = std::move(wanted);
+    clients_.subscribe(c, std::move(wanted), number_or(params, "levels_hz", {0.01, most_hz}, usual_hz));
     to.result(reply_json::object());
-    c.levels.assign(stream_.peaks().size(), 0.0F);
-    c.levels_timer.cancel();
-    gather_levels();
-    if (!c.events.contains("levels"))
-        return;
-    c.levels_timer.expires_after(std::chrono::nanoseconds(std::llround(1e9 / c.levels_hz)));
-    send_levels(c.number);
-}
-
-// Adds the peaks of the common meter to the levels of each client that subscribed to them.
-void service::gather_levels()
-{
-    level_peaks& peaks = stream_.peaks();
-    const bool any = std::any_of(clients_.begin(), clients_.end(),
-                                 [](const auto& c) { return c.second->events.contains("levels"); });
-    peaks.listen(any);
-    for (std::size_t ch = 0; any && ch < peaks.size(); ++ch) {
-        const float peak = peaks.take(ch);
-        for (const auto& [number, c] : clients_)
-            if (ch < c->levels.size())
-                c->levels[ch] = std::max(c->levels[ch], peak);
-    }
-}
-
-void service::send_levels(client_number number)
-{
-    client* waiting = find(number);
-    waiting->levels_timer.async_wait([this, number](const boost::system::error_code& e) {
-        client* c = find(number);
-        if (e || c == nullptr || !c->events.contains("levels"))
-            return;
-        gather_levels();
-        if (c->link->waiting() < enough_waiting) {
-            reply_json dbfs = reply_json::array();
-            for (const tactor_spec& t : options_.plans.tactors.tactors) {
-                const float v = t.channel < c->levels.size() ? c->levels[t.channel] : 0.0F;
-                dbfs.push_back(v > 0.0F ? reply_json(20.0 * std::log10(static_cast<double>(v)))
-                                        : reply_json(nullptr));
-            }
-            std::fill(c->levels.begin(), c->levels.end(), 0.0F);
-            c->link->notify("levels", {{"t_s", seconds(options_.now_ns())}, {"dbfs", dbfs}});
-        }
-        const auto step = std::chrono::nanoseconds(std::llround(1e9 / c->levels_hz));
-        const auto next = c->levels_timer.expiry() + step;
-        // Skips notifications that were missed while the process stood still.
-        c->levels_timer.expires_at(std::max(next, std::chrono::steady_clock::now()));
-        send_levels(number);
-    });
-}
-
-// Notifies the subscribers of an event, except for one client. Clients that are behind get nothing.
-void service::tell_subscribers(const std::string& event, const reply_json& params, client_number except)
-{
-    for (const auto& [number, c] : clients_)
-        if (number != except && c->events.contains(event) && c->link->waiting() < enough_waiting)
-            c->link->notify(event, params);
 }
 
 // Shows the last point of a live stroke to others, as often as touch_step allows: now or later.
@@ -352,7 +228,8 @@ void service::touch(stroke_record& r)
 {
     const std::int64_t now = options_.now_ns();
     const bool is_early = r.shown_ns && now - *r.shown_ns < touch_step.count();
-    const auto listeners = std::count_if(clients_.begin(), clients_.end(),
+    const auto& all = clients_.all();
+    const auto listeners = std::count_if(all.begin(), all.end(),
                                          [](const auto& c) { return c.second->events.contains("touches"); });
     if (!is_early && touches_.take(static_cast<double>(listeners), most_touches_per_s, now)) {
         touches_due_.erase(r.number);
@@ -372,20 +249,13 @@ void service::touch(stroke_record& r)
 
 void service::tell_touch(const stroke_record& r, bool down)
 {
-    tell_subscribers("touches",
-                     {{"client", r.owner},
-                      {"stroke", r.number},
-                      {"x_mm", r.touched->x_mm},
-                      {"y_mm", r.touched->y_mm},
-                      {"down", down}},
-                     r.owner);
-}
-
-// Notifies all clients of the client that stopped everything; 0: the owner.
-void service::tell_stop(client_number by)
-{
-    const client* c = find(by);
-    tell_subscribers("stops", {{"client", by}, {"name", c == nullptr ? "" : c->name}});
+    clients_.tell("touches",
+                  {{"client", r.owner},
+                   {"stroke", r.number},
+                   {"x_mm", r.touched->x_mm},
+                   {"y_mm", r.touched->y_mm},
+                   {"down", down}},
+                  r.owner);
 }
 
 } // namespace tactor::server

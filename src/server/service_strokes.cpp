@@ -71,7 +71,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         note_sound(r, i < p.strokes.size() ? p.strokes[i].name : p.name, p.render);
         r.request = numbers.front();
         r.rounds.frames = rounds_frames;
-        if (const client* c = find(owner); again && c != nullptr && !c->input_over)
+        if (const client* c = clients_.find(owner); again && c != nullptr && !c->input_over)
             r.rounds.again = scores[i];
         if (wanted.armed)
             r.state = "armed";
@@ -153,7 +153,7 @@ std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t
 void service::once_ready(const answer& to, const char* source, std::function<void()> then)
 {
     std::function<void()> ready = [this, to, source, then = std::move(then)] {
-        if (client* c = find(to.all->to))
+        if (client* c = clients_.find(to.all->to))
             --c->coming;
         try {
             then();
@@ -287,7 +287,7 @@ void service::stop_all(client_number by)
     stream_.cancel_all();
     if (stopped_)
         stopped_();
-    tell_stop(by);
+    clients_.tell_stop(by);
 }
 
 void service::fire(client& /*c*/, const json& params, const answer& to)
@@ -320,7 +320,7 @@ void service::release(const std::vector<std::uint32_t>& numbers)
         stroke_record& r = found->second;
         r.released = true;
         for (const reply_json& held : std::exchange(r.held, {}))
-            send_to_listeners(r, held);
+            clients_.tell_stroke(r.owner, held);
         if (r.state == "ended")
             strokes_.erase(found);
     }
@@ -331,7 +331,7 @@ service::stroke_record& service::add_record(client_number owner)
     stroke_record& r = strokes_[++last_stroke_];
     r.number = last_stroke_;
     r.owner = owner;
-    if (client* c = find(owner)) {
+    if (client* c = clients_.find(owner)) {
         c->strokes.insert(r.number);
         r.level_db = c->level_db;
     }
@@ -486,7 +486,7 @@ std::optional<std::uint64_t> service::end_request(const stroke_record& of)
 // Ends requests as end_request() does. Returns the first frame that follows all of them.
 std::uint64_t service::end_requests(client_number owner, const std::vector<std::uint32_t>& numbers)
 {
-    const client* c = find(owner);
+    const client* c = clients_.find(owner);
     std::uint64_t end = 0;
     for (const std::uint32_t n : numbers) {
         if (c == nullptr || own_stroke(*c, n).live)
@@ -526,7 +526,7 @@ void service::finish(stroke_record& r, const stroke_report& how)
         r.started_ns = how.started_ns;
     r.submits_later.reset();
     const client_number owner = r.owner;
-    if (client* c = find(owner)) {
+    if (client* c = clients_.find(owner)) {
         c->strokes.erase(r.number);
         if (r.live)
             --c->live;
@@ -543,7 +543,7 @@ void service::finish(stroke_record& r, const stroke_report& how)
     tell_stroke(r, to_string(report.state), report);
     if (r.released)
         strokes_.erase(r.number);
-    check_all_sent(owner);
+    clients_.check_all_sent(owner);
 }
 
 // Records the facts about a stroke for the log.
@@ -562,7 +562,7 @@ std::string service::log_name(const stroke_record& r)
         text += fmt::format(" \"{}\" at {} {}", net::cut_echo(r.name),
                             plain_number(r.requested_db + level_db(r), 4), r.is_sl ? "dB SL" : "dBFS");
     text += fmt::format(" of client {}", r.owner);
-    const client* const c = find(r.owner);
+    const client* const c = clients_.find(r.owner);
     if (c != nullptr && !c->name.empty())
         text += fmt::format(" \"{}\"", c->name);
     if (c != nullptr && !c->from.empty())

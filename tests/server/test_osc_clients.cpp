@@ -451,10 +451,10 @@ TEST_CASE("places are for those of whom something goes on")
     // Sockets and OSC senders do not take each other's places.
     std::vector<service_rig::connected> sockets;
     for (int i = 0; i < 12; ++i) {
-        REQUIRE(rig.all->has_place(server::client_kind::network));
+        REQUIRE(rig.all->clients().has_place(server::client_kind::network));
         sockets.push_back(rig.client(server::client_kind::network));
     }
-    CHECK_FALSE(rig.all->has_place(server::client_kind::network));
+    CHECK_FALSE(rig.all->clients().has_place(server::client_kind::network));
     rig.say(me, "/tactor/stop"); // needs none
     for (std::uint16_t port = 1; port <= 3; ++port)
         CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 1 cancelled");

@@ -542,10 +542,10 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
         o.limits.kept_clients = 0;
     });
     std::vector<server::client_number> let_go;
-    rig.all->on_all_sent([&](server::client_number n) { let_go.push_back(n); });
+    rig.all->clients().on_all_sent([&](server::client_number n) { let_go.push_back(n); });
     std::vector<service_rig::connected> gone;
     for (int i = 0; i < 3; ++i) {
-        REQUIRE(rig.all->has_place(server::client_kind::network));
+        REQUIRE(rig.all->clients().has_place(server::client_kind::network));
         gone.push_back(rig.client());
         rig.ok(gone.back(), "play", {{"stroke", "park2016-1"}, {"start", "armed"}});
         CHECK_FALSE(rig.all->input_ended(gone.back().number));
