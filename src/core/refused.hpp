@@ -22,8 +22,8 @@ namespace tactor::detail {
 /// Returns a hint for an errno of lacking resources; empty for others.
 std::string_view advice_for(int code) noexcept;
 
-/// Throws for a refused resource. `why` describes the request; the errno is added in words.
-/// \throws error (runtime), always, with its cause.
+/// Throws for a refused resource, with a hint for the errno `code`. `why`: what was refused, with the errno
+/// in words. \throws error (runtime), always, with its cause.
 [[noreturn]] void refused_by_system(std::string_view what, int code, std::string_view why);
 
 } // namespace tactor::detail

@@ -49,7 +49,7 @@ std::string_view advise(int code)
     case EDQUOT:
         return "free some space";
     default:
-        return {};
+        return detail::advice_for(code);
     }
 }
 

@@ -15,6 +15,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -30,10 +31,12 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/system/system_error.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
+#include "core/refused.hpp"
 #include "net/connection.hpp"
 #include "net/osc.hpp"
 #include "net/web.hpp"
@@ -451,7 +454,7 @@ std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) noexcept
 
 void serve(const endpoints& at, service_options o, stream_options s, int signals,
            const std::function<void()>& listening)
-{
+try {
     asio::io_context io(1);
     // The context runs until stop(), also while nobody is connected and the stream fades out.
     const auto until_stopped = asio::make_work_guard(io);
@@ -465,7 +468,7 @@ void serve(const endpoints& at, service_options o, stream_options s, int signals
     // sets the priority of this thread only.
     constexpr int before_others = -10;
     ::setpriority(PRIO_PROCESS, 0, before_others);
-    asio::posix::stream_descriptor signal_input(io, ::fcntl(signals, F_DUPFD_CLOEXEC, 0));
+    asio::posix::stream_descriptor signal_input(io, copy_descriptor(signals));
     signal_input.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
         if (!e)
             all.stop();
@@ -478,6 +481,12 @@ void serve(const endpoints& at, service_options o, stream_options s, int signals
     io.run();
     if (refused != nullptr)
         std::rethrow_exception(refused);
+} catch (const error&) {
+    throw;
+} catch (const boost::system::system_error& e) {
+    detail::refused_by_system("service", e.code().value(), e.what());
+} catch (const std::system_error& e) {
+    detail::refused_by_system("service", e.code().value(), e.what());
 }
 
 std::string read_token(const options::serve_settings& s)

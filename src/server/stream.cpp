@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <span>
+#include <system_error>
 
 #include <boost/asio/post.hpp>
 #include <fcntl.h>
@@ -104,6 +106,14 @@ std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_pea
     return std::make_unique<meter_sink>(std::move(s), std::move(peaks));
 }
 
+int copy_descriptor(int descriptor)
+{
+    const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    if (copy < 0)
+        throw std::system_error(errno, std::generic_category(), "dup");
+    return copy;
+}
+
 stream::stream(boost::asio::io_context& io, stream_options o)
     : device_stream(make_parts(*this, static_cast<const session::stream_parts&>(o))),
       io_(io),
@@ -112,7 +122,7 @@ stream::stream(boost::asio::io_context& io, stream_options o)
       peaks_(std::make_shared<level_peaks>(std::max(o.wished.channels, o.tactors.channels()))),
       told_(state(), reason()),
       again_(io),
-      news_(io, ::fcntl(descriptor(), F_DUPFD_CLOEXEC, 0))
+      news_(io, copy_descriptor(descriptor()))
 {
     await_news();
 }

@@ -58,6 +58,9 @@ struct stream_options : session::stream_parts {
     std::function<void(std::exception_ptr)> refused = {};
 };
 
+/// Returns a copy of a descriptor for another owner. \throws std::system_error.
+int copy_descriptor(int descriptor);
+
 /// A stream whose members are called in the context's thread. All handlers run there.
 class stream : public session::device_stream {
 public:

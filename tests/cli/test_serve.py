@@ -14,7 +14,7 @@ import subprocess
 import time
 
 from harness import PATIENCE_S, main
-from serving import LONG, SHORT, Client, ServeTest
+from serving import LONG, SHORT, Client, Server, ServeTest
 from websocket import Peer
 
 
@@ -28,6 +28,17 @@ class Sockets(ServeTest):
         self.assertEqual((status, out), (0, ""), err)
         self.assertIn("every user of this machine", err)
         self.assertFalse(os.path.exists(s.where["socket"]))
+
+    def test_what_lacks_descriptors_says_how_to_get_more(self):
+        told = []
+        for most in range(5, 20):
+            s = Server(self, preexec_fn=lambda n=most: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)))
+            if s.where:
+                break
+            told.append(s.errors)
+        self.assertTrue(s.where)
+        self.assertEqual([t for t in told if "close some, or raise the limit (ulimit -n)" not in t], [])
+        self.assertGreater(len(told), 2)
 
     def test_a_page_alone_needs_no_folder_for_a_socket(self):
         s = self.serve("--http", "0", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})

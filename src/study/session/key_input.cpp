@@ -43,7 +43,8 @@ detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
     for (const keypad& k : keypads)
         all = all && add(k.descriptor());
     if (!all)
-        throw error(error_kind::runtime, "epoll", std::strerror(errno));
+        throw error(error_kind::runtime, "epoll", std::strerror(errno),
+                    "raise the limit of open files (ulimit -n)");
     static_cast<void>(add(STDIN_FILENO));
     return any;
 }
