@@ -7,8 +7,10 @@
 #include <numbers>
 #include <vector>
 
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/policies/policy.hpp>
+#include <boost/math/special_functions/owens_t.hpp>
 #include <boost/math/tools/roots.hpp>
 
 #include "study/random/random.hpp"
@@ -20,6 +22,7 @@ namespace {
 // Policy that computes in double; tests.cpp has the reason.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using normal = boost::math::normal_distribution<double, in_double>;
+using binomial = boost::math::binomial_distribution<double, in_double>;
 
 double z(double rate)
 {
@@ -36,6 +39,20 @@ double log_likelihood(std::size_t k, std::size_t n)
     return part(k) + part(n - k);
 }
 
+// Share of right answers to three stimuli without a difference.
+constexpr double third = 1.0 / 3.0;
+
+// Returns 2 ln of the likelihood ratio of a participant's answers to three stimuli.
+double likelihood_ratio(const right_count& c)
+{
+    const auto right = static_cast<double>(c.right);
+    const auto all = static_cast<double>(c.trials);
+    if (right <= third * all)
+        return 0.0;
+    return 2.0 * (log_likelihood(c.right, c.trials) - right * std::log(third) -
+                  (all - right) * std::log(1.0 - third));
+}
+
 // Returns 2 ln of the likelihood ratio of a participant. If hits are above false alarms, the model fits any
 // two rates by some d' and criterion. Otherwise d' = 0 is the most likely.
 double likelihood_ratio(const difference_counts& c)
@@ -46,9 +63,10 @@ double likelihood_ratio(const difference_counts& c)
                   log_likelihood(c.hits + c.false_alarms, c.different + c.same));
 }
 
-// Likelihood ratios of a participant whose answers "different" fall on the pairs at random.
+// Likelihood ratios of a participant whose answers have nothing to do with the stimuli.
 class drawn_ratios {
 public:
+    // The answers "different" fall on the pairs at random.
     explicit drawn_ratios(const difference_counts& c)
     {
         const std::size_t answers = c.hits + c.false_alarms;
@@ -57,10 +75,20 @@ public:
         double sum = 0.0;
         for (std::size_t hits = answers - std::min(answers, c.same); hits <= most; ++hits) {
             const std::size_t others = answers - hits;
-            ratios_.push_back(likelihood_ratio({hits, c.different, others, c.same}));
+            ratios_.push_back(likelihood_ratio(difference_counts{hits, c.different, others, c.same}));
             up_to_.push_back(sum += chance);
             chance *= static_cast<double>((c.different - hits) * others) /
                       static_cast<double>((hits + 1) * (c.same - others + 1));
+        }
+    }
+    // A third of the answers is right by chance.
+    explicit drawn_ratios(const right_count& c)
+    {
+        const auto trials = static_cast<double>(c.trials);
+        double sum = 0.0;
+        for (std::size_t right = 0; right <= c.trials; ++right) {
+            ratios_.push_back(likelihood_ratio(right_count{right, c.trials}));
+            up_to_.push_back(sum += boost::math::pdf(binomial(trials, third), static_cast<double>(right)));
         }
     }
 
@@ -71,9 +99,34 @@ public:
     }
 
 private:
-    std::vector<double> ratios_ = {}; ///< by hits
-    std::vector<double> up_to_ = {};  ///< chance of so many hits or fewer, times a constant
+    std::vector<double> ratios_ = {}; ///< by hits or right answers
+    std::vector<double> up_to_ = {};  ///< chance of so many or fewer, times a constant
 };
+
+// Tests the ratios of all participants against those of simulated studies.
+template <class Counts>
+std::optional<difference_test> test_ratios(std::span<const Counts> people, std::string_view seed)
+{
+    constexpr std::size_t studies = 2000;
+    if (people.empty())
+        return {};
+    double found = 0.0;
+    std::vector<drawn_ratios> drawn;
+    for (const Counts& c : people) {
+        found += likelihood_ratio(c);
+        drawn.emplace_back(c);
+    }
+    random_numbers r(seed);
+    std::size_t as_large = 1;
+    for (std::size_t i = 0; i < studies; ++i) {
+        double sum = 0.0;
+        for (const drawn_ratios& one : drawn)
+            sum += one.draw(r);
+        // Rounding must not make equal answers differ.
+        as_large += sum >= found - 1e-9 * (1.0 + found) ? 1 : 0;
+    }
+    return difference_test{found, static_cast<double>(as_large) / static_cast<double>(studies + 1), studies};
+}
 
 } // namespace
 
@@ -107,28 +160,39 @@ sensitivity same_different(double hits, double false_alarms)
     return {(low + high) / 2.0, c};
 }
 
+double triangle_share(double dprime)
+{
+    // With the odd stimulus at d' of the two others, it is the farthest one if two normal variables have the
+    // same sign: their means are d' / sqrt 6, their variances 1 and their correlation -1/2.
+    return 1.0 - 4.0 * boost::math::owens_t(dprime / std::sqrt(6.0), std::numbers::sqrt3, in_double());
+}
+
+double triangle_dprime(double share)
+{
+    if (share <= third)
+        return 0.0;
+    constexpr double most = 20.0; // its share of wrong answers is below 1e-15
+    std::uintmax_t steps = 200;
+    const auto [low, high] =
+        boost::math::tools::toms748_solve([share](double d) { return triangle_share(d) - share; }, 0.0, most,
+                                          boost::math::tools::eps_tolerance<double>(48), steps);
+    return (low + high) / 2.0;
+}
+
+double corrected_third(const right_count& c)
+{
+    return (static_cast<double>(c.right) + 0.5) / (static_cast<double>(c.trials) + 1.5);
+}
+
 std::optional<difference_test> test_difference(std::span<const difference_counts> people,
                                                std::string_view seed)
 {
-    constexpr std::size_t studies = 2000;
-    if (people.empty())
-        return {};
-    double found = 0.0;
-    std::vector<drawn_ratios> drawn;
-    for (const difference_counts& c : people) {
-        found += likelihood_ratio(c);
-        drawn.emplace_back(c);
-    }
-    random_numbers r(seed);
-    std::size_t as_large = 1;
-    for (std::size_t i = 0; i < studies; ++i) {
-        double sum = 0.0;
-        for (const drawn_ratios& one : drawn)
-            sum += one.draw(r);
-        // Rounding must not make equal answers differ.
-        as_large += sum >= found - 1e-9 * (1.0 + found) ? 1 : 0;
-    }
-    return difference_test{found, static_cast<double>(as_large) / static_cast<double>(studies + 1), studies};
+    return test_ratios(people, seed);
+}
+
+std::optional<difference_test> test_oddity(std::span<const right_count> people, std::string_view seed)
+{
+    return test_ratios(people, seed);
 }
 
 std::optional<double> stevens_exponent(std::span<const double> values, std::span<const double> estimates)

@@ -35,6 +35,24 @@ struct difference_counts {
     std::size_t same = 0; ///< pairs
 };
 
+/// Returns the share of right answers of an observer with this d' who picks, of three stimuli, the one that
+/// is felt farthest from the two others: the triangular model (Ennis 1993).
+double triangle_share(double dprime);
+
+/// Returns the d' with which triangle_share() is `share`, below 1; 0 for a third and less, because the model
+/// has no smaller share.
+double triangle_dprime(double share);
+
+/// A participant's answers that were right.
+struct right_count {
+    std::size_t right = 0;
+    std::size_t trials = 0;
+};
+
+/// Returns (right + 1/2) / (trials + 3/2). Half an answer more for each of three answers keeps the share off
+/// 1, and leaves a third as it is.
+double corrected_third(const right_count& c);
+
 /// A test of whether anybody can tell the stimuli apart. A t test of d' does not work: d' is never below 0,
 /// so its mean is above 0 even without a difference.
 struct difference_test {
@@ -48,6 +66,10 @@ struct difference_test {
 /// `seed` determines the draws. Returns nothing without participants.
 std::optional<difference_test> test_difference(std::span<const difference_counts> people,
                                                std::string_view seed);
+
+/// Tests d' = 0 of the triangular model in the same way. In each simulated study every answer is right with a
+/// chance of a third.
+std::optional<difference_test> test_oddity(std::span<const right_count> people, std::string_view seed);
 
 /// Returns the exponent of Stevens's power law: the slope of log estimates over log values by least squares.
 /// Dividing by the participant's geometric mean does not change it. Returns nothing if fewer than two values
