@@ -2,6 +2,7 @@
 // Codes of stimuli and answers, as a recorder gets them. What a session that goes on takes from its table.
 #include "study/session/sync_codes.hpp"
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -158,12 +159,12 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
     const std::uint64_t first = *g.first_frame;
     // From 41: a in both intervals, b in both, the answers 1 and 2, void.
     CHECK(heard[0] == std::pair{43U, first - 9 * bit});
-    CHECK(heard[1] == std::pair{42U, first + c.p.stimuli.second(t) - 9 * bit});
+    CHECK(heard[1] == std::pair{42U, first + c.p.stimuli.starts(t)[1] - 9 * bit});
     CHECK(heard[2].first == 45);
     CHECK(heard[3].first == 47);
     for (const std::size_t method : {t.method_1, *t.method_2}) {
         const study::stimulus& s = c.p.stimuli.at(0, method);
-        const std::uint64_t from = first + (method == t.method_1 ? 0 : c.p.stimuli.second(t));
+        const std::uint64_t from = first + (method == t.method_1 ? 0 : c.p.stimuli.starts(t)[1]);
         CHECK(part(all, from * frame, s.frames * frame) ==
               rendered(score(c.p.where.tactors, s.made.plans, s.render), format_kind::s32));
     }
@@ -213,6 +214,15 @@ TEST_CASE("a code that an xrun cuts has an event, because the recorder may have 
     s.there.finish();
 }
 
+// Returns the numbers of three stimuli, of which so many have begun.
+std::array<study::due_number, 3> list_due(std::size_t begun)
+{
+    std::array<study::due_number, 3> all{{{7}, {9}, {8}}};
+    for (std::size_t i = begun; i < all.size(); ++i)
+        all[i].from_ns = std::numeric_limits<std::int64_t>::max();
+    return all;
+}
+
 TEST_CASE("lines show the number of each pulse, another line along with it")
 {
     std::vector<int> shown;
@@ -239,13 +249,15 @@ TEST_CASE("lines show the number of each pulse, another line along with it")
         lines.push_back(std::make_unique<fake_lines>(shown));
         study::coded_pulse pulse(std::move(lines), std::make_unique<fake_out>(shown));
         CHECK(pulse.set(true));
-        pulse.expect(7, 9, std::numeric_limits<std::int64_t>::max());
+        pulse.expect(list_due(1));
         CHECK(pulse.set(true));
         CHECK(pulse.set(false));
-        pulse.expect(7, 9, 0);
-        CHECK(pulse.set(true));
+        for (const std::size_t begun : {2U, 3U}) {
+            pulse.expect(list_due(begun));
+            CHECK(pulse.set(true));
+        }
     }
-    CHECK(shown == std::vector<int>{0, -1, 7, -1, 0, -2, 9, -1, 0, -2});
+    CHECK(shown == std::vector<int>{0, -1, 7, -1, 0, -2, 9, -1, 8, -1, 0, -2});
 }
 
 // A terminal that stands for a trigger box. The kernel hands its bytes over a while after they were written.
@@ -286,10 +298,10 @@ TEST_CASE("a serial box gets each number as a byte, and a 0 when its time is ove
         study::coded_pulse pulse(std::move(port), nullptr);
         CHECK(pulse.set(true)); // has no number: of the walk, of practice
         CHECK(pulse.set(false));
-        pulse.expect(7, 9, std::numeric_limits<std::int64_t>::max());
+        pulse.expect(std::vector<study::due_number>{{7}});
         CHECK(pulse.set(true));
         CHECK(pulse.set(false));
-        pulse.expect(7, 9, 0);
+        pulse.expect(list_due(2));
         CHECK(pulse.set(true));
         CHECK(b.read(4) == std::vector<unsigned>{0, 7, 0, 9});
         // The bytes that a terminal changes or takes for itself, and all others.

@@ -485,8 +485,16 @@ TEST_CASE("each stimulus of a pair sounds as its stroke with the options of its 
     both.insert(both.end(), second.begin(), second.end());
     const score pair = all.make_score({0, 0, 1});
     CHECK(pair.frames() == all.frames({0, 0, 1}));
-    CHECK(pair.starts() == std::vector<std::uint64_t>{0, all.second({0, 0, 1})});
+    CHECK(pair.starts() == all.starts({0, 0, 1}));
     CHECK(samples(pair) == both);
+
+    both.resize(both.size() + 480 * frame);
+    const std::vector<std::byte> third = samples(rough);
+    both.insert(both.end(), third.begin(), third.end());
+    const score three = all.make_score({0, 0, 1, 0});
+    CHECK(three.frames() == all.frames({0, 0, 1, 0}));
+    CHECK(three.starts() == all.starts({0, 0, 1, 0}));
+    CHECK(samples(three) == both);
 }
 
 TEST_CASE("of two intervals one sounds, and the other is silence that is as long")
@@ -512,7 +520,7 @@ TEST_CASE("of two intervals one sounds, and the other is silence that is as long
         };
         const bool silence_first = d.methods[t.method_1].name == "none";
         CHECK(sounds(0) == !silence_first);
-        CHECK(sounds(all.second(t)) == silence_first);
+        CHECK(sounds(all.starts(t)[1]) == silence_first);
         played.emplace(*find_value(d, t), silence_first);
     }
     CHECK(played.size() == 4);

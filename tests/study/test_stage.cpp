@@ -35,7 +35,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
         const study::stimulus& first = stimuli.at(0, t.method_1);
         const study::stimulus& second = stimuli.at(0, *t.method_2);
         CHECK(g.frames == first.frames + gap + second.frames);
-        CHECK(stimuli.second(t) == first.frames + gap);
+        CHECK(stimuli.starts(t)[1] == first.frames + gap);
         const std::vector<std::byte> all = s.dac.captured();
         const auto piece = [&](std::size_t from, std::size_t n) {
             return part(all, from * frame, n * frame);
@@ -45,7 +45,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
         };
         CHECK(piece(*g.first_frame, first.frames) == alone(first));
         CHECK_FALSE(sounds(piece(*g.first_frame + first.frames, gap)));
-        CHECK(piece(*g.first_frame + stimuli.second(t), second.frames) == alone(second));
+        CHECK(piece(*g.first_frame + stimuli.starts(t)[1], second.frames) == alone(second));
         CHECK_FALSE(sounds(piece(*g.first_frame - rate / 10, rate / 10))); // the lead
     }
     s.there.finish();

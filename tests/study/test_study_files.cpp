@@ -109,6 +109,8 @@ TEST_CASE("an incomplete last plan makes a line a cut off one")
     CHECK(cut_in_plan("method_2\tplan_2\tplan_1", "n/a\tn/a\tn/a"));
     CHECK_FALSE(cut_in_plan("method_2\tplan_2\tplan_1", "n/a\tn/a\t" + hash));
     CHECK_FALSE(cut_in_plan("plan_1\tnote", hash + "\tn"));
+    CHECK(cut_in_plan("method_3\tplan_3", "b\t" + hash.substr(1)));
+    CHECK_FALSE(cut_in_plan("method_3\tplan_3", "b\t" + hash));
 }
 
 std::string refusal(const std::string& text)

@@ -60,13 +60,15 @@ struct listed_trial {
 template <class Io, either<listed_trial> Trial>
 void members(Io& io, Trial& v)
 {
-    constexpr about methods{"methods of the stimuli; the second is null if there is only one stimulus"};
+    constexpr about methods{"methods of the stimuli; the second is null if there is only one stimulus, the "
+                            "third is only in runs that have it"};
     constexpr about plans{"SHA-256 of the stimuli's plans"};
     const study::trial_row& r = v.row;
     io("trial", r.trial, {"place, from 1", detail::above_0});
     io("motion", r.motion, {"target"});
     io("method_1", r.method_1, methods);
     io.or_null("method_2", detail::omit_empty(r.method_2), methods);
+    io("method_3", detail::omit_empty(r.method_3), methods);
     io.or_null("value", r.value,
                {"value of the comparison, in a run that varies one; null if the answers choose it"});
     io.or_null("track", r.track, {"track of an adaptive run, from 1; else null", detail::above_0});
@@ -75,6 +77,7 @@ void members(Io& io, Trial& v)
     io("rest_s", v.rest_s, {"pause before the trial", detail::from_0});
     io("plan_1", r.plan_1, plans);
     io.or_null("plan_2", detail::omit_empty(r.plan_2), plans);
+    io("plan_3", detail::omit_empty(r.plan_3), plans);
 }
 
 struct counted_value {
@@ -284,6 +287,12 @@ std::string time_text(const study::run_time& t)
     return text;
 }
 
+// Returns a cell of the column that only runs with three stimuli have.
+std::string third_column(const study::run_definition& r, const std::string& text)
+{
+    return r.stimuli > 2 ? fmt::format("{:<16} ", text) : "";
+}
+
 std::string level_text(const render_options& o)
 {
     return o.sl_db ? fmt::format("{} dB SL", *o.sl_db) : fmt::format("{} dBFS", o.level_dbfs);
@@ -327,8 +336,8 @@ void print_dry_run_text(const study::prepared_experiment& p)
                          const std::string& place) {
         const study::trial_row r = study::planned_row(p, run, t, {});
         const std::optional<double> v = find_planned_value(p, t);
-        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>8} {:>7.3f}\n", place, r.motion, r.method_1,
-            r.method_2.empty() ? "-" : r.method_2,
+        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {}{:>8} {:>7.3f}\n", place, r.motion, r.method_1,
+            r.method_2.empty() ? "-" : r.method_2, third_column(run, r.method_3),
             v             ? plain_number(*v)
             : t.track > 0 ? fmt::format("track {}", t.track)
                           : "-",
@@ -347,8 +356,8 @@ void print_dry_run_text(const study::prepared_experiment& p)
                 fmt::format("{} in {}", value ? plain_number(*value) : "none", counted(trials, "trial")));
         if (!values.empty())
             say(stdout, "{}", wrapped(r.outline.vary + ": ", fmt::format("{}", fmt::join(values, ", "))));
-        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>8} {:>7}\n", "trial", "motion", "method_1", "method_2",
-            "value", "s");
+        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {}{:>8} {:>7}\n", "trial", "motion", "method_1", "method_2",
+            third_column(r, "method_3"), "value", "s");
         for (const study::planned_trial& t : s.practice)
             row(r, t, "practice");
         for (std::size_t k = 0; k < s.trials.size(); ++k)

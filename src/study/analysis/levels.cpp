@@ -165,7 +165,7 @@ std::vector<compared_factor> list_factors(const run_outline& run, const run_peop
     if (const auto plan = own.plan_cells(run)) {
         if (plan->figure.empty())
             return {};
-        if (own.has_one_method() && plan->methods.size() > (tests_difference(run) ? 2U : 1U))
+        if (own.has_one_method(run) && plan->methods.size() > (tests_difference(run) ? 2U : 1U))
             all.push_back(
                 {"method", split_by_method(run), {plan->figure}, measure_cells(run, plan_one_method(*plan))});
         if (std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
@@ -178,7 +178,7 @@ std::vector<compared_factor> list_factors(const run_outline& run, const run_peop
     std::vector<std::string> figures;
     for (const named_value& v : measure({}))
         figures.push_back(v.name.front());
-    if (own.has_one_method())
+    if (own.has_one_method(run))
         all.push_back({"method", split_by_method(run), figures, measure});
     all.push_back({"session", split_by_session(people), figures, measure});
     return all;

@@ -46,6 +46,8 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
             one.method_1 = place_in(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
             if (t.method_2)
                 one.method_2 = place_in(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
+            if (const auto odd = find_odd(t))
+                one.odd = *odd;
             if (d.methods[t.method_1].name == standard_name)
                 one.method_1 = one.method_2;
             p.trials.push_back(one);

@@ -393,7 +393,8 @@ bool is_cut_in_plan(const text_table& t)
     const std::size_t length = t.cell(row, column).value_or("").size();
     if (column == "plan_1")
         return length != sha256_digits;
-    return column == "plan_2" && length != (t.cell(row, "method_2") ? sha256_digits : 0);
+    const bool is_plan = column == "plan_2" || column == "plan_3";
+    return is_plan && length != (t.cell(row, "method_" + column.substr(5)) ? sha256_digits : 0);
 }
 
 text_table read_trials(const std::filesystem::path& table)

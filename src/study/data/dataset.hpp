@@ -156,6 +156,7 @@ struct trial_row {
     std::string motion = {};
     std::string method_1 = {};
     std::string method_2 = {};
+    std::string method_3 = {};
     std::string response = {};
     std::string target = {}; ///< target that the task compares the answer with; usually empty
     std::optional<double> response_time_s = {};
@@ -169,9 +170,27 @@ struct trial_row {
     unsigned stream = 0; ///< number of the opening of the device, from 1
     std::optional<std::uint64_t> frame_1 = {};
     std::optional<std::uint64_t> frame_2 = {};
+    std::optional<std::uint64_t> frame_3 = {};
     std::string plan_1 = {}; ///< SHA-256 of the first stimulus' plan
     std::string plan_2 = {};
+    std::string plan_3 = {};
 };
+
+/// Cells of a trial that each stimulus has.
+struct stimulus_cells {
+    std::string trial_row::*method;
+    std::optional<std::uint64_t> trial_row::*frame;
+    std::string trial_row::*plan;
+};
+
+/// Greatest number of stimuli of a trial.
+inline constexpr std::size_t most_stimuli = 3;
+
+/// Cells of the stimuli, in the order in which they play.
+inline constexpr std::array<stimulus_cells, most_stimuli> stimuli_cells{
+    {{&trial_row::method_1, &trial_row::frame_1, &trial_row::plan_1},
+     {&trial_row::method_2, &trial_row::frame_2, &trial_row::plan_2},
+     {&trial_row::method_3, &trial_row::frame_3, &trial_row::plan_3}}};
 
 /// Part of the program that needs a column when it reads tables.
 enum class column_use {
@@ -180,6 +199,7 @@ enum class column_use {
     nobody,   ///< nothing needs it; tables of older versions lack it
     some,     ///< nothing needs it; tables have it if the study has values for it
     values,   ///< the analysis of runs that vary a value; other runs lack it
+    third,    ///< sessions that resume, and the analysis; tables of trials with fewer stimuli lack it
     own,      ///< the analysis of one task, and sessions that resume; other tasks lack it
 };
 
@@ -197,7 +217,7 @@ struct trial_column {
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 24> trial_columns;
+extern const std::array<trial_column, 27> trial_columns;
 
 /// Returns true if tables of the run have the column or may have it.
 bool has_column(const run_outline& run, const trial_column& c);
@@ -223,6 +243,7 @@ struct trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
     std::size_t method_2 = 0; ///< second method, only in choose
+    unsigned odd = 0;         ///< oddity: place of the stimulus that differs, from 1
     unsigned response = 0;    ///< answer as in the table (identify: index of the motion); unused in estimate
     double estimate = 0.0;    ///< estimate: number that the participant gave
     drawing drawn = {};       ///< locate, trace: answer

@@ -103,7 +103,7 @@ void add_cells(trial_cells& into, const text_table& t, std::size_t row)
 
 } // namespace
 
-const std::array<trial_column, 24> trial_columns{{
+const std::array<trial_column, 27> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration",
@@ -118,6 +118,7 @@ const std::array<trial_column, 24> trial_columns{{
      column_use::analysis},
     {"method_1", "Method of the first stimulus", "", &trial_row::method_1, column_use::analysis},
     {"method_2", "Method of the second stimulus; n/a if there is only one", "", &trial_row::method_2},
+    {"method_3", "Method of the third stimulus", "", &trial_row::method_3, column_use::third},
     {"response", "", "", &trial_row::response, column_use::analysis},
     {"response_time", "From the last stimulus frame at the DAC to the answer", "s",
      &trial_row::response_time_s, column_use::analysis},
@@ -137,13 +138,17 @@ const std::array<trial_column, 24> trial_columns{{
     {"stream", "Counts openings of the device, from 1", "", &trial_row::stream},
     {"frame_1", "First frame of the first stimulus in that stream", "", &trial_row::frame_1},
     {"frame_2", "First frame of the second stimulus in that stream", "", &trial_row::frame_2},
+    {"frame_3", "First frame of the third stimulus in that stream", "", &trial_row::frame_3,
+     column_use::third},
     {"plan_1", "SHA-256 of the first stimulus' plan: sourcedata/sub-CODE/plans", "", &trial_row::plan_1},
     {"plan_2", "SHA-256 of the second stimulus' plan", "", &trial_row::plan_2},
+    {"plan_3", "SHA-256 of the third stimulus' plan", "", &trial_row::plan_3, column_use::third},
 }};
 
 bool has_column(const run_outline& run, const trial_column& c)
 {
-    return c.use == column_use::values ? !run.vary.empty()
+    return c.use == column_use::values  ? !run.vary.empty()
+           : c.use == column_use::third ? task_in(run).about().has_three_stimuli
            : c.use == column_use::own ? task_in(run).about().column == c.name && task_in(run).uses_column(run)
                                       : true;
 }

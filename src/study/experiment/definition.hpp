@@ -98,7 +98,7 @@ struct run_definition {
     std::vector<std::size_t> methods = {};
     std::map<std::size_t, method_variants> variants = {}; ///< variants by index of the method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
-    bool pairs = false;                                   ///< true if a trial has two stimuli
+    std::size_t stimuli = 1;                              ///< number of stimuli of a trial
     adaptive_options adaptive = {};
     unsigned max_in_a_row = 3; ///< greatest number of trials of one motion in a row
     std::string blocks = {};   ///< "methods" or "motions": one block for each; empty if all trials are mixed

@@ -160,6 +160,22 @@ stroke find_target(const motion_definition& motion, const method_definition& met
 
 } // namespace
 
+std::vector<std::size_t> planned_trial::list_methods() const
+{
+    std::vector<std::size_t> all{method_1};
+    for (const auto& more : {method_2, method_3})
+        if (more)
+            all.push_back(*more);
+    return all;
+}
+
+std::optional<unsigned> find_odd(const planned_trial& t)
+{
+    if (!t.method_3)
+        return {};
+    return t.method_1 == *t.method_2 ? 3U : t.method_1 == *t.method_3 ? 2U : 1U;
+}
+
 std::uint64_t default_seed(std::string_view code)
 {
     const detail::sha256_digest d = detail::sha256(code);
@@ -492,14 +508,20 @@ const stimulus& stimulus_set::at(std::size_t motion, std::size_t method) const
     return *find(motion, method);
 }
 
-std::uint64_t stimulus_set::second(const planned_trial& t) const
+std::vector<std::uint64_t> stimulus_set::starts(const planned_trial& t) const
 {
-    return at(t.motion, t.method_1).frames + gap_frames_;
+    std::vector<std::uint64_t> all;
+    std::uint64_t next = 0;
+    for (const std::size_t method : t.list_methods()) {
+        all.push_back(next);
+        next += at(t.motion, method).frames + gap_frames_;
+    }
+    return all;
 }
 
 std::uint64_t stimulus_set::frames(const planned_trial& t) const
 {
-    return t.method_2 ? second(t) + at(t.motion, *t.method_2).frames : at(t.motion, t.method_1).frames;
+    return starts(t).back() + at(t.motion, t.list_methods().back()).frames;
 }
 
 score stimulus_set::make_score(const planned_trial& t, const std::optional<drive_limits>& limits) const
@@ -512,7 +534,12 @@ score stimulus_set::make_score(const planned_trial& t, const std::optional<drive
     };
     if (!t.method_2)
         return alone(t.method_1);
-    return synth::join_scores({{alone(t.method_1), 0}, {alone(*t.method_2), second(t)}});
+    const std::vector<std::size_t> methods = t.list_methods();
+    const std::vector<std::uint64_t> begin = starts(t);
+    std::vector<synth::placed_score> parts;
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        parts.push_back({alone(methods[i]), begin[i]});
+    return synth::join_scores(parts);
 }
 
 } // namespace tactor::study

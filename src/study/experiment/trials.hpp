@@ -27,8 +27,12 @@ struct planned_trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
     std::optional<std::size_t> method_2 = {}; ///< missing if the trial has one stimulus
+    std::optional<std::size_t> method_3 = {}; ///< missing if the trial has fewer than three
     double rest_s = 0.0;                      ///< pause before the trial
     unsigned track = 0;                       ///< track of an adaptive run, from 1; see set_value()
+
+    /// Lists the methods of the stimuli, in the order in which they play.
+    std::vector<std::size_t> list_methods() const;
 
     friend bool operator==(const planned_trial&, const planned_trial&) = default;
 };
@@ -43,6 +47,10 @@ struct run_sequence {
 
 /// Sets the value of a trial in an adaptive run. `place`: index into the run's values.
 void set_value(planned_trial& t, const run_definition& r, std::size_t place);
+
+/// Returns the place, from 1, of the stimulus that differs from the two others; nothing unless a trial has
+/// three.
+std::optional<unsigned> find_odd(const planned_trial& t);
 
 /// Returns the value of a trial's comparison; nothing if the run varies nothing or the trial has no stimulus.
 std::optional<double> find_value(const experiment_definition& d, const planned_trial& t);
@@ -254,9 +262,10 @@ public:
     const std::vector<stimulus>& all() const noexcept { return all_; }
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-    /// Return the length of a trial including the gap, and the start of the second stimulus, in frames.
+    /// Returns the length of a trial including the gaps, in frames.
     std::uint64_t frames(const planned_trial& t) const;
-    std::uint64_t second(const planned_trial& t) const;
+    /// Returns the start of each stimulus of a trial, in frames.
+    std::vector<std::uint64_t> starts(const planned_trial& t) const;
     /// Returns the stimuli of a trial in one score, exact to the frame, each with its own render options. The
     /// renderer applies `limits`, if any.
     score make_score(const planned_trial& t, const std::optional<drive_limits>& limits = {}) const;

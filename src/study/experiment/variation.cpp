@@ -172,14 +172,17 @@ void set_value(planned_trial& t, const run_definition& r, std::size_t place)
                 }
     };
     set(t.method_1);
-    if (t.method_2)
-        set(*t.method_2);
+    for (auto* more : {&t.method_2, &t.method_3})
+        if (*more)
+            set(**more);
 }
 
 std::optional<double> find_value(const experiment_definition& d, const planned_trial& t)
 {
-    const bool standard_first = t.method_2 && d.methods[t.method_1].name == standard_name;
-    return d.methods[standard_first ? *t.method_2 : t.method_1].value;
+    const std::vector<std::size_t> all = t.list_methods();
+    const auto compared = std::ranges::find_if(
+        all, [&d](std::size_t method) { return d.methods[method].name != standard_name; });
+    return d.methods[compared != all.end() ? *compared : t.method_1].value;
 }
 
 } // namespace tactor::study

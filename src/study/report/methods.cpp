@@ -291,7 +291,7 @@ json describe_design(const session_facts& s)
     if (!s.design)
         return json::object();
     const experiment_definition& d = *s.design;
-    json all{{"pairs", std::ranges::any_of(d.runs, &run_definition::pairs)},
+    json all{{"pairs", std::ranges::any_of(d.runs, [](const auto& r) { return r.stimuli > 1; })},
              {"gap_s", d.gap_s},
              {"rest_s",
               d.rest.is_random() ? json(range_text({d.rest.least_s, d.rest.most_s})) : pause(d.rest.least_s)},

@@ -70,10 +70,10 @@ trial_counts check_trials(const fs::path& folder, const fs::path& table, const s
         return count;
     const text_table t(folder / table);
     for (std::size_t i = 0; i < t.rows(); ++i) {
-        if (!s.stimuli.empty()) {
-            check_plan(t, i, s, "method_1", "plan_1");
-            check_plan(t, i, s, "method_2", "plan_2");
-        }
+        if (!s.stimuli.empty())
+            for (const auto& [method, plan] :
+                 {std::pair("method_1", "plan_1"), {"method_2", "plan_2"}, {"method_3", "plan_3"}})
+                check_plan(t, i, s, method, plan);
         ++(t.truth(i, "void") ? count.voids : count.valid);
         if (!t.truth(i, "void"))
             continue;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -53,18 +53,18 @@ const std::array<event_row, code_events>& list_events()
     return rows;
 }
 
-// Returns the intervals (1, 2) of an event in the cells of a run; 1 if the event does not occur.
+// Returns the intervals (from 1) of an event in the cells of a run; 1 if the event does not occur.
 std::vector<unsigned> list_intervals(const experiment_definition& d, const std::vector<planned_trial>& cells,
                                      code_event e)
 {
-    std::vector<unsigned> all;
-    for (const unsigned interval : {1U, 2U})
-        if (std::ranges::any_of(cells, [&](const planned_trial& t) {
-                const std::optional<std::size_t> played = interval == 1 ? t.method_1 : t.method_2;
-                return played && find_event(d.methods[*played]) == e;
-            }))
-            all.push_back(interval);
-    return all.empty() ? std::vector{1U} : all;
+    std::set<unsigned> all;
+    for (const planned_trial& t : cells) {
+        unsigned interval = 0;
+        for (const std::size_t method : t.list_methods())
+            if (++interval; find_event(d.methods[method]) == e)
+                all.insert(interval);
+    }
+    return all.empty() ? std::vector{1U} : std::vector(all.begin(), all.end());
 }
 
 // Lists the events of a run except answers, in the order of their numbers.
@@ -126,7 +126,7 @@ std::string code_numbers::describe(const experiment_definition& d, const coded_e
             parts.push_back(fmt::format("method \"{}\"", d.methods[m.made_of.value_or(e.method)].name));
         else if (part == "value" && is_stimulus && m.value)
             parts.push_back(fmt::format("{} {}", r.vary, plain_number(*m.value)));
-        else if (part == "interval" && is_stimulus && e.run->pairs)
+        else if (part == "interval" && is_stimulus && e.run->stimuli > 1)
             parts.push_back(fmt::format("interval {}", e.interval));
         else if (part == "answer" && e.event == code_event::answer)
             if (std::string answer = task_in(r).name_response(r, e.response); !answer.empty())

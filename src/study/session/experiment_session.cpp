@@ -154,9 +154,9 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
     if (!too_long && !synth::power_acts(s))
         return;
     const motion_definition& m = d.motions[t.motion];
-    std::string by = fmt::format("method \"{}\"", d.methods[t.method_1].name);
-    if (t.method_2)
-        by += fmt::format(" and then with \"{}\"", d.methods[*t.method_2].name);
+    std::string by;
+    for (const std::size_t method : t.list_methods())
+        by += fmt::format("{} \"{}\"", by.empty() ? "method" : " and then with", d.methods[method].name);
     throw error(error_kind::bad_input, m.where,
                 fmt::format("motion \"{}\" with {}: {} would limit it", m.name, by,
                             too_long ? fmt::format("max_drive_s in [limits], {} s in {} s for one tactor,",
@@ -170,14 +170,14 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
                   const stimulus_set& stimuli, const drive_limits& l, unsigned rate)
 {
-    std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
+    std::set<std::pair<std::size_t, std::vector<std::size_t>>> seen;
     for (const run_sequence& r : runs)
         for (const auto* list : {&r.practice, &r.trials})
             for (planned_trial t : *list)
                 for (std::size_t v = 0; v < (t.track > 0 ? d.runs[r.run].outline.values.size() : 1); ++v) {
                     if (t.track > 0)
                         set_value(t, d.runs[r.run], v);
-                    if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
+                    if (seen.insert({t.motion, t.list_methods()}).second)
                         check_limits(d, t, stimuli, l, rate);
                 }
 }
@@ -508,16 +508,23 @@ trial_row planned_row(const prepared_experiment& p, const run_definition& r, con
     row.duration_s = static_cast<double>(p.stimuli.frames(t)) / p.render.rate;
     row.motion = d.motions[t.motion].name;
     row.target = task_in(r.outline).write_target(d.motions[t.motion]);
-    row.method_1 = d.methods[t.method_1].name;
-    row.plan_1 = p.stimuli.at(t.motion, t.method_1).hash;
+    const std::vector<std::size_t> methods = t.list_methods();
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        row.*stimuli_cells[i].method = d.methods[methods[i]].name;
+        row.*stimuli_cells[i].plan = p.stimuli.at(t.motion, methods[i]).hash;
+    }
     row.value = find_value(d, t);
     if (t.track > 0)
         row.track = t.track;
-    if (t.method_2) {
-        row.method_2 = d.methods[*t.method_2].name;
-        row.plan_2 = p.stimuli.at(t.motion, *t.method_2).hash;
-    }
     return row;
+}
+
+void note_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
+                 std::optional<std::uint64_t> first_frame, std::uint64_t frames)
+{
+    for (std::size_t i = 0; first_frame && i < begin.size(); ++i)
+        if (i == 0 || frames > begin[i])
+            row.*stimuli_cells[i].frame = *first_frame + begin[i];
 }
 
 void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s)
@@ -541,7 +548,9 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             values->choose(t);
             const trial_row planned = planned_row(p, r, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
-                   row.plan_1 == planned.plan_1 && row.plan_2 == planned.plan_2;
+                   std::ranges::all_of(stimuli_cells, [&](const stimulus_cells& c) {
+                       return row.*c.plan == planned.*c.plan;
+                   });
         }
         if (!same)
             throw error(error_kind::bad_input, fmt::format("run \"{}\": line {}", r.outline.name, i + 2),

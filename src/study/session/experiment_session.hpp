@@ -102,6 +102,11 @@ nlohmann::ordered_json describe_session(const prepared_experiment& p,
 trial_row planned_row(const prepared_experiment& p, const run_definition& r, const planned_trial& t,
                       const pending_trial& which);
 
+/// Sets the first frame of each stimulus that began. `begin`: start of each stimulus in its trial, of which
+/// `frames` frames were played.
+void note_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
+                 std::optional<std::uint64_t> first_frame, std::uint64_t frames);
+
 /// Sets the response of a line, its time, and whether it came early.
 void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s);
 

@@ -110,6 +110,8 @@ std::string page_dialogue::state(std::int64_t now_ns) const
         j["choices"] = screen_.choices;
     if (screen_.is_line)
         j["visual"] = true;
+    if (screen_.are_stimuli)
+        j["are_stimuli"] = true;
     if (screen_.entry == entry_kind::text)
         j["entry"] = {{"most", most_text_characters}};
     if (screen_.entry == entry_kind::estimate)

@@ -58,7 +58,8 @@ struct page_screen {
     std::string question = {};
     std::vector<std::string> choices = {}; ///< possible answers; the page shows an empty one as its number
     std::string keys = {};                 ///< a key for each choice; may be empty
-    bool is_line = false; ///< true if the choices are places on a line, from 0 on, without numbers
+    bool is_line = false;     ///< true if the choices are places on a line, from 0 on, without numbers
+    bool are_stimuli = false; ///< true if the choices are the stimuli of the trial, in their places
     entry_kind entry = entry_kind::none;     ///< kind of typed answer, in place of choices
     drawing_kind draws = drawing_kind::none; ///< kind of drawing, in place of choices
     unsigned lowest = 1;                     ///< smallest number that may be entered

@@ -72,7 +72,7 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
 {
     const run_definition& r = p.run_at(s.run);
     page_screen shown = idle_screen(p, "stimulus");
-    shown.stimuli = r.pairs ? 2 : 0;
+    shown.stimuli = r.stimuli > 1 ? static_cast<unsigned>(r.stimuli) : 0;
     if (names_stimuli(p.definition, r))
         shown.names = r.choices;
     shown.playing = playing;
@@ -397,10 +397,15 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
 {
     if (!t.method_2)
         return [](std::uint64_t) {};
-    const stimulus_set& all = p_.stimuli;
-    // The gap has a mark, too, so that the participant sees both stimuli begin and end.
-    const std::array<std::pair<std::uint64_t, unsigned>, 3> changes{
-        {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
+    const std::vector<std::size_t> methods = t.list_methods();
+    const std::vector<std::uint64_t> begin = p_.stimuli.starts(t);
+    // Each gap has a mark, too, so that the participant sees all stimuli begin and end.
+    std::vector<std::pair<std::uint64_t, unsigned>> changes;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        changes.emplace_back(begin[i], i + 1);
+        if (i + 1 < methods.size())
+            changes.emplace_back(begin[i] + p_.stimuli.at(t.motion, methods[i]).frames, 0);
+    }
     return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
         const run_definition& r = p_.run_at(s.run);
         for (; shown < changes.size() && frame >= changes[shown].first; ++shown) {
@@ -462,9 +467,7 @@ void person_session::trial(const session_step& s)
     trial_row row = planned_row(p_, r, t, s.which);
     row.stream = stream_;
     row.xruns = g.xruns;
-    row.frame_1 = g.first_frame;
-    if (t.method_2 && g.first_frame && g.frames > p_.stimuli.second(t))
-        row.frame_2 = *g.first_frame + p_.stimuli.second(t);
+    note_frames(row, p_.stimuli.starts(t), g.first_frame, g.frames);
     std::string flaw = g.flaw;
     std::optional<bool> right;
     if (flaw.empty()) {

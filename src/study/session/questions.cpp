@@ -163,6 +163,7 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
     shown.choices = std::move(a.labels);
     shown.keys = number_keys(shown.choices.size());
     shown.is_line = a.is_line;
+    shown.are_stimuli = r.stimuli > 2;
     if (a.shows_motions)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(draw_motion(p.definition.motions[m].strokes, layout(p.where.tactors)));

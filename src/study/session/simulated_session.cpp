@@ -125,9 +125,7 @@ private:
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
         trial_row row = planned_row(p_, r, t, s.which);
         row.stream = 1;
-        row.frame_1 = now_;
-        if (t.method_2)
-            row.frame_2 = now_ + p_.stimuli.second(t);
+        note_frames(row, p_.stimuli.starts(t), now_, p_.stimuli.frames(t));
         row.is_void = a.is_void;
         row.xruns = a.is_void ? 1 : 0;
         if (!a.is_void)

@@ -68,7 +68,7 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
         return;
     const sync_settings& sync = *e.config.sync;
     const code_settings* const c = find_codes(e);
-    const bool are_pairs = std::ranges::any_of(d.runs, [](const auto& r) { return r.pairs; });
+    const bool are_pairs = std::ranges::any_of(d.runs, [](const auto& r) { return r.stimuli > 1; });
     const std::uint64_t lead = c != nullptr ? code_frames(*c, rate) : 0;
     if (are_pairs && d.gap_s * rate < static_cast<double>(lead))
         throw error(error_kind::bad_input, c->where,
@@ -149,16 +149,22 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
     return j;
 }
 
-void coded_pulse::expect(unsigned first, unsigned second, std::int64_t second_from_ns) noexcept
+void coded_pulse::expect(std::span<const due_number> numbers) noexcept
 {
-    first_ = first;
-    second_ = second;
-    second_from_ns_ = second_from_ns;
+    for (std::size_t i = 0; i < most_stimuli; ++i) {
+        const due_number& n = numbers[std::min(i, numbers.size() - 1)];
+        due_[i].number = n.number;
+        due_[i].from_ns = n.from_ns;
+    }
 }
 
 bool coded_pulse::set(bool on) noexcept
 {
-    const unsigned due = rt::monotonic_ns() < second_from_ns_ ? first_ : second_;
+    const std::int64_t now_ns = rt::monotonic_ns();
+    unsigned due = 0;
+    for (const due_code& one : due_)
+        if (one.from_ns <= now_ns)
+            due = one.number;
     const bool done = show(on ? due : 0);
     return (!out_ || out_->set(on)) && done;
 }
@@ -242,7 +248,7 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
 
 coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const
 {
-    const std::size_t method = place == 2 ? t.method_2.value() : t.method_1;
+    const std::size_t method = t.list_methods().at(place - 1);
     return {find_event(p_.definition.methods[method]), &p_.run_at(s.run), t.motion, method, place};
 }
 
@@ -261,27 +267,31 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
 {
     const std::uint64_t lead = this->lead(s);
     const bool sends = code_ != nullptr && !s.practice;
-    const unsigned first = sends ? number(find_stimulus(s, t, 1)) : 0;
-    const unsigned second = sends ? number(find_stimulus(s, t, t.method_2 ? 2 : 1)) : 0;
+    const std::vector<std::uint64_t> begin = p_.stimuli.starts(t);
+    std::vector<unsigned> numbers;
+    for (unsigned place = 1; place <= begin.size(); ++place)
+        numbers.push_back(sends ? number(find_stimulus(s, t, place)) : 0);
     std::vector<synth::placed_score> parts{{stimuli, lead}};
-    if (lead > 0)
-        parts.push_back({make(first), 0});
-    if (lead > 0 && t.method_2)
-        parts.push_back({make(second), p_.stimuli.second(t)});
+    for (std::size_t i = 0; lead > 0 && i < begin.size(); ++i)
+        parts.push_back({make(numbers[i]), begin[i]});
     const double rate = p_.render.rate;
     if (lines_ != nullptr) {
         there_->fade_in(); // now, because its duration is unknown
-        // Changes the number halfway between the starts of both stimuli, so that a late pulse still has the
+        // Changes the number halfway between the starts of two stimuli, so that a late pulse still has the
         // right one.
-        const double until_s = stimulus_lead_s + (t.method_2 ? p_.stimuli.second(t) / 2.0 / rate : 0.0) +
-                               there_->setup().buffer_frames / rate;
-        lines_->expect(first, second, rt::monotonic_ns() + std::llround(until_s * 1e9));
+        const double first_s = stimulus_lead_s + there_->setup().buffer_frames / rate;
+        std::vector<due_number> due{{numbers[0], 0}};
+        for (std::size_t i = 1; i < begin.size(); ++i) {
+            const double from_s = first_s + static_cast<double>(begin[i - 1] + begin[i]) / 2.0 / rate;
+            due.push_back({numbers[i], rt::monotonic_ns() + std::llround(from_s * 1e9)});
+        }
+        lines_->expect(due);
     }
     const std::uint64_t missed = there_->stats().sync_missed;
     given_stimulus g = there_->give(lead > 0 ? synth::join_scores(parts) : stimuli,
                                     stimulus_lead_s - static_cast<double>(lead) / rate,
                                     [&](std::uint64_t frame) { watch(frame - std::min(frame, lead)); });
-    // A code comes before its stimulus. With the first code in front, the second code begins at second(t).
+    // A code comes before its stimulus. With the first code in front, each begins where its stimulus would.
     const std::uint64_t played = g.frames;
     const auto find_cut = [&](std::uint64_t begins, unsigned number) {
         if (!g.first_frame || played <= begins || played >= begins + lead)
@@ -290,9 +300,8 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
         const std::int64_t ns = g.started_ns + std::llround(static_cast<double>(begins) / rate * 1e9);
         note_broken(s, {broken, number, at, at, rt::unix_ns() - (rt::monotonic_ns() - ns), 0});
     };
-    find_cut(0, first);
-    if (t.method_2)
-        find_cut(p_.stimuli.second(t), second);
+    for (std::size_t i = 0; i < begin.size(); ++i)
+        find_cut(begin[i], numbers[i]);
     g.frames -= std::min(g.frames, lead);
     g.started_ns += std::llround(static_cast<double>(lead) / rate * 1e9);
     if (g.first_frame)
@@ -365,15 +374,16 @@ void sync_codes::note_stimuli(const session_step& s, const planned_trial& t, std
     if (code_ == nullptr)
         return;
     const stimulus_set& all = p_.stimuli;
-    const auto note_one = [&](unsigned place, std::uint64_t frame, std::int64_t at_ns) {
+    unsigned place = 0;
+    for (const std::uint64_t begins : all.starts(t)) {
+        if (++place > 1 && frames <= begins)
+            return;
         const coded_event e = find_stimulus(s, t, place);
-        note({to_string(e.event), number(e), frame - lead_, frame, at_ns, all.at(e.motion, e.method).frames});
-    };
-    note_one(1, frame_1, ns);
-    if (!t.method_2 || frames <= all.second(t))
-        return;
-    const auto later = std::llround(static_cast<double>(all.second(t)) / p_.render.rate * 1e9);
-    note_one(2, frame_1 + all.second(t), ns + later);
+        const std::uint64_t frame = frame_1 + begins;
+        const auto later = std::llround(static_cast<double>(begins) / p_.render.rate * 1e9);
+        note({to_string(e.event), number(e), frame - lead_, frame, ns + later,
+              all.at(e.motion, e.method).frames});
+    }
 }
 
 void sync_codes::note(code_event e, const session_step& s, const planned_trial& t, std::string_view response,

@@ -51,6 +51,12 @@ nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& al
 /// Returns the description of the tables of events, with each number and its meaning; null without codes.
 nlohmann::ordered_json describe_events(const prepared_experiment& p);
 
+/// Number that a pulse shows from a time on.
+struct due_number {
+    unsigned number = 0;      ///< 0 for none
+    std::int64_t from_ns = 0; ///< CLOCK_MONOTONIC
+};
+
 /// Outputs of the codes (GPIO lines, a serial box) in place of a line of sync pulses. Each pulse shows the
 /// present number, and also switches the line `out`, if any.
 class coded_pulse final : public enable_line {
@@ -61,9 +67,8 @@ public:
     }
     ~coded_pulse() override { static_cast<void>(coded_pulse::set(false)); }
 
-    /// Sets the number for the next pulses, and the number from `second_from_ns` (CLOCK_MONOTONIC) on; 0 for
-    /// none.
-    void expect(unsigned first, unsigned second, std::int64_t second_from_ns) noexcept;
+    /// Sets the numbers for the next pulses, in the order of their times. \pre one to most_stimuli numbers
+    void expect(std::span<const due_number> numbers) noexcept;
     bool set(bool on) noexcept override;
     /// Sets the outputs to a number at once; 0 clears them.
     bool show(unsigned number) noexcept;
@@ -71,9 +76,11 @@ public:
 private:
     std::vector<std::unique_ptr<amplifier::code_lines>> outputs_;
     std::unique_ptr<enable_line> out_;
-    std::atomic<unsigned> first_{0};
-    std::atomic<unsigned> second_{0};
-    std::atomic<std::int64_t> second_from_ns_{0};
+    struct due_code {
+        std::atomic<unsigned> number{0};
+        std::atomic<std::int64_t> from_ns{0};
+    };
+    std::array<due_code, most_stimuli> due_ = {};
 };
 
 /// Returns a source that opens the outputs of the codes together with those of the stream, and sets `lines`
@@ -146,7 +153,7 @@ private:
         std::optional<stroke_report> refused = {}; ///< report, if the stream refused the code
         session_step of = {};
     };
-    /// Returns the first or second stimulus of a trial: place 1 or 2.
+    /// Returns a stimulus of a trial. `place`: counts from 1.
     coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const;
     unsigned number(const coded_event& e) const;
     /// Notes and reports a code that was cut short: the recorder may have read another number.

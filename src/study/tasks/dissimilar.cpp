@@ -112,10 +112,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_pair(r, t, row, o);
-        const auto response = t.whole(row, "response", 0, most_different);
-        if (!response)
-            t.refuse(row, "the response is missing", "give one, or make the trial void");
-        r.response = *response;
+        r.response = read_response(t, row, 0, most_different);
     }
 
     void prepare(simulated_run& who) const override { prepare_judge(who); }
@@ -170,7 +167,7 @@ public:
     }
 
     std::vector<std::string> list_timed_methods(const run_outline&) const override { return {}; }
-    bool has_one_method() const override { return false; }
+    bool has_one_method(const run_outline&) const override { return false; }
 
     main_comparison name_comparison(const run_outline&) const override
     {

@@ -114,7 +114,7 @@ public:
         return analyse_conditions(o, people, {}, 0.0, "dprime", "Sensitivity", measure);
     }
 
-    bool has_one_method() const override { return false; }
+    bool has_one_method(const run_outline&) const override { return false; }
 
     main_comparison name_comparison(const run_outline&) const override
     {

@@ -89,6 +89,7 @@ struct main_comparison {
 struct compared_person {
     std::optional<double> value = {};             ///< missing if the participant is left out
     std::optional<difference_counts> counts = {}; ///< same-different
+    std::optional<right_count> right = {};        ///< oddity
 };
 
 /// Outcome of a study.
@@ -114,6 +115,7 @@ public:
         std::vector<std::string_view> keys = {}; ///< keys of [[run]] that only some tasks have
         std::string_view column = {};            ///< column that only its tables have; empty if none
         bool has_silences = false;               ///< true if one of a trial's two stimuli is silence
+        bool has_three_stimuli = false;          ///< true if a trial has three stimuli
     };
 
     virtual ~task() = default;
@@ -197,7 +199,7 @@ public:
     /// Lists the methods by which response times are summarised, if a trial has one method.
     virtual std::vector<std::string> list_timed_methods(const run_outline& o) const { return o.methods; }
     /// Returns true if a trial has one method, so that methods can be compared.
-    virtual bool has_one_method() const { return true; }
+    virtual bool has_one_method(const run_outline&) const { return true; }
     /// Tests whether the trial has no stimulus.
     virtual bool is_silent(const trial&) const { return false; }
 

@@ -104,7 +104,7 @@ void need_words(const toml_table& t, const run_outline& o)
 void add_comparison(std::vector<planned_trial>& cells, std::size_t motion, const method_variants& v,
                     std::size_t place, bool other_first, unsigned track)
 {
-    planned_trial t{motion, v.values[place], v.standard, 0.0, track};
+    planned_trial t{motion, v.values[place], v.standard, {}, 0.0, track};
     if (!v.silences.empty())
         t.method_2 = v.silences[place];
     if (!t.method_2 || !other_first)
@@ -148,17 +148,20 @@ void read_pair(trial& r, const text_table& t, std::size_t row, const run_outline
         t.refuse(row, "both stimuli have the same method", "give two different methods");
 }
 
-unsigned read_one_of_two(const text_table& t, std::size_t row)
+unsigned read_response(const text_table& t, std::size_t row, unsigned lowest, unsigned greatest)
 {
-    const auto response = t.whole(row, "response", 1, 2);
+    const auto response = t.whole(row, "response", lowest, greatest);
     if (!response)
         t.refuse(row, "the response is missing", "give one, or make the trial void");
     return *response;
 }
 
-namespace {
+unsigned read_one_of_two(const text_table& t, std::size_t row)
+{
+    return read_response(t, row, 1, 2);
+}
 
-// Reads one of the run's values. Other programs may round it: R rounds to 15 digits.
+// Other programs may round the value: R rounds to 15 digits.
 double read_value(const text_table& t, std::size_t row, const run_outline& o)
 {
     const auto value = t.number(row, "value");
@@ -172,8 +175,6 @@ double read_value(const text_table& t, std::size_t row, const run_outline& o)
                  fmt::format("use one of {}", fmt::join(o.values, ", ")));
     return *value;
 }
-
-} // namespace
 
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o)
 {
@@ -201,7 +202,8 @@ namespace {
 std::optional<double> find_truth(const std::vector<double>& values, const simulated_run& who,
                                  const planned_trial& t)
 {
-    if (values.size() < 2 || who.run.methods.size() < 2 || !task_in(who.run.outline).has_one_method())
+    if (values.size() < 2 || who.run.methods.size() < 2 ||
+        !task_in(who.run.outline).has_one_method(who.run.outline))
         return values.empty() ? std::nullopt : std::optional(values.front());
     const auto base = [&who](std::size_t m) { return who.definition.methods[m].made_of.value_or(m); };
     auto at = std::ranges::find(who.run.methods, base(t.method_1));
@@ -239,11 +241,11 @@ double find_exponent(const simulated_run& who, const planned_trial& t)
     return find_truth(who.truth.exponent, who, t).value() + who.truth.exponent_sd * who.person.exponent;
 }
 
-std::optional<double> lapse(const simulated_run& who, random_numbers& r)
+std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys)
 {
     if (!(who.truth.lapse > 0.0) || r.unit() >= who.truth.lapse)
         return {};
-    return 1 + r.below(2);
+    return 1 + r.below(keys);
 }
 
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r)

@@ -50,8 +50,12 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
                        const std::vector<std::string>& known);
 /// Reads both methods of a trial, which must differ.
 void read_pair(trial& r, const text_table& t, std::size_t row, const run_outline& o);
+/// Reads the answer, a whole number in this range.
+unsigned read_response(const text_table& t, std::size_t row, unsigned lowest, unsigned greatest);
 /// Reads the answer 1 or 2.
 unsigned read_one_of_two(const text_table& t, std::size_t row);
+/// Reads one of the run's values.
+double read_value(const text_table& t, std::size_t row, const run_outline& o);
 /// Reads the methods and the value of a trial, which may have a standard.
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o);
 /// Reads them if the other stimulus has the name `other` in the table.
@@ -84,7 +88,7 @@ double find_dprime(const simulated_run& who, const planned_trial& t);
 /// Returns the person's exponent for the method of a trial: normal.
 double find_exponent(const simulated_run& who, const planned_trial& t);
 /// Returns a random key in the share of trials in which an observer does not attend, else nothing.
-std::optional<double> lapse(const simulated_run& who, random_numbers& r);
+std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys = 2);
 /// Answers a trial with a comparison by is_more().
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
 /// Throws error (bad_input) if an observer cannot judge the run's attribute; else computes the mean of its

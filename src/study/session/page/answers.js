@@ -10,12 +10,12 @@ const MOST_BUTTONS = 11; // greatest number of steps that a scale shows as butto
 function has_words_at_ends(choices) {
   return choices.length > 2 && choices[0] && choices.slice(1, -1).every(c => !c);
 }
-function find_kind({screen, choices, pictures}) {
+function find_kind({screen, choices, pictures, are_stimuli}) {
   if (pictures) return "pictures";
   if (choices.length === 1) return "begin";
   if (screen === "questionnaire" && choices.every(c => c)) return "list";
   if (screen === "consent" || screen === "walk") return "plain";
-  if (choices.length === 2) return "pair";
+  if (choices.length === 2 || are_stimuli) return "pair";
   if (choices.length > MOST_BUTTONS) return "line";
   return has_words_at_ends(choices) || choices.every(c => !c) ? "scale" : "list";
 }
