@@ -39,7 +39,7 @@ class Codes(PersonTest):
         levels = self.levels(task)
         for row in self.rows("01", task):
             pair = row["frame_2"] != "n/a"
-            for i in (1, 2) if pair else (1,):
+            for i in (i for i in (1, 2, 3) if row.get(f"frame_{i}", "n/a") != "n/a"):
                 e = next(events)
                 what = f'stimulus, motion "{row["motion"]}", method "{row[f"method_{i}"]}"' + f", interval {i}" * pair
                 self.assertEqual((e["trial"], e["attempt"], e["event"], levels[e["code"]], int(e["frame"])),
@@ -88,6 +88,15 @@ class Codes(PersonTest):
         self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=["codes"])
         self.write("array.toml", '[array]\npreset = "palm-3x3"\n[output]\nchannels = 16\n')
         self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=['"codes" differs from the start'])
+
+    def test_each_of_three_stimuli_has_a_code(self):
+        text = SMALL.partition("[[run]]")[0] + studies.toml("run", "odd", task="oddity", trials=12)
+        self.write("odd.toml", text)
+        self.simulate("01", "--array", "array.toml", definition="odd.toml", spec="seed=2,void=0.3")
+        self.check("odd", "odd")
+        self.assertEqual(len(self.events("odd")), 4 * len(self.rows("01", "odd")))
+        levels = self.levels("odd").values()  # 2 motions by 2 methods in 3 intervals
+        self.assertEqual([sum(part in text for text in levels) for part in ("interval 1", "interval 2", "interval 3", "answer 3")], [4, 4, 4, 1])
 
     def test_without_codes_there_are_no_events(self):
         self.simulate("01")

@@ -64,12 +64,13 @@ class AtTheTerminal(PersonTest):
         runs = (toml("run", "what", task="identify", trials=2, methods=["Birch"], motions=["east", "west"], feedback=True)
                 + toml("run", "alike", task="same-different", trials=2, motions=["east"], training=2, question="Alike?")
                 + toml("run", "there", task="detect", trials=2, motions=["east"], methods=["Birch"], catch=0.5, feedback=True)
-                + toml("run", "when", task="interval", vary="level_dbfs", values=[-30, -20], motions=["east"], methods=["Birch"], trials=2, feedback=True))
+                + toml("run", "when", task="interval", vary="level_dbfs", values=[-30, -20], motions=["east"], methods=["Birch"], trials=2, feedback=True)
+                + toml("run", "odd", task="oddity", motions=["east"], trials=6, feedback=True))
         self.write("short.toml", BARE.replace("gap_s = 0.1", 'gap_s = 0.1\norder = "latin"') + runs)
         t = self.start()
         t.walk(agrees=False)
         told = []
-        for asked, answers in (("Which movement was it", 2), ("Alike", 4), ("Did you feel it", 2), ("In which interval", 2)):
+        for asked, answers in (("Which movement was it", 2), ("Alike", 4), ("Did you feel it", 2), ("In which interval", 2), ("Which was different", 6)):
             t.answer("Any key begins", " ")
             for n in range(answers):
                 t.answer(asked + ".*: ", "1")
@@ -81,7 +82,13 @@ class AtTheTerminal(PersonTest):
         # Reads what was felt from the tables; practice has its own.
         practice = read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")
         truth = ([r["motion"] == "east" for r in self.rows("01", "what")] + [r["method_1"] == r["method_2"] for r in practice]
-                 + [r["method_1"] != "none" for r in self.rows("01", "there")] + [r["method_1"] != "none" for r in self.rows("01", "when")])
+                 + [r["method_1"] != "none" for r in self.rows("01", "there")] + [r["method_1"] != "none" for r in self.rows("01", "when")]
+                 + [r["method_1"] not in (r["method_2"], r["method_3"]) for r in self.rows("01", "odd")])
+        self.assertIn("Which was different from the two others? 1 to 3: ", t.all)
+        for r in self.rows("01", "odd"):  # 0.1 s between stimuli
+            ends = [int(r[f"frame_{i}"]) + self.frames_of_plan(r[f"plan_{i}"]) for i in (1, 2, 3)]
+            self.assertEqual([int(r[f"frame_{i}"]) for i in (2, 3)], [end + RATE // 10 for end in ends[:2]])
+            self.assertAlmostEqual(float(r["duration"]), (ends[2] - int(r["frame_1"])) / RATE, 6)
         self.assertEqual(told, truth)
         self.assertEqual({*truth}, {True, False})
 

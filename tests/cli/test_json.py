@@ -80,6 +80,7 @@ MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_
             + studies.run("felt", "detect", 20, vary="level_dbfs", values=[-40, -30, -20], catch=0.2)
             + studies.run("some", "detect", 8, catch=0.5)
             + studies.run("same", "same-different", 16, methods=["park", "soft"])
+            + studies.run("odd", "oddity", 12, methods=["park", "soft"], practice=1)
             + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20])
             + studies.run("place", "locate", 4))
 

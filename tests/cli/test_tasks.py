@@ -35,6 +35,7 @@ TASKS = {
     "locate": (dict(trials=8), "drawings.means.error.mean", "error"),
     "trace": (dict(trials=8), "drawings.means.distance.mean", "distance"),
     "dissimilar": (dict(attribute="similarity", trials=12), "means.park - soft.all.mean", "response"),
+    "oddity": (dict(trials=24), "dprime.mean", "positive"),
 }
 WEST = toml("motion", "west", path="M20 0H0", duration=0.2)
 
@@ -192,6 +193,135 @@ class EveryTask(ExperimentTest):
                 self.assertAlmostEqual(pair["ci"][1] - pair["ci"][0], 2 * 3.182446305284263 * sd / math.sqrt(n), places=9)  # t(3) at 97.5 %
                 self.assertIn(f"park - soft: {mean:.2f} (", text)
         self.assertIn("pse by session, within participants", self.ok("report", "study").stdout)
+
+    def find_odd(self, row):
+        """Returns the place of the stimulus that differs."""
+        methods = [row[f"method_{i}"] for i in (1, 2, 3)]
+        self.assertEqual(len(set(methods)), 2)
+        return next(i for i, m in enumerate(methods, 1) if methods.count(m) == 1)
+
+    def test_three_stimuli_of_which_one_differs(self):
+        self.write("desk.toml", DESK)
+        self.write("t.toml", measures("desk.toml", toml("run", "two", task="oddity", trials=48, practice=2),
+                                      toml("run", "far", task="oddity", vary="length_mm", values=[8, 12, 20], standard=4, trials_per_value=12),
+                                      toml("run", "same", task="same-different", trials=16), keys="gap_s = 0.1\nsessions = 2\n"))
+        dry = self.valid(self.ok("experiment", "t.toml", "--dry-run", "--session", "1", "--format", "json").stdout)
+        self.assertEqual({r["name"]: {("method_3" in t, "plan_3" in t) for t in r["trials"]} for r in dry["runs"]},
+                         {"two": {(True, True)}, "far": {(True, True)}, "same": {(False, False)}})
+        self.assertRegex(self.ok("experiment", "t.toml", "--dry-run", "--session", "1").stdout, r"method_2 +method_3 +value")
+        for code in "1234":
+            for session in "12":
+                self.simulate(code, "--session", session, definition="t.toml", folder="study", spec=f"seed={code},dprime=2.5,lapse=0.02")
+        beh = self.dir / "study/sub-1/ses-1/beh"
+        tables = {run: list(csv.DictReader((beh / f"sub-1_ses-1_task-{run}_beh.tsv").read_text().splitlines(), delimiter="\t")) for run in ("two", "far", "same")}
+        self.assertFalse({"method_3", "plan_3", "frame_3"} & set(tables["same"][0]))
+        for run, names in (("two", {"park", "soft"}), ("far", {"park", "soft", "standard"})):
+            counts = {}
+            for r in tables[run]:
+                odd = self.find_odd(r)
+                self.assertEqual([r[f"plan_{i}"] == r[f"plan_{odd}"] for i in (1, 2, 3)], [i == odd for i in (1, 2, 3)])
+                frames = [int(r[f"frame_{i}"]) for i in (1, 2, 3)]
+                self.assertEqual(frames, sorted(set(frames)))
+                key = odd, r[f"method_{odd}"], r.get("value")
+                counts[key] = counts.get(key, 0) + 1
+            self.assertEqual(set().union(*({r["method_1"], r["method_2"], r["method_3"]} for r in tables[run])), names)
+            if run == "two":
+                self.assertEqual(counts, {(i, m, None): 8 for i in (1, 2, 3) for m in names})
+            else:
+                values = {str(float(v)): sum(n for k, n in counts.items() if float(k[2]) == v) for v in (8, 12, 20)}
+                self.assertEqual(values, {"8.0": 24, "12.0": 24, "20.0": 24})
+
+        # The integral of Ennis, by Simpson's rule, and its inverse.
+        def share(dprime, parts=2000, end=8):
+            cdf = statistics.NormalDist().cdf
+            f = [2 * (cdf(-z * 3**0.5 + dprime * (2 / 3)**0.5) + cdf(-z * 3**0.5 - dprime * (2 / 3)**0.5)) * math.exp(-z * z / 2) / (2 * math.pi)**0.5
+                 for z in (end * i / parts for i in range(parts + 1))]
+            return end / parts / 3 * (f[0] + f[-1] + 4 * sum(f[1:-1:2]) + 2 * sum(f[2:-1:2]))
+
+        def dprime(right, trials):
+            low, high = 0, 20
+            while high - low > 1e-9:
+                middle = (low + high) / 2
+                low, high = (middle, high) if share(middle) < (right + 0.5) / (trials + 1.5) else (low, middle)
+            return high if right > trials / 3 else 0
+
+        told = self.valid(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        _, rows = self.trials("study")
+        self.assertEqual([list(told["far"]["by"]), list(told["two"].get("by", {}))], [[f"{m}:east:{v}" for m in ("park", "soft") for v in (8, 12, 20)], []])
+        for name, run, keys in (("two", told["two"], {}), ("far", told["far"], {}), ("far", told["far"]["by"]["soft:east:12"], {"method": "soft", "value": "12"})):
+            found = run["dprime"]
+            for code, p in found["participants"].items():
+                own = [r for r in rows if r["run"] == name and r["participant"] == code and all(r[k] == v for k, v in keys.items())]
+                right = sum(r["positive"] == "1" for r in own)
+                self.assertEqual((p["right"], p["trials"]), (right, len(own)))
+                self.assertAlmostEqual(p["dprime"], dprime(right, len(own)), places=6)
+            each = [p["dprime"] for p in found["participants"].values()]
+            self.assertAlmostEqual(found["mean"], statistics.mean(each), places=9)
+            self.assertAlmostEqual(found["se"], statistics.stdev(each) / 2, places=9)
+            percents = [100 * p["right"] / p["trials"] for p in found["participants"].values()]
+            self.assertAlmostEqual(found["correct"]["mean"], statistics.mean(percents), places=9)
+            g = sum(2 * (k * math.log(3 * k / n) + ((n - k) * math.log(1.5 * (n - k) / n) if k < n else 0))
+                    for k, n in ((p["right"], p["trials"]) for p in found["participants"].values()) if 3 * k > n)
+            self.assertAlmostEqual(found["likelihood_ratio"]["value"], g, places=9)
+        # The answers are those of the tables, and the observer is right as often as the model says.
+        right = [self.find_odd(r) == int(r["response"]) for s in "12" for code in "1234" for r in csv.DictReader(
+            (self.dir / f"study/sub-{code}/ses-{s}/beh/sub-{code}_ses-{s}_task-two_beh.tsv").read_text().splitlines(), delimiter="\t")]
+        self.assertEqual(sum(right), sum(p["right"] for p in told["two"]["dprime"]["participants"].values()))
+        expected = 0.98 * share(2.5) + 0.02 / 3
+        self.assertAlmostEqual(sum(right) / len(right), expected, delta=4 * (expected * (1 - expected) / len(right))**0.5)
+        self.assertEqual({name: (list(run.get("methods", {})), list(run["sessions"])) for name, run in told.items() if name != "same"},
+                         {"two": ([], ["dprime", "correct"]), "far": (["dprime", "correct"],) * 2})
+        of = [[sum(r["positive"] == "1" for r in rows if (r["run"], r["participant"], r["method"]) == ("far", c, m)) for c in "1234"] for m in ("park", "soft")]
+        pair, = told["far"]["methods"]["dprime"]["pairs"]
+        self.assertAlmostEqual(pair["difference"], statistics.mean(dprime(a, 36 * 2) - dprime(b, 36 * 2) for a, b in zip(*of)), places=6)
+        tsv = self.ok("analyze", "study", "--format", "tsv").stdout
+        for line in ('glmer(positive ~ 1 + (1 | participant), family = sensR::triangle(), data = subset(d, run == "two"))',
+                     "glmer(positive ~ abs(value - 4) * method + (1 + abs(value - 4) + method | participant), family = sensR::triangle(), "):
+            self.assertIn(line, tsv)
+        report = self.ok("report", "study").stdout
+        for text in ("(Ennis 1993)", "- Ennis, D. M. (1993)", "| participant | right | trials | d' |", "Three stimuli, one after the other"):
+            self.assertIn(text, report)
+        # A session that was killed goes on with the same trials; another third stimulus is refused.
+        table = beh / "sub-1_ses-1_task-far_beh.tsv"
+        whole = table.read_bytes()
+        order = json.loads((self.dir / "study/sourcedata/sub-1/ses-1/session.json").read_text())["order"]
+        for later in order[order.index("far") + 1:]:
+            (beh / f"sub-1_ses-1_task-{later}_beh.tsv").unlink()
+        lines = whole.splitlines(keepends=True)
+        again = ("experiment", "t.toml", "--participant", "1", "--session", "1", "-o", "study", "--simulate", "seed=1,dprime=2.5,lapse=0.02", "--resume")
+        plans = [r["plan_3"] for r in tables["far"]]
+        other = next(p for p in plans if p != plans[0])
+        table.write_bytes(lines[0] + lines[1].replace(plans[0].encode() + b"\n", other.encode() + b"\n"))
+        self.refused(2, *again, says=("does not come next",))
+        table.write_bytes(b"".join(lines[:20]) + lines[20][:-9])
+        self.ok(*again)
+        self.assertEqual(table.read_bytes(), whole)
+
+    def test_oddity_refuses_what_no_trial_can_have(self):
+        self.write("desk.toml", DESK)
+        run = dict(task="oddity", trials=12)
+        far = dict(run, vary="length_mm", values=[8, 12], standard=4)
+        for keys, says in ((dict(run, methods=["park"]), 'run "only" has 1 method, not 2 (name two in methods, or add vary'),
+                           (dict(run, values=[1, 2]), "a run has vary, values and standard together, or none"),
+                           ({k: v for k, v in far.items() if k != "standard"}, "a run has vary, values and standard together, or none"),
+                           (dict(far, standard=8), "it is one of the values, so no stimulus would differ"),
+                           (dict(run, blocks="methods"), "has two methods in each trial")):
+            self.write("t.toml", measures("desk.toml", toml("run", "only", **keys)))
+            self.refused(2, "experiment", "t.toml", "--dry-run", says=(says,))
+        self.write("t.toml", measures("desk.toml", toml("run", "two", **run), toml("run", "far", **far), keys="gap_s = 0.1\n"))
+        self.simulate("1", definition="t.toml", spec="seed=1")
+        for name, changes in (("two", ({"response": "4"}, {"response": "0"}, {"method_3": "standard"}, {"method_1": "park", "method_2": "park", "method_3": "park"})),
+                              ("far", ({"method_1": "park", "method_2": "park", "method_3": "park"}, {"method_1": "park", "method_2": "soft", "method_3": "soft"},
+                                       {"method_1": "park", "method_2": "soft", "method_3": "standard"}, {"value": "9"}, {"method_3": "n/a"}))):
+            table = self.dir / f"study/sub-1/beh/sub-1_task-{name}_beh.tsv"
+            text = table.read_text()
+            head, first, rest = text.split("\n", 2)
+            for change in changes:
+                with self.subTest(run=name, **change):
+                    cells = dict(zip(head.split("\t"), first.split("\t"))) | change
+                    table.write_text("\n".join([head, "\t".join(cells.values()), rest]))
+                    self.refused(2, "analyze", "study", says=(f"{table.relative_to(self.dir)}:2: ",))
+            table.write_text(text)
 
 
 if __name__ == "__main__":

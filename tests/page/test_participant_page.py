@@ -294,6 +294,26 @@ class ParticipantPage(BrowserTest, PageTest):
         right = sum((r["response"] == "2") == (r["method_1"] == "none") for r in rows)
         self.assertEqual([r["positive"] for r in self.trials()[1]].count("1"), right)
 
+    def test_three_stimuli_light_up_where_their_answers_are(self):
+        self.write("odd.toml", BARE + toml("run", "odd", task="oddity", trials=4, motions=["east"]))
+        s = self.start(definition="odd.toml")
+        p = self.open(s)
+        ask = self.click(p, "introduce", 1, self.walk(p))
+        for answer in "1233":
+            lit = []
+            for playing in (1, 2, 3):
+                p.until(f"document.querySelector('#stimuli .on')?.textContent === '{playing}'")
+                lit.append(p.middle("#stimuli .on"))
+            ask = self.asked(p, "question", ask)
+            self.assertEqual(p.value("[document.querySelector('#question').textContent, ...[...document.querySelectorAll('#answers button')].map(b => b.textContent)]"),
+                             ["Which was different from the two others?", "1", "2", "3"])
+            self.assertEqual([p.middle(f"#answers button:nth-child({i})") for i in (1, 2, 3)], lit)
+            if answer == "1":
+                self.picture(p, "three-stimuli")
+            ask = self.key(p, "question", answer, ask - 1)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([r["response"] for r in self.rows("01", "odd")], list("1233"))
+
     def test_places_and_paths_are_drawn_by_mouse_finger_and_keys(self):
         self.write("drawn.toml", DRAWINGS)
         s = self.start(definition="drawn.toml")

@@ -41,9 +41,10 @@ RUNS = {
     "locate": 'trials = 24\n',
     "trace": 'trials = 24\n',
     "same-different": 'trials = 40\n',
+    "oddity": 'trials = 36\n',
 }
 USUAL = "sigma=20,pse=60,jnd=10,pse_sd=5,jnd_sd=5,dprime=1.5,dprime_sd=0.5,exponent_sd=0.2,method_sd=10"
-OTHERS = {"identify": "sigma=60", "estimate": "sigma=0.3,exponent_sd=0.2", "same-different": "dprime=0"}
+OTHERS = {"identify": "sigma=60", "estimate": "sigma=0.3,exponent_sd=0.2", "same-different": "dprime=0", "oddity": "dprime=0"}
 
 
 def define(task, methods, sessions):
@@ -73,7 +74,7 @@ def main():
     passed = failed = 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
         designs = [(task, methods, sessions) for task in RUNS for methods, sessions in (("ab", 2), ("abc", 1))
-                   if task != "same-different" or methods == "ab"]
+                   if task not in ("same-different", "oddity") or methods == "ab"]
         for rows in pool.map(lambda d: simulate(sys.argv[1], pathlib.Path(folder), *d), designs):
             for task, methods, name, at in rows:
                 share = at["significant"] / STUDIES

@@ -89,6 +89,22 @@ public:
         return second;
     }
 
+    // Returns the place, from 0, of the stimulus that differs. Of the three felt, the two that are closest
+    // together are taken for alike. `bias` and `serial` add to the last one and to the one named last.
+    std::size_t finds_odd(double dprime, std::size_t odd, double part)
+    {
+        std::array<double, 3> x{normal(), normal(), normal()};
+        x[odd] += dprime;
+        x[2] += f_.bias + f_.drift * (part - 0.5);
+        x[named_] += f_.serial;
+        const auto between = [&x](std::size_t i, std::size_t k) { return std::abs(x[i] - x[k]); };
+        const std::array apart{between(1, 2), between(0, 2), between(0, 1)};
+        named_ = static_cast<std::size_t>(std::ranges::min_element(apart) - apart.begin());
+        if (f_.lapse > 0.0 && unit() < f_.lapse)
+            named_ = static_cast<std::size_t>(3.0 * unit());
+        return named_;
+    }
+
     // Returns true if the comparison of a pair is chosen.
     bool chooses_comparison(double x_in_deviations, bool standard_first, double part)
     {
@@ -110,6 +126,7 @@ public:
 private:
     faults f_;
     std::mt19937_64 engine_;
+    std::size_t named_ = 0;
     double last_ = 0.0;
 };
 
@@ -632,6 +649,66 @@ TEST_CASE("of studies without a difference 3 to 7 % find one, by observers of a 
                 if (test::whole())
                     CHECK_FIGURE(found >= studies * 3 / 100);
             }
+}
+
+// Returns a participant's answers to three stimuli.
+right_count find_odd_ones(second_observer& who, double dprime, std::size_t trials)
+{
+    right_count n{0, trials};
+    for (std::size_t k = 0; k < trials; ++k) {
+        const auto odd = static_cast<std::size_t>(3.0 * who.unit());
+        n.right += who.finds_odd(dprime, odd, static_cast<double>(k) / (trials - 1)) == odd ? 1U : 0U;
+    }
+    return n;
+}
+
+TEST_CASE("d' of oddity is that of observers of a second kind, and without a difference few studies find one")
+{
+    for (const faults& f : faults_to_try()) {
+        const int people = test::rounds(300, 4000);
+        double sum = 0.0;
+        for (int i = 0; i < people; ++i) {
+            second_observer who(f, static_cast<std::uint64_t>(i));
+            sum += triangle_dprime(corrected_third(find_odd_ones(who, 2.0, 120)));
+        }
+        fmt::print("oddity, d' of 2: {:.3f} with {}\n", sum / people, f.name);
+        if (f.lapse == 0.0 && f.bias == 0.0 && f.drift == 0.0 && f.serial == 0.0)
+            CHECK(sum / people == doctest::Approx(2.0).epsilon(0.05));
+        for (const std::size_t n : {8U, 12U, 24U}) {
+            const int studies = test::rounds(60, 1000);
+            int found = 0;
+            for (int study = 0; study < studies; ++study) {
+                std::vector<right_count> all;
+                for (std::size_t i = 0; i < n; ++i) {
+                    second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
+                    all.push_back(find_odd_ones(who, 0.0, 36));
+                }
+                found += test_oddity(all, std::to_string(study))->p < 0.05 ? 1 : 0;
+            }
+            fmt::print("oddity, no difference, {} people, {}: {:.1f} % of {}\n", n, f.name,
+                       100.0 * found / studies, studies);
+            CHECK_FIGURE(found <= (test::whole() ? studies * 7 / 100 : studies / 8 + 1));
+            if (test::whole())
+                CHECK_FIGURE(found >= studies * 3 / 100);
+        }
+    }
+}
+
+TEST_CASE("the likelihood ratio of answers to three stimuli is that of the counts")
+{
+    const auto found = *test_oddity(std::vector<right_count>{{20, 36}, {10, 36}}, "a");
+    // G of 20 right and 16 wrong answers where 12 and 24 are expected. 10 of 36 say nothing against d' = 0.
+    CHECK(found.likelihood_ratio ==
+          doctest::Approx(2.0 * (20 * std::log(20 / 12.0) + 16 * std::log(16 / 24.0))).epsilon(1e-12));
+    // Exact p of one participant: 20 right answers or more of 36, binomial.
+    double tail = 0.0;
+    for (int k = 20; k <= 36; ++k)
+        tail += std::exp(std::lgamma(37) - std::lgamma(k + 1) - std::lgamma(37 - k) - 36 * std::log(3.0) +
+                         (36 - k) * std::log(2.0));
+    const double p = test_oddity(std::vector<right_count>{{20, 36}}, "a")->p;
+    CHECK(std::abs(p - tail) < 4.0 * std::sqrt(tail / 2000.0) + 1.0 / 2001.0);
+    CHECK(test_oddity(std::vector<right_count>{{10, 36}}, "a")->p == 1.0);
+    CHECK(!test_oddity({}, "a"));
 }
 
 } // namespace

@@ -170,6 +170,7 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
     constexpr double exponent = 0.6;
     for (const auto& [task, dprime] : {std::pair(&find_task("detect"), 1.5),
                                        {&find_task("same-different"), 2.0},
+                                       {&find_task("oddity"), 2.5},
                                        {&find_task("estimate"), 0.0}}) {
         run_outline run{.name = "run", .file_name = "run", .task = task, .motions = {"m"}, .methods = {"a"}};
         run.catches = task == &find_task("detect");
@@ -179,7 +180,11 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
             const double apart = t.signal ? dprime : 0.0;
             if (task == &find_task("estimate"))
                 t.estimate = 10.0 * std::pow(t.value, exponent) * std::exp(0.2 * r.normal());
-            else if (task == &find_task("detect"))
+            else if (task == &find_task("oddity")) {
+                const std::array x{apart + r.normal(), r.normal(), r.normal()};
+                const auto between = [&x](std::size_t i, std::size_t k) { return std::abs(x[i] - x[k]); };
+                t.positive = between(1, 2) < std::min(between(0, 1), between(0, 2)); // these two are alike
+            } else if (task == &find_task("detect"))
                 t.positive = apart + r.normal() > 0.5 * dprime;
             else
                 t.positive = std::abs(apart + r.normal() - r.normal()) > 1.4;
@@ -192,7 +197,7 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
             std::vector<person_trials> all;
             for (std::vector<trial>& own : answers) {
                 for (std::size_t i = 0; i < trials; ++i) {
-                    own[i].signal = i % 2 == 0;
+                    own[i].signal = i % 2 == 0 || task == &find_task("oddity");
                     if (!run.values.empty())
                         own[i].value = run.values[i % run.values.size()];
                     simulate(own[i], r);
@@ -200,9 +205,10 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
                 all.push_back({std::to_string(all.size()), &own});
             }
             const std::vector<result> rows = task_in(run).analyse(run, {all}, sigmoid::normal);
-            const t_test mean = task == &find_task("estimate")
-                                    ? list_values<exponents>(rows)[0]->figures[0].test
-                                    : list_values<sensitivities>(rows)[0]->figures[0].test;
+            const t_test mean =
+                task == &find_task("estimate") ? list_values<exponents>(rows)[0]->figures[0].test
+                : task == &find_task("oddity") ? list_values<oddities>(rows)[0]->figures[0].test
+                                               : list_values<sensitivities>(rows)[0]->figures[0].test;
             const double truth = task == &find_task("estimate") ? exponent : dprime;
             hold += mean.ci && mean.ci->first <= truth && truth <= mean.ci->second ? 1 : 0;
         }
@@ -211,6 +217,28 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
         CHECK(hold >= studies * (test::whole() ? 93 : 85) / 100);
         CHECK(hold <= studies * (test::whole() ? 97 : 100) / 100);
     }
+}
+
+TEST_CASE("d' of three stimuli")
+{
+    // R's integrate() of Ennis's integral. The tables of the triangle test have 0.418 for 1 and 0.605 for 2.
+    for (const auto& [dprime, share] : {std::pair(0.5, 0.355834650),
+                                        {1.0, 0.418046675},
+                                        {1.5, 0.506456097},
+                                        {2.0, 0.604806933},
+                                        {3.0, 0.781427599},
+                                        {4.0, 0.897660380}}) {
+        CHECK(triangle_share(dprime) == doctest::Approx(share).epsilon(3e-9));
+        CHECK(triangle_dprime(share) == doctest::Approx(dprime).epsilon(1e-7));
+    }
+    // dprime.oddity() of R's package psyphy, to its four digits.
+    for (const auto& [share, dprime] : {std::pair(0.418, 0.9997), {0.75, 2.7975}, {0.9, 4.0276}})
+        CHECK(triangle_dprime(share) == doctest::Approx(dprime).epsilon(2e-5));
+    CHECK(triangle_share(0.0) == doctest::Approx(1.0 / 3.0).epsilon(1e-14));
+    CHECK(triangle_dprime(1.0 / 3.0) == 0.0);
+    CHECK(triangle_dprime(0.2) == 0.0);
+    CHECK(corrected_third({20, 60}) == doctest::Approx(1.0 / 3.0).epsilon(1e-14));
+    CHECK(triangle_dprime(corrected_third({10000, 10000})) < 16.0);
 }
 
 TEST_CASE("sensitivities")

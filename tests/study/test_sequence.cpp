@@ -252,6 +252,44 @@ TEST_CASE("pairs come equally often, in each motion and order too, as far as the
         }
 }
 
+TEST_CASE("of three stimuli each differs equally often in each interval, as far as the number allows")
+{
+    const std::string values = "vary = \"speed_mm_s\"\nvalues = [40, 60]\nstandard = 50\n";
+    for (const bool varies : {false, true})
+        for (const unsigned motions : {1U, 2U, 3U})
+            for (const unsigned n : {1U, 3U, 5U, 6U, 7U, 12U, 24U, 31U, 72U, 75U}) {
+                const experiment_definition d =
+                    with_run(fmt::format("task = \"oddity\"\nquestion = \"?\"\nmax_in_a_row = 100\n{}"
+                                         "trials = {}\n",
+                                         varies ? values : "", n),
+                             motions, 2);
+                for (std::uint64_t seed = 0; seed < 20; ++seed) {
+                    std::array<std::map<std::array<std::size_t, 3>, int>, 5> counts;
+                    for (const planned_trial& t : make_run(d, 0, "01", seed).trials) {
+                        const std::array all{t.method_1, t.method_2.value(), t.method_3.value()};
+                        std::size_t place = 0;
+                        while (std::ranges::count(all, all[place]) != 1)
+                            ++place;
+                        const std::size_t odd = all[place];
+                        const std::size_t other = all[(place + 1) % 3];
+                        CHECK(std::ranges::count(all, other) == 2);
+                        // Without values method 0 or 1 differs, else a value or the standard.
+                        const std::size_t which =
+                            varies ? (d.methods[odd].name == "standard" ? 1U : 0U) : odd;
+                        ++counts[0][{place}];
+                        ++counts[1][{which}];
+                        ++counts[2][{place, which}];
+                        ++counts[3][{t.motion}];
+                        ++counts[4][{t.motion, odd, other}];
+                    }
+                    for (std::size_t i = 0; i < 4; ++i)
+                        CHECK(spread(counts[i], std::array<std::size_t, 4>{3, 2, 6, motions}[i]) <= 1);
+                    if (n % (6 * motions * (varies ? 4 : 1)) == 0)
+                        CHECK(spread(counts[4], counts[4].size()) == 0);
+                }
+            }
+}
+
 TEST_CASE("over 10,000 seeds no motion, order or position is favoured")
 {
     const experiment_definition d = load_definition("park2016");

@@ -61,6 +61,7 @@ std::vector<const Values*> list_conditions(const study::run_analysis& r)
 }
 
 // Draws d' of each condition, or of all trials. Nothing where no participant has one.
+template <class Values>
 std::optional<plot::bar_panel> make_sensitivity_panel(const study::run_analysis& r, error_bars kind)
 {
     constexpr double unbounded = std::numeric_limits<double>::infinity();
@@ -68,14 +69,14 @@ std::optional<plot::bar_panel> make_sensitivity_panel(const study::run_analysis&
     p.level = 0.0;
     plot::bar_series s;
     bool everybody = true;
-    for (const study::sensitivities* v : list_conditions<study::sensitivities>(r)) {
+    for (const Values* v : list_conditions<Values>(r)) {
         const study::t_test& t = v->figures.front().test;
         if (!t.mean)
             continue;
         plot::bar b{*t.mean, find_ends(t, kind, {-unbounded, unbounded})};
-        for (const std::optional<study::detection>& one : v->people)
-            if (one)
-                b.values.push_back(one->found.dprime);
+        for (const std::vector<std::optional<double>>& own : v->values)
+            if (own.front())
+                b.values.push_back(*own.front());
         everybody = everybody && b.values.size() == r.n;
         std::vector<double> all = b.values;
         if (b.error)
@@ -385,7 +386,9 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
         add_drawings(f, r);
         std::optional<plot::bar_panel> p = make_panel(r, kind);
         if (!p && r.run.vary.empty())
-            p = make_sensitivity_panel(r, kind);
+            p = make_sensitivity_panel<study::sensitivities>(r, kind);
+        if (!p)
+            p = make_sensitivity_panel<study::oddities>(r, kind);
         if (p)
             f.bars.push_back(*std::move(p));
         for (const study::answer_counts* v : study::list_values<study::answer_counts>(r.results))

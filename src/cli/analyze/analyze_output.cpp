@@ -151,6 +151,10 @@ public:
     {
         return join(v.figures.front(), usual_decimals, v.ratio);
     }
+    std::string operator()(const study::oddities& v) const
+    {
+        return join(v.figures.front(), usual_decimals, v.ratio);
+    }
     std::string operator()(const study::exponents& v) const
     {
         return join(v.figures.front(), usual_decimals);
@@ -310,6 +314,11 @@ public:
         });
     }
     void operator()(const study::sensitivities& v) const
+    {
+        print_figures(v, usual_decimals, v.ratio);
+        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
+    }
+    void operator()(const study::oddities& v) const
     {
         print_figures(v, usual_decimals, v.ratio);
         print_people(v, usual_decimals, [](const auto&) { return std::string(); });

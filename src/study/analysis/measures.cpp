@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/words.hpp"
 #include "study/analysis/cells.hpp"
 
 namespace tactor::study {
@@ -95,6 +96,15 @@ std::optional<detection> measure_detection(const std::vector<trial>& trials,
     return detection{hits, false_alarms, model(hits, false_alarms), n};
 }
 
+std::optional<odd_answers> measure_oddity(const std::vector<trial>& trials)
+{
+    if (trials.empty())
+        return {};
+    const right_count n{static_cast<std::size_t>(std::ranges::count_if(trials, &trial::positive)),
+                        trials.size()};
+    return odd_answers{n, triangle_dprime(corrected_third(n))};
+}
+
 fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials)
 {
     std::vector<double> ratios;
@@ -116,7 +126,8 @@ double size_ratio(const run_outline& run, double value, double to) noexcept
 }
 
 std::vector<condition_trials> split_conditions(const run_outline& run, const run_people& people,
-                                               const std::vector<std::string>& methods)
+                                               const std::vector<std::string>& methods,
+                                               const std::vector<double>& values)
 {
     std::vector<condition_trials> all;
     const auto add = [&](const std::string& name, const auto& counts) {
@@ -126,13 +137,19 @@ std::vector<condition_trials> split_conditions(const run_outline& run, const run
     };
     add("", [](const trial&) { return true; });
     const std::size_t rows = std::max<std::size_t>(methods.size(), 1);
-    if (rows * run.motions.size() < 2)
+    const std::size_t parts = std::max<std::size_t>(values.size(), 1);
+    if (rows * run.motions.size() * parts < 2)
         return all;
     for (std::size_t row = 0; row < rows; ++row)
         for (std::size_t motion = 0; motion < run.motions.size(); ++motion)
-            add((methods.empty() ? "" : methods[row] + ":") + run.motions[motion], [&](const trial& t) {
-                return t.motion == motion && (methods.empty() || t.method_1 == row || !t.signal);
-            });
+            for (std::size_t part = 0; part < parts; ++part) {
+                const std::string name = (methods.empty() ? "" : methods[row] + ":") + run.motions[motion] +
+                                         (values.empty() ? "" : ":" + plain_number(values[part]));
+                add(name, [&](const trial& t) {
+                    return t.motion == motion && (methods.empty() || t.method_1 == row || !t.signal) &&
+                           (values.empty() || t.value == values[part]);
+                });
+            }
     return all;
 }
 
@@ -173,6 +190,15 @@ std::vector<named_value> list_sensitivity(const std::optional<detection>& d)
 {
     return {{{"dprime"}, d ? std::optional(d->found.dprime) : std::nullopt},
             {{"c"}, d ? std::optional(d->found.c) : std::nullopt}};
+}
+
+std::vector<named_value> list_oddity(const std::optional<odd_answers>& o)
+{
+    constexpr double per_cent = 100.0;
+    std::optional<double> correct;
+    if (o)
+        correct = per_cent * static_cast<double>(o->counts.right) / static_cast<double>(o->counts.trials);
+    return {{{"dprime"}, o ? std::optional(o->dprime) : std::nullopt}, {{"correct"}, correct}};
 }
 
 std::vector<named_value> list_exponent(const fitted_exponent& e)

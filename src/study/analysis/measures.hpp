@@ -30,6 +30,9 @@ fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, 
 std::optional<detection> measure_detection(const std::vector<trial>& trials,
                                            sensitivity (*model)(double hits, double false_alarms));
 
+/// Counts right answers to three stimuli; nothing without trials.
+std::optional<odd_answers> measure_oddity(const std::vector<trial>& trials);
+
 fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials);
 
 /// Returns the ratio of two values; for levels in dB, the ratio of their amplitudes.
@@ -43,9 +46,10 @@ struct condition_trials {
 
 /// Returns all trials, and then the trials of each condition, if there are several. A trial without a
 /// stimulus belongs to all conditions of its motion. `methods`: the run's methods, if conditions depend on
-/// the method.
+/// the method. `values`: the run's values, if they depend on the value, too: METHOD:MOTION:VALUE.
 std::vector<condition_trials> split_conditions(const run_outline& run, const run_people& people,
-                                               const std::vector<std::string>& methods);
+                                               const std::vector<std::string>& methods,
+                                               const std::vector<double>& values = {});
 
 /// Returns the first results of a task that measures figures. `against`: value that the main figure is tested
 /// against, if any.
@@ -58,10 +62,12 @@ result make_row(const condition_trials& c, std::string_view name, std::string_vi
 /// Returns the seed of a participant's draws in a condition.
 std::string make_seed(const run_outline& run, const condition_trials& c, std::string_view code);
 
-/// List a participant's figures, the main figure first: pse and jnd; the threshold; d' and c; the exponent.
+/// List a participant's figures, the main figure first: pse and jnd; the threshold; d' and c; d'
+/// and the per cent of right answers; the exponent.
 std::vector<named_value> list_pse(const fitted_function& f);
 std::vector<named_value> list_threshold(const fitted_function& f);
 std::vector<named_value> list_sensitivity(const std::optional<detection>& d);
+std::vector<named_value> list_oddity(const std::optional<odd_answers>& o);
 std::vector<named_value> list_exponent(const fitted_exponent& e);
 
 /// Measures each participant in a condition with `fit(trials, code)`, and tests the figures that `list`
@@ -101,15 +107,16 @@ std::vector<std::optional<double>> list_main(const measured<Person>& v)
 }
 
 /// Analyses all trials of a run and then each condition. Makes a row for each with `make(condition)`, and
-/// compares groups by the main figure of all trials. `methods`: as for split_conditions().
+/// compares groups by the main figure of all trials. `methods`, `values`: as for split_conditions().
 template <class Make>
 std::vector<result> analyse_conditions(const run_outline& run, const run_people& people,
                                        const std::vector<std::string>& methods, std::optional<double> against,
-                                       std::string_view name, std::string_view heading, const Make& make)
+                                       std::string_view name, std::string_view heading, const Make& make,
+                                       const std::vector<double>& values = {})
 {
     std::vector<result> rows = begin_measured(run, against);
     std::vector<std::optional<double>> main;
-    for (const condition_trials& c : split_conditions(run, people, methods)) {
+    for (const condition_trials& c : split_conditions(run, people, methods, values)) {
         auto v = make(c);
         if (c.name.empty())
             main = list_main(v);

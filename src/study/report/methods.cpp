@@ -242,6 +242,7 @@ public:
         all_["against"] = files::or_null(v.figures.front().against);
     }
     void operator()(const sensitivities&) { kind_ = "dprime"; }
+    void operator()(const oddities&) { kind_ = "oddity"; }
     void operator()(const exponents&) { kind_ = "exponent"; }
     void operator()(const drawn_answers&) { kind_ = "drawings"; }
 

@@ -108,6 +108,7 @@ public:
 
     void operator()(const psychometric_functions& v) { note(v); }
     void operator()(const sensitivities& v) { note(v); }
+    void operator()(const oddities& v) { note(v); }
     void operator()(const exponents& v) { note(v); }
     void operator()(const drawn_answers& v) { note(v); }
 

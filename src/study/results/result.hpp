@@ -189,6 +189,16 @@ struct sensitivities : measured<std::optional<detection>> {
     std::optional<difference_test> ratio = {}; ///< replaces t and p
 };
 
+/// Answers to three stimuli, with the d' of their corrected share: see corrected_third().
+struct odd_answers {
+    right_count counts = {};
+    double dprime = 0.0;
+};
+
+struct oddities : measured<std::optional<odd_answers>> {
+    std::optional<difference_test> ratio = {}; ///< replaces t and p
+};
+
 struct exponents : measured<fitted_exponent> {};
 
 /// Number of equal parts of their lengths at which drawn paths are compared.
@@ -219,7 +229,7 @@ struct drawn_answers : measured<drawn_by_person> {
 using result_value =
     std::variant<std::monostate, std::string, double, cell_means, interval_share, method_difference,
                  effect_list, tukey_list, paired_list, figure_comparison, worth_list, method_map,
-                 answer_counts, psychometric_functions, sensitivities, exponents, drawn_answers>;
+                 answer_counts, psychometric_functions, sensitivities, oddities, exponents, drawn_answers>;
 
 /// A row of a run's results.
 struct result {

@@ -306,17 +306,36 @@ void row_member(Io& io, const char* name, const psychometric_functions& v)
     });
 }
 
+/// Lists the participants who have figures.
+template <class Person>
+std::pair<std::vector<std::string>, std::vector<Person>>
+list_measured(const measured<std::optional<Person>>& v)
+{
+    std::pair<std::vector<std::string>, std::vector<Person>> all;
+    for (std::size_t i = 0; i < v.codes.size(); ++i)
+        if (v.people[i]) {
+            all.first.push_back(v.codes[i]);
+            all.second.push_back(*v.people[i]);
+        }
+    return all;
+}
+
+template <class Io>
+void ratio_member(Io& io, const std::optional<difference_test>& ratio)
+{
+    io.object_or_null("likelihood_ratio", ratio, {"likelihood ratio of d' against 0, or null"},
+                      [](auto& one, const difference_test& d) {
+                          one("value", d.likelihood_ratio, {"the ratio", detail::from_0});
+                          one("p", d.p, {"its p", probability});
+                          one("studies", d.studies, {"number of simulated studies", detail::above_0});
+                      });
+}
+
 template <class Io>
 void row_member(Io& io, const char* name, const sensitivities& v)
 {
-    std::vector<std::string> codes;
-    std::vector<detection> people;
-    for (std::size_t i = 0; i < v.codes.size(); ++i)
-        if (v.people[i]) {
-            codes.push_back(v.codes[i]);
-            people.push_back(*v.people[i]);
-        }
-    io.object(name, {"sensitivity"}, [&](auto& inner) {
+    const auto [codes, people] = list_measured(v);
+    io.object(name, {"sensitivity"}, [&, &codes = codes, &people = people](auto& inner) {
         inner.named_objects("participants", codes, people, {"by code"}, [](auto& one, const detection& d) {
             constexpr about rates{"corrected rates", probability};
             one("hits", d.hits, rates);
@@ -325,12 +344,24 @@ void row_member(Io& io, const char* name, const sensitivities& v)
             one("c", d.found.c, {"criterion"});
         });
         test_members(inner, v.figures.front().test);
-        inner.object_or_null("likelihood_ratio", v.ratio, {"likelihood ratio of same-different, or null"},
-                             [](auto& one, const difference_test& d) {
-                                 one("value", d.likelihood_ratio, {"the ratio", detail::from_0});
-                                 one("p", d.p, {"its p", probability});
-                                 one("studies", d.studies, {"number of simulated studies", detail::above_0});
-                             });
+        ratio_member(inner, v.ratio);
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const oddities& v)
+{
+    const auto [codes, people] = list_measured(v);
+    io.object(name, {"sensitivity"}, [&, &codes = codes, &people = people](auto& inner) {
+        inner.named_objects("participants", codes, people, {"by code"}, [](auto& one, const odd_answers& o) {
+            one("right", o.counts.right, {"number of right answers"});
+            one("trials", o.counts.trials, {"number of trials", detail::above_0});
+            one("dprime", o.dprime, {"d'", detail::from_0});
+        });
+        mean_members(inner, v.figures.front().test);
+        inner.object("correct", {"right answers, per cent"},
+                     [&v](auto& one) { mean_members(one, v.figures.back().test); });
+        ratio_member(inner, v.ratio);
     });
 }
 

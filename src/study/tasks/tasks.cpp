@@ -26,13 +26,14 @@ const task& interval_task();
 const task& locate_task();
 const task& trace_task();
 const task& dissimilar_task();
+const task& oddity_task();
 
 std::span<const task* const> list_tasks() noexcept
 {
-    static const std::array all{&choose_task(),   &rate_task(),           &identify_task(),
-                                &detect_task(),   &same_different_task(), &estimate_task(),
-                                &constant_task(), &adaptive_task(),       &interval_task(),
-                                &locate_task(),   &trace_task(),          &dissimilar_task()};
+    static const std::array all{
+        &choose_task(),   &rate_task(),       &identify_task(), &detect_task(),   &same_different_task(),
+        &estimate_task(), &constant_task(),   &adaptive_task(), &interval_task(), &locate_task(),
+        &trace_task(),    &dissimilar_task(), &oddity_task()};
     return all;
 }
 

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/words.hpp"
+#include "study/analysis/measures.hpp"
+#include "study/analysis/model.hpp"
+#include "study/data/text_table.hpp"
+#include "study/experiment/simulated.hpp"
+#include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
+
+namespace tactor::study {
+namespace {
+
+constexpr unsigned intervals = 3;
+
+/// The two stimuli of a trial: of these methods one is in one interval, the other in two.
+using stimulus_pair = std::pair<std::size_t, std::size_t>;
+
+// Lists the pairs of a run: both methods, or each value of each method with the standard.
+std::vector<stimulus_pair> list_both(const run_definition& r)
+{
+    if (r.outline.vary.empty())
+        return {{r.methods.front(), r.methods.back()}};
+    std::vector<stimulus_pair> all;
+    for (const std::size_t method : r.methods) {
+        const method_variants& v = r.variants.at(method);
+        for (const std::size_t value : v.values)
+            all.emplace_back(value, v.standard.value());
+    }
+    return all;
+}
+
+// Number of different trials of a pair: either of the two differs, in each interval.
+constexpr std::size_t orders = 2 * std::size_t{intervals};
+
+// Returns the trial of a pair in one of its orders. As many orders in a row as there are have each of the two
+// equally often as the one that differs, and this one equally often in each interval.
+planned_trial make_trial(std::size_t motion, const stimulus_pair& pair, std::size_t order)
+{
+    const auto [odd, other] = order % 2 == 0 ? pair : stimulus_pair(pair.second, pair.first);
+    std::array<std::size_t, intervals> played{other, other, other};
+    played[order % intervals] = odd;
+    return {motion, played[0], played[1], played[2]};
+}
+
+class odd_one_out final : public task {
+public:
+    odd_one_out()
+        : task({.name = "oddity",
+                .trial = "Three stimuli, one after the other, of which two are alike",
+                .response = "Interval of the stimulus that the participant felt to differ: 1, 2 or 3",
+                .questions = {"Which was different from the two others?",
+                              "Which was different from the two others?",
+                              "Which was different from the two others?"},
+                .keys = {"feedback", "vary", "values", "standard", "trials_per_value"},
+                .has_three_stimuli = true})
+    {
+    }
+
+    void read_outline(const detail::toml_table& t, run_definition& r) const override
+    {
+        run_outline& o = r.outline;
+        for (const char* key : {"values", "standard", "trials_per_value"})
+            if (t.has(key) != t.has("vary") && (t.has(key) || key == std::string_view("standard")))
+                t.fail(t.has(key) ? key : "vary", "a run has vary, values and standard together, or none",
+                       "add the others, or leave it out: then two methods differ");
+        if (t.has("vary")) {
+            read_values(t, o, read_vary(t, o));
+            if (std::ranges::count(o.values, *o.standard) != 0)
+                t.fail("standard", "it is one of the values, so no stimulus would differ",
+                       "leave it out of values");
+        }
+        read_trials(t, o);
+    }
+    void check(const detail::toml_table& t, const run_outline& o) const override
+    {
+        if (o.vary.empty() && o.methods.size() != 2)
+            t.fail(fmt::format("run \"{}\" has {}, not 2", o.name, counted(o.methods.size(), "method")),
+                   "name two in methods, or add vary, values and standard");
+    }
+    void read(const detail::toml_table& t, run_definition& r) const override
+    {
+        if (r.outline.vary.empty())
+            refuse_method_blocks(t, r.outline);
+    }
+
+    std::vector<planned_trial> list_cells(const run_definition& r) const override
+    {
+        std::vector<planned_trial> cells;
+        for (const std::size_t motion : r.motions)
+            for (const stimulus_pair& pair : list_both(r))
+                for (std::size_t order = 0; order < orders; ++order)
+                    cells.push_back(make_trial(motion, pair, order));
+        return cells;
+    }
+    // In the remainder, motions, pairs and orders take turns. A list starts one later before a combination
+    // repeats.
+    std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
+                                    random_numbers& numbers) const override
+    {
+        const std::vector<planned_trial> cells = list_cells(r);
+        std::vector<planned_trial> all;
+        for (std::size_t i = 0; i < n - n % cells.size(); ++i)
+            all.push_back(cells[i % cells.size()]);
+        std::vector<std::size_t> motions = r.motions;
+        std::vector<stimulus_pair> pairs = list_both(r);
+        shuffle(std::span(motions), numbers);
+        shuffle(std::span(pairs), numbers);
+        const std::size_t first = numbers.below(orders);
+        const std::size_t stimuli = motions.size() * pairs.size();
+        for (std::size_t i = 0; all.size() < n; ++i) {
+            const std::size_t at = i % stimuli;
+            const std::size_t pair = at + at / std::lcm(motions.size(), pairs.size());
+            all.push_back(make_trial(motions[at % motions.size()], pairs[pair % pairs.size()],
+                                     first + i + i / std::lcm(stimuli, orders)));
+        }
+        return all;
+    }
+
+    trial_answers ask(const run_definition&, const page_words& w) const override
+    {
+        trial_answers a{.labels = std::vector<std::string>(intervals)};
+        a.possible = describe_answers(a.labels, 1, false, false, w["to"]);
+        return a;
+    }
+    std::vector<std::string> list_responses(const run_outline&) const override { return {"1", "2", "3"}; }
+    std::optional<bool> was_right(const experiment_definition&, const run_definition&, const planned_trial& t,
+                                  const trial_answer& answer) const override
+    {
+        return answer.number == find_odd(t).value();
+    }
+
+    // The method of the trial is that of the values, or without values the one that differs.
+    void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
+    {
+        constexpr std::array<const char*, intervals> columns{"method_1", "method_2", "method_3"};
+        std::array<std::string_view, intervals> names;
+        for (std::size_t i = 0; i < intervals; ++i)
+            names[i] = t.need(row, columns[i]);
+        const auto differs = [&](std::size_t i) { return std::ranges::count(names, names[i]) == 1; };
+        for (unsigned i = 0; i < intervals; ++i)
+            if (differs(i))
+                r.odd = i + 1;
+        const bool has_standard = std::ranges::count(names, standard_name) != 0;
+        if (r.odd == 0 || std::ranges::count_if(std::array{0U, 1U, 2U}, differs) != 1 ||
+            has_standard == o.vary.empty())
+            t.refuse(row, "its three methods are not those of a trial",
+                     o.vary.empty() ? "give two of them one name, and the third the other"
+                                    : "give them the names of a method and of the standard");
+        for (std::size_t i = 0; i < intervals; ++i)
+            if (names[i] != standard_name) {
+                const std::size_t method = find_place(t, row, columns[i], o.methods);
+                if (!o.vary.empty() || differs(i))
+                    r.method_1 = method;
+            }
+        if (!o.vary.empty())
+            r.value = read_value(t, row, o);
+        score(r, o, {}, read_response(t, row, 1, intervals));
+    }
+    void score(trial& r, const run_outline& o, std::string_view method_1,
+               const trial_answer& answer) const override
+    {
+        task::score(r, o, method_1, answer);
+        r.positive = r.response == r.odd;
+    }
+
+    // With values, d' grows in proportion to the distance from the standard, up to that of the farthest
+    // value.
+    trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
+    {
+        if (const auto key = lapse(who, r, intervals))
+            return *key;
+        double apart = find_dprime(who, t);
+        if (const run_outline& o = who.run.outline; o.standard) {
+            const auto distance = [&o](double value) { return std::abs(value - *o.standard); };
+            apart *= distance(find_value(who.definition, t).value()) /
+                     std::max(distance(o.values.front()), distance(o.values.back()));
+        }
+        std::array<double, intervals> felt{};
+        for (double& one : felt)
+            one = r.normal();
+        felt.at(find_odd(t).value() - 1) += apart;
+        const double middle = std::accumulate(felt.begin(), felt.end(), 0.0) / intervals;
+        const auto farthest =
+            std::ranges::max_element(felt, {}, [middle](double one) { return std::abs(one - middle); });
+        return static_cast<double>(farthest - felt.begin() + 1);
+    }
+
+    // Results.
+
+    std::vector<named_value> measure(const run_outline&, const std::vector<trial>& trials,
+                                     sigmoid) const override
+    {
+        return list_oddity(measure_oddity(trials));
+    }
+
+    std::vector<std::vector<result_outline>> outline_results() const override
+    {
+        return {outline_measured({{{"dprime"}, outline_figures<oddities>()}})};
+    }
+
+    std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
+    {
+        const auto measure = [&](const condition_trials& c) {
+            const auto count = [](const std::vector<trial>& trials, const std::string&) {
+                return measure_oddity(trials);
+            };
+            auto d = measure_people(oddities{}, c, people, 0.0, count, list_oddity);
+            std::vector<right_count> answers;
+            for (const std::optional<odd_answers>& one : d.people)
+                if (one)
+                    answers.push_back(one->counts);
+            d.ratio = test_oddity(answers, fmt::format("{}/{}", o.name, c.name));
+            t_test& t = d.figures.front().test;
+            t = {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
+            return d;
+        };
+        return analyse_conditions(o, people, list_timed_methods(o), 0.0, "dprime", "Sensitivity", measure,
+                                  o.values);
+    }
+
+    std::vector<std::string> list_timed_methods(const run_outline& o) const override
+    {
+        return has_one_method(o) ? o.methods : std::vector<std::string>();
+    }
+    bool has_one_method(const run_outline& o) const override { return !o.vary.empty(); }
+
+    main_comparison name_comparison(const run_outline&) const override
+    {
+        return compare_with("dprime", "likelihood ratio", 0.0);
+    }
+
+    compared_person compare(const run_outline&, const std::vector<trial>& trials) const override
+    {
+        const auto o = measure_oddity(trials);
+        return {.right = o ? std::optional(o->counts) : std::nullopt};
+    }
+
+    compared test(const run_outline&, std::span<const compared_person> people,
+                  std::string_view seed) const override
+    {
+        std::vector<right_count> counts;
+        for (const compared_person& p : people)
+            if (p.right)
+                counts.push_back(*p.right);
+        const auto difference = test_oddity(counts, seed);
+        return {difference ? std::optional(difference->p) : std::nullopt, true};
+    }
+
+    // The link of the triangular model, whose intercept is d'. That of psyphy for three alternatives is for
+    // observers who know how the stimulus differs.
+    std::string model_in_r(const run_outline& o, bool grouped) const override
+    {
+        const std::string apart =
+            o.standard ? fmt::format("abs(value - {})", plain_number(*o.standard, 12)) : "";
+        return write_model(o, grouped,
+                           {"glmer(positive", "family = sensR::triangle(), ", "", apart, has_one_method(o)});
+    }
+
+    std::vector<std::string_view> list_columns(const run_outline& o) const override
+    {
+        return o.vary.empty() ? std::vector<std::string_view>{"positive"}
+                              : std::vector<std::string_view>{"value", "positive"};
+    }
+
+    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_oddity"}; }
+};
+
+} // namespace
+
+const task& oddity_task()
+{
+    static const odd_one_out one;
+    return one;
+}
+
+} // namespace tactor::study
