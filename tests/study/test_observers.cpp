@@ -248,21 +248,20 @@ outcome constant_studies(const faults& f, std::size_t people, int studies, const
 }
 
 // A run with values 1 apart, 13 on both sides of the pse.
-run_definition make_adaptive(unsigned down, unsigned tracks)
+run_outline make_adaptive(unsigned down, unsigned tracks)
 {
-    run_definition r;
-    r.outline = make_run(&find_task("adaptive"));
+    run_outline r = make_run(&find_task("adaptive"));
     for (int i = -13; i <= 13; ++i)
-        r.outline.values.push_back(pse + i);
-    r.adaptive = {.down = down, .tracks = tracks, .steps = {4, 2, 1}, .lapses = {0.0, 0.02, 0.04}};
+        r.values.push_back(pse + i);
+    r.adaptive = {.steps = {4, 2, 1}, .lapses = {0.0, 0.02, 0.04}};
     for (unsigned i = 0; i < tracks; ++i)
-        r.adaptive.start.push_back(i % 2 == 0 ? r.outline.values.size() - 1 : 0);
+        r.adaptive.tracks.push_back({down, down > 1 && i % 2 == 1, i % 2 == 0 ? r.values.size() - 1 : 0});
     for (int i = 0; i < 5; ++i)
         r.adaptive.slopes.push_back(0.65 * std::pow(20.0, i / 4.0)); // a fortieth to a half of the range
     return r;
 }
 
-outcome adaptive_studies(const faults& f, const run_definition& r, std::size_t people, int studies,
+outcome adaptive_studies(const faults& f, const run_outline& r, std::size_t people, int studies,
                          bool bootstrap = false)
 {
     constexpr std::size_t trials = 60;
@@ -271,11 +270,11 @@ outcome adaptive_studies(const faults& f, const run_definition& r, std::size_t p
         std::vector<double> pses;
         for (std::size_t i = 0; i < people; ++i) {
             second_observer who(f, static_cast<std::uint64_t>(study) * 1000 + i);
-            adaptive_tracks tracks(r, two_answers(sigmoid::normal));
+            adaptive_tracks tracks(r);
             std::vector<trial> all;
             for (std::size_t k = 0; k < trials; ++k) {
-                const auto track = static_cast<unsigned>(k % r.adaptive.tracks + 1);
-                const double x = r.outline.values[tracks.next(track)];
+                const auto track = static_cast<unsigned>(k % r.adaptive.tracks.size() + 1);
+                const double x = r.values[tracks.next(track)];
                 const bool more =
                     who.chooses_comparison((x - pse) / deviation, who.unit() < 0.5,
                                            static_cast<double>(k) / static_cast<double>(trials - 1));
@@ -375,7 +374,7 @@ TEST_CASE("staircases that are mirrored leave the pse where it is: observers of 
 {
     for (const unsigned down : {1U, 2U, 3U})
         for (const faults& f : faults_to_try()) {
-            const run_definition r = make_adaptive(down, 2);
+            const run_outline r = make_adaptive(down, 2);
             const outcome o = adaptive_studies(f, r, 12, test::rounds(20, 400));
             o.print(fmt::format("1up{}down, 12 people, {}", down, f.name));
             if (f.drift == 0.0) { // a staircase asks at other times than values in random order do
@@ -392,7 +391,7 @@ TEST_CASE("staircases that are mirrored leave the pse where it is: observers of 
 
 TEST_CASE("QUEST+ leaves the pse where it is: observers of a second kind")
 {
-    const run_definition r = make_adaptive(0, 2);
+    const run_outline r = make_adaptive(0, 2);
     for (const faults& f : faults_to_try()) {
         if (!test::whole() && f.lapse > 0.0)
             continue;
@@ -452,15 +451,14 @@ std::vector<trial> hold_intervals(second_observer& who)
 std::optional<double> track_intervals(second_observer& who, unsigned down)
 {
     constexpr int trials = 80;
-    run_definition r = make_adaptive(down, 1);
+    run_outline r = make_adaptive(down, 1);
     r.adaptive.two_sided = false;
-    for (double& v : r.outline.values)
+    for (double& v : r.values)
         v -= pse; // dB about the level of 75 %
-    adaptive_tracks tracks(r, {.kind = sigmoid::normal, .guess = 0.5});
+    adaptive_tracks tracks(r);
     std::vector<trial> all;
     for (int k = 0; k < trials; ++k) {
-        all.push_back(
-            hold_intervals(who, r.outline.values[tracks.next(1)], static_cast<double>(k) / (trials - 1)));
+        all.push_back(hold_intervals(who, r.values[tracks.next(1)], static_cast<double>(k) / (trials - 1)));
         tracks.answer(1, all.back().positive);
     }
     const auto fit = fit_answers(all, {.kind = sigmoid::normal, .guess = 0.5}, "").fit;
@@ -578,7 +576,7 @@ TEST_CASE("d' of detect leans below 0 where few trials have no stimulus: observe
 TEST_CASE("a mirrored staircase is the other one upside down")
 {
     const auto walk = [](bool mirrored, std::string_view answers) {
-        value_staircase s(2, mirrored, {4, 2, 1}, 10, 20);
+        value_staircase s({2, mirrored, 10}, {4, 2, 1}, 20);
         std::vector<std::size_t> places;
         for (const char a : answers) {
             s.answer(a == '+');

@@ -27,6 +27,7 @@
 #include <variant>
 #include <vector>
 
+#include "study/data/adaptive_options.hpp"
 #include "study/data/drawing.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/questionnaire.hpp"
@@ -50,11 +51,12 @@ struct run_outline {
     std::vector<double> values = {}; ///< values of `vary`, ascending
     std::optional<double> standard = {}; ///< value of the stimulus to compare with, if a trial has one
     bool catches = false;                ///< detect: some trials have no stimulus
-    bool is_adaptive = false;            ///< true if earlier answers choose the value of a trial
+    adaptive_options adaptive = {};      ///< procedures by which earlier answers choose the values
     std::string question = {};
     std::vector<std::string> labels = {};  ///< labels of a scale: for each step, for both ends, or none
     std::vector<std::string> choices = {}; ///< words for the two answers; empty for the usual ones
 
+    bool is_adaptive() const noexcept { return !adaptive.tracks.empty(); }
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
     /// Returns true if a session has the run. `session`: its number, from 1.
     bool is_in(unsigned session) const noexcept

@@ -68,20 +68,6 @@ struct method_variants {
     std::vector<std::size_t> silences = {};
 };
 
-/// Procedure of an adaptive run. It gives values as indices into the run's values.
-struct adaptive_options {
-    /// Returns true if every second staircase is mirrored.
-    bool is_mirrored() const noexcept { return two_sided && down > 1; }
-
-    unsigned down = 0;     ///< positive answers in a row that move a staircase down; 0 for QUEST+
-    unsigned tracks = 1;   ///< number of tracks
-    bool two_sided = true; ///< false if answers are right or wrong; see read_procedure()
-    std::vector<std::size_t> start = {}; ///< first value of each track
-    std::vector<std::size_t> steps = {}; ///< step sizes; every second reversal moves on to the next
-    std::vector<double> slopes = {};     ///< slopes for QUEST+, as standard deviations of the normal
-    std::vector<double> lapses = {};
-};
-
 /// [[run]]. Motions and methods are indices into the definition's lists.
 struct run_definition {
     run_outline outline;
@@ -99,7 +85,6 @@ struct run_definition {
     std::map<std::size_t, method_variants> variants = {}; ///< variants by index of the method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
     std::size_t stimuli = 1;                              ///< number of stimuli of a trial
-    adaptive_options adaptive = {};
     unsigned max_in_a_row = 3; ///< greatest number of trials of one motion in a row
     std::string blocks = {};   ///< "methods" or "motions": one block for each; empty if all trials are mixed
     source_place where = {};

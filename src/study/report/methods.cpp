@@ -384,9 +384,6 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
     if (!s.design)
         return json::object();
     const run_definition& r = s.design->runs.at(run);
-    std::string_view section;
-    const std::string procedure = task_in(r.outline).describe_procedure(r, section);
-    sections.insert(section);
     return {{"attribute", r.attribute},
             {"question", r.outline.question},
             {"animation", r.animation ? stream_text(s, "display") : "no"},
@@ -396,7 +393,7 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
                                     : ""},
             {"labels", words_or_none(r.outline.labels)},
             {"choices", words_or_none(r.choices)},
-            {"procedure", procedure},
+            {"procedure", task_in(r.outline).describe_procedure(r, sections)},
             {"catch_percent", 100.0 * r.catch_share},
             {"blocks", files::or_null(r.blocks)},
             {"in_a_row", r.motions.size() > 1 ? fmt::format("{}", r.max_in_a_row) : "no limit"},

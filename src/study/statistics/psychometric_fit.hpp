@@ -37,6 +37,12 @@ constexpr psychometric_family two_answers(sigmoid kind) noexcept
     return {kind, 0.0, 0.12, 0.5};
 }
 
+/// Returns the family of right answers to two intervals: a guess is right in half of the trials.
+constexpr psychometric_family right_answers(sigmoid kind) noexcept
+{
+    return {.kind = kind, .guess = 0.5};
+}
+
 /// Returns F(x).
 double chance(double x, const psychometric& p, const psychometric_family& f);
 

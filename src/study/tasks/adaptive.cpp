@@ -5,12 +5,18 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/variation.hpp"
@@ -24,6 +30,14 @@ using detail::toml_table;
 
 constexpr unsigned most_tracks = 8;
 constexpr double range_steps = 40.0; ///< number of steps in the range of values
+
+// Names of procedures, by the number of positive answers in a row that move a staircase down.
+constexpr std::array<std::string_view, 4> procedures{"quest", "1up1down", "1up2down", "1up3down"};
+
+bool is_quest(const adaptive_track& t)
+{
+    return t.down == 0;
+}
 
 // Reads a list of numbers. If it has two, returns `count` numbers from the first to the second.
 std::vector<double> read_prior(const toml_table& t, std::string_view key, const detail::bounds& b,
@@ -51,6 +65,70 @@ double tidy(double v)
     return std::round(v * digits) / digits;
 }
 
+// Returns the procedure with a name, as adaptive_track::down.
+unsigned find_procedure(const toml_table& t, const std::string& name)
+{
+    const auto at = std::ranges::find(procedures, name);
+    if (at == procedures.end())
+        t.fail("procedure", fmt::format("procedure has {}", detail::quoted(name)),
+               fmt::format("use {}", fmt::join(procedures, ", ")));
+    return static_cast<unsigned>(at - procedures.begin());
+}
+
+// Reads the procedure of each track.
+std::vector<adaptive_track> read_tracks(const toml_table& t, bool two_sided)
+{
+    std::vector<adaptive_track> all;
+    const std::optional<unsigned> tracks = t.whole("tracks", 1, most_tracks);
+    if (const toml::node* n = t.node("procedure"); n == nullptr || !n->is_array()) {
+        const std::string name =
+            t.need(t.choice("procedure", {procedures.begin(), procedures.end()}), "procedure");
+        const unsigned down = find_procedure(t, name);
+        all.resize(tracks.value_or(two_sided && down > 1 ? 2 : 1), {.down = down});
+        return all;
+    }
+    for (const std::string& name : t.texts("procedure", most_tracks))
+        all.push_back({.down = find_procedure(t, name)});
+    if (all.empty())
+        t.fail("procedure", "procedure is empty", "name a procedure for each track");
+    if (tracks.value_or(all.size()) != all.size())
+        t.fail("tracks", fmt::format("tracks is {}, but procedure has {}", *tracks, all.size()),
+               "leave tracks out");
+    return all;
+}
+
+// Refuses keys of QUEST+ in a run without it, and keys of staircases in a run without them.
+void refuse_unused_keys(const toml_table& t, const adaptive_options& a)
+{
+    for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
+        if (t.has(key) && std::ranges::count(a.tracks, of_quest, is_quest) == 0)
+            t.fail(key,
+                   fmt::format("{} does not apply to procedure \"{}\"", key, procedures.at(a.tracks[0].down)),
+                   "leave it out");
+}
+
+// Sets the sides of tracks: mirrors every second staircase of a kind, and begins at the other end. A
+// staircase that needs several answers for a step stays on one side of the pse. A fit would then move the pse
+// to that side and find a jnd that is too small. `greatest`: index of the greatest value.
+void set_sides(const toml_table& t, adaptive_options& a, std::size_t greatest)
+{
+    std::array<std::size_t, procedures.size()> counts{};
+    for (adaptive_track& one : a.tracks) {
+        const bool is_other_side = a.two_sided && counts.at(one.down)++ % 2 == 1;
+        one.mirrored = is_other_side && one.down > 1;
+        one.start = is_other_side ? 0 : greatest;
+        if (!a.two_sided && one.down == 1)
+            t.fail("procedure", "1up1down leads to 50 % right answers, which guesses reach",
+                   "use 1up2down, 1up3down or quest");
+    }
+    for (const unsigned down : {2U, 3U})
+        if (counts.at(down) % 2 != 0)
+            t.fail(t.node("procedure")->is_array() ? "procedure" : "tracks",
+                   fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
+                               counted(counts.at(down), "track"), procedures.at(down)),
+                   "use an even number: every second track is mirrored");
+}
+
 std::size_t find_nearest(const std::vector<double>& values, double v)
 {
     const auto at = std::ranges::min_element(values, {}, [v](double one) { return std::abs(one - v); });
@@ -72,8 +150,7 @@ void set_steps(const toml_table& t, adaptive_options& a, const std::vector<doubl
 
 class chooser final : public value_chooser {
 public:
-    chooser(const run_definition& r, const psychometric_family& family, is_positive positive)
-        : run_(r), positive_(positive), tracks_(r, family)
+    chooser(const run_definition& r, is_positive positive) : run_(r), positive_(positive), tracks_(r.outline)
     {
     }
 
@@ -93,12 +170,49 @@ private:
     adaptive_tracks tracks_;
 };
 
+psychometric_family find_family(const adaptive_options& a)
+{
+    return a.two_sided ? two_answers(sigmoid::normal) : right_answers(sigmoid::normal);
+}
+
 std::string list_numbers(const std::vector<double>& numbers)
 {
     std::vector<std::string> texts;
     for (const double v : numbers)
         texts.push_back(plain_number(v, 4));
     return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string describe_quest(const adaptive_options& a)
+{
+    return fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. Priors were "
+                       "uniform over thresholds at the values, slopes (standard deviations of the normal) of "
+                       "{} and lapses of {}",
+                       list_numbers(a.slopes), list_numbers(a.lapses));
+}
+
+// Describes the staircases of one procedure.
+std::string describe_staircases(const run_outline& o, unsigned down)
+{
+    const adaptive_options& a = o.adaptive;
+    std::vector<double> steps;
+    for (const std::size_t places : a.steps)
+        steps.push_back(static_cast<double>(places) * (o.values[1] - o.values[0]));
+    std::vector<double> start;
+    for (const adaptive_track& one : a.tracks)
+        if (one.down == down)
+            start.push_back(o.values[one.start]);
+    const double led_to = 100.0 * std::pow(0.5, 1.0 / down);
+    const std::string mirrored =
+        fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
+                    counted(down, "negative answer"), 100.0 - led_to);
+    const char* const positive = a.two_sided ? "positive answer" : "right answer";
+    return fmt::format(
+        "staircases (Levitt 1971) from {}: a step down after {} in a row, a step up after each "
+        "other answer, which leads to {:.1f} % {}s{}; step sizes of {}, the next one after "
+        "every second reversal",
+        list_numbers(start), counted(down, positive), led_to, positive,
+        a.two_sided && down > 1 ? mirrored : "", list_numbers(steps));
 }
 
 class adaptive final : public comparison_task {
@@ -126,16 +240,17 @@ public:
     }
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {
-        return choose_adaptively(r, two_answers(sigmoid::normal), is_more);
+        return choose_adaptively(r, is_more);
     }
 
     // Results.
 
     std::string describe(const run_outline& o) const override { return describe_range(*this, o); }
 
-    std::string describe_procedure(const run_definition& r, std::string_view& section) const override
+    std::string describe_procedure(const run_definition& r,
+                                   std::set<std::string_view>& sections) const override
     {
-        return describe_adaptive(r, section);
+        return describe_adaptive(r, sections);
     }
 };
 
@@ -149,14 +264,11 @@ const task& adaptive_task()
 
 void read_procedure(const toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided)
 {
-    constexpr std::array<std::string_view, 4> names{"quest", "1up1down", "1up2down", "1up3down"};
     run_outline& o = r.outline;
-    adaptive_options& a = r.adaptive;
-    const std::string name = t.need(t.choice("procedure", {names.begin(), names.end()}), "procedure");
-    a.down = static_cast<unsigned>(std::ranges::find(names, name) - names.begin());
-    for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
-        if (t.has(key) && of_quest != (a.down == 0))
-            t.fail(key, fmt::format("{} does not apply to procedure \"{}\"", key, name), "leave it out");
+    adaptive_options& a = o.adaptive;
+    a.two_sided = two_sided;
+    a.tracks = read_tracks(t, two_sided);
+    refuse_unused_keys(t, a);
     const std::vector<double> range = read_numbers(t, "range", b);
     if (range.size() != 2 || !(range[0] < range[1]))
         t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
@@ -173,61 +285,34 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     for (std::size_t i = 0; i < count; ++i)
         o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
     set_steps(t, a, steps, step);
-    // A staircase that needs several answers for a step stays on one side of the pse. A fit would then move
-    // the pse to that side and find a jnd that is too small.
-    o.is_adaptive = true;
-    a.two_sided = two_sided;
-    if (!two_sided && a.down == 1)
-        t.fail("procedure", "1up1down leads to 50 % right answers, which guesses reach",
-               "use 1up2down, 1up3down or quest");
-    a.tracks = t.whole("tracks", 1, most_tracks).value_or(a.is_mirrored() ? 2 : 1);
-    if (a.is_mirrored() && a.tracks % 2 != 0)
-        t.fail("tracks",
-               fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
-                           counted(a.tracks, "track"), name),
-               "use an even number: every second track is mirrored");
+    set_sides(t, a, count - 1);
     const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
-    if (start.size() > 1 && start.size() != a.tracks)
+    if (start.size() > 1 && start.size() != a.tracks.size())
         t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
-    for (unsigned i = 0; i < a.tracks; ++i) // with two sides alternates between both ends
-        a.start.push_back(find_nearest(o.values, start.empty()       ? range[two_sided && i % 2 == 1 ? 0 : 1]
-                                                 : start.size() == 1 ? start[0]
-                                                                     : start[i]));
+    for (std::size_t i = 0; i < a.tracks.size() && !start.empty(); ++i)
+        a.tracks[i].start = find_nearest(o.values, start[start.size() == 1 ? 0 : i]);
     a.slopes =
         read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / range_steps, width / 2.0}, 5, true);
     a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
 }
 
-std::string describe_adaptive(const run_definition& r, std::string_view& section)
+std::string describe_adaptive(const run_definition& r, std::set<std::string_view>& sections)
 {
-    const adaptive_options& a = r.adaptive;
-    const std::vector<double>& values = r.outline.values;
-    const double step = values[1] - values[0];
-    const std::string text =
-        fmt::format("{} in each condition, values from {} to {} in steps of {}; ", counted(a.tracks, "track"),
-                    plain_number(values.front()), plain_number(values.back()), plain_number(step));
-    section = a.down == 0 ? "has_quest" : "has_staircases";
-    if (a.down == 0)
-        return text + fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. "
-                                  "Priors were uniform over thresholds at the values, slopes (standard "
-                                  "deviations of the normal) of {} and lapses of {}",
-                                  list_numbers(a.slopes), list_numbers(a.lapses));
-    std::vector<double> steps;
-    for (const std::size_t places : a.steps)
-        steps.push_back(static_cast<double>(places) * step);
-    std::vector<double> start;
-    for (const std::size_t place : a.start)
-        start.push_back(values[place]);
-    const double led_to = 100.0 * std::pow(0.5, 1.0 / a.down);
-    const std::string mirrored =
-        fmt::format("; every second track mirrored, up after {} in a row, which leads to {:.1f} %",
-                    counted(a.down, "negative answer"), 100.0 - led_to);
-    const char* const positive = a.two_sided ? "positive answer" : "right answer";
-    return text + fmt::format("staircases (Levitt 1971) from {}: a step down after {} in a row, a step up "
-                              "after each other answer, which leads to {:.1f} % {}s{}; step "
-                              "sizes of {}, the next one after every second reversal",
-                              list_numbers(start), counted(a.down, positive), led_to, positive,
-                              a.is_mirrored() ? mirrored : "", list_numbers(steps));
+    const run_outline& o = r.outline;
+    const adaptive_options& a = o.adaptive;
+    std::vector<std::string> parts{fmt::format("{} in each condition, values from {} to {} in steps of {}",
+                                               counted(a.tracks.size(), "track"),
+                                               plain_number(o.values.front()), plain_number(o.values.back()),
+                                               plain_number(o.values[1] - o.values[0]))};
+    for (unsigned down = 0; down < procedures.size(); ++down) {
+        const auto tracks = std::ranges::count(a.tracks, down, &adaptive_track::down);
+        if (tracks == 0)
+            continue;
+        const std::string which = tracks == std::ssize(a.tracks) ? "" : fmt::format("{} of them: ", tracks);
+        parts.push_back(which + (down == 0 ? describe_quest(a) : describe_staircases(o, down)));
+        sections.insert(down == 0 ? "has_quest" : "has_staircases");
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::vector<std::string_view> add_procedure_keys(std::vector<std::string_view> keys)
@@ -242,8 +327,8 @@ std::vector<planned_trial> list_track_cells(const run_definition& r)
     unsigned track = 0;
     for (const std::size_t motion : r.motions)
         for (const std::size_t method : r.methods)
-            for (const std::size_t start : r.adaptive.start)
-                add_comparison(cells, motion, r.variants.at(method), start, false, ++track);
+            for (const adaptive_track& one : r.outline.adaptive.tracks)
+                add_comparison(cells, motion, r.variants.at(method), one.start, false, ++track);
     return cells;
 }
 
@@ -255,10 +340,9 @@ std::string describe_range(const task& of, const run_outline& o)
                        o.standard ? "; standard " + plain_number(*o.standard) : "");
 }
 
-std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, const psychometric_family& family,
-                                                 is_positive positive)
+std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, is_positive positive)
 {
-    return std::make_unique<chooser>(r, family, positive);
+    return std::make_unique<chooser>(r, positive);
 }
 
 void value_staircase::answer(bool positive)
@@ -278,13 +362,12 @@ adaptive_tracks::procedure& adaptive_tracks::find(unsigned track)
         return tracks_.emplace(track, std::move(p)).first->second;
     };
     const adaptive_options& a = run_.adaptive;
-    const std::vector<double>& values = run_.outline.values;
-    const unsigned of_condition = (track - 1) % a.tracks;
-    if (a.down > 0)
-        return insert(value_staircase(a.down, a.is_mirrored() && of_condition % 2 == 1, a.steps,
-                                      a.start[of_condition], values.size() - 1));
-    const quest_grid grid{values, values, {}, a.slopes, a.lapses};
-    return insert(quest(grid, [f = family_](double x, const psychometric& p) { return chance(x, p, f); }));
+    const adaptive_track& one = a.tracks[(track - 1) % a.tracks.size()];
+    if (!is_quest(one))
+        return insert(value_staircase(one, a.steps, run_.values.size() - 1));
+    const quest_grid grid{run_.values, run_.values, {}, a.slopes, a.lapses};
+    return insert(
+        quest(grid, [f = find_family(a)](double x, const psychometric& p) { return chance(x, p, f); }));
 }
 
 std::size_t adaptive_tracks::next(unsigned track)

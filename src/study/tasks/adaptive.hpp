@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,7 +15,6 @@
 #include <vector>
 
 #include "study/experiment/definition.hpp"
-#include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/quest.hpp"
 #include "study/statistics/up_down.hpp"
 #include "study/tasks/task.hpp"
@@ -24,13 +24,11 @@ namespace tactor::study {
 /// A staircase on a list of values.
 class value_staircase {
 public:
-    /// Starts at `start`. `in_row`: number of answers in a row for a step, above 0. `top`: greatest index of
-    /// a value.
-    value_staircase(unsigned in_row, bool mirrored, std::vector<std::size_t> steps, std::size_t start,
-                    std::size_t top)
-        : rule_({.in_row = in_row, .sizes = steps.size(), .mirrored = mirrored}),
+    /// \pre `t` is a staircase. `top`: greatest index of a value.
+    value_staircase(const adaptive_track& t, std::vector<std::size_t> steps, std::size_t top)
+        : rule_({.in_row = t.down, .sizes = steps.size(), .mirrored = t.mirrored}),
           steps_(std::move(steps)),
-          at_(start),
+          at_(t.start),
           top_(top)
     {
     }
@@ -45,9 +43,9 @@ private:
     std::size_t top_;
 };
 
-/// Reads the procedure of a run whose answers choose the values, from a grid over `range`. `two_sided`: both
-/// answers have equal rank. Then a staircase that needs several positive answers in a row gets a mirrored
-/// twin. Else answers are right or wrong, and tracks start at the greatest value.
+/// Reads the procedures of a run whose answers choose the values, from a grid over `range`. `two_sided`: both
+/// answers have equal rank. Then every second one of the staircases that need the same number of positive
+/// answers in a row is mirrored. Else answers are right or wrong, and tracks start at the greatest value.
 /// \throws error (bad_input) with line and column.
 void read_procedure(const detail::toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided);
 
@@ -63,21 +61,19 @@ std::vector<planned_trial> list_track_cells(const run_definition& r);
 
 /// Describes a trial and the range of its values in the methods section, as task::describe() does.
 std::string describe_range(const task& of, const run_outline& o);
-/// Describes the procedure in the methods section, as task::describe_procedure() does.
-std::string describe_adaptive(const run_definition& r, std::string_view& section);
+/// Describes the procedures in the methods section, as task::describe_procedure() does.
+std::string describe_adaptive(const run_definition& r, std::set<std::string_view>& sections);
 
 /// Function that tells whether an answer is positive.
 using is_positive = bool (*)(const run_outline& o, std::string_view method_1, unsigned response);
 
-/// Returns the chooser of an adaptive run. `family`: function that QUEST+ assumes.
-std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, const psychometric_family& family,
-                                                 is_positive positive);
+/// Returns the chooser of an adaptive run.
+std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, is_positive positive);
 
 /// The tracks of an adaptive run, with the answers so far.
 class adaptive_tracks {
 public:
-    /// `family`: function that QUEST+ assumes.
-    adaptive_tracks(const run_definition& r, const psychometric_family& family) : run_(r), family_(family) {}
+    explicit adaptive_tracks(const run_outline& r) : run_(r) {}
 
     /// Returns the index of the value for a track's next trial. `track` counts from 1.
     std::size_t next(unsigned track);
@@ -88,8 +84,7 @@ private:
     using procedure = std::variant<value_staircase, quest>;
     procedure& find(unsigned track);
 
-    const run_definition& run_;
-    psychometric_family family_;
+    const run_outline& run_;
     std::map<unsigned, procedure> tracks_ = {};
 };
 

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <set>
+
 #include <fmt/format.h>
 
 #include "study/analysis/measures.hpp"
 #include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
+#include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/adaptive.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
 
 namespace tactor::study {
 namespace {
-
-// Returns the family of right answers: a guess is right in half of the trials.
-psychometric_family right_answers(sigmoid kind)
-{
-    return {.kind = kind, .guess = 0.5};
-}
 
 bool is_right(const run_outline&, std::string_view method_1, unsigned response)
 {
@@ -62,14 +59,13 @@ public:
 
     std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
-        return r.outline.is_adaptive ? list_track_cells(r) : list_value_cells(r, false);
+        return r.outline.is_adaptive() ? list_track_cells(r) : list_value_cells(r, false);
     }
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {
-        return r.outline.is_adaptive ? choose_adaptively(r, right_answers(sigmoid::normal), is_right)
-                                     : task::choose_values(r);
+        return r.outline.is_adaptive() ? choose_adaptively(r, is_right) : task::choose_values(r);
     }
-    bool uses_column(const run_outline& o) const override { return o.is_adaptive; }
+    bool uses_column(const run_outline& o) const override { return o.is_adaptive(); }
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
@@ -138,11 +134,13 @@ public:
 
     std::string describe(const run_outline& o) const override
     {
-        return o.is_adaptive ? describe_range(*this, o) : task::describe(o);
+        return o.is_adaptive() ? describe_range(*this, o) : task::describe(o);
     }
-    std::string describe_procedure(const run_definition& r, std::string_view& section) const override
+    std::string describe_procedure(const run_definition& r,
+                                   std::set<std::string_view>& sections) const override
     {
-        return r.outline.is_adaptive ? describe_adaptive(r, section) : task::describe_procedure(r, section);
+        return r.outline.is_adaptive() ? describe_adaptive(r, sections)
+                                       : task::describe_procedure(r, sections);
     }
     std::vector<std::string_view> list_sections(const run_outline&) const override
     {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -224,11 +225,10 @@ public:
     virtual std::string describe(const run_outline& o) const;
     /// Lists the sections of methods.md that a run needs.
     virtual std::vector<std::string_view> list_sections(const run_outline&) const { return {"has_cells"}; }
-    /// Describes how answers determine the values; usually empty. Sets `section` to the section of methods.md
-    /// that it needs.
-    virtual std::string describe_procedure(const run_definition&, std::string_view& section) const
+    /// Describes how answers determine the values; usually empty. Adds the sections of methods.md that it
+    /// needs.
+    virtual std::string describe_procedure(const run_definition&, std::set<std::string_view>&) const
     {
-        section = {};
         return {};
     }
 
