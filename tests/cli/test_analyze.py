@@ -27,7 +27,7 @@ class AnalyzeTest(ToolTest):
 
 class Figures(AnalyzeTest):
     def test_every_figure_matches_r_and_nothing_else_is_printed(self):
-        known = {"method", "reference", "task", "trials", "early", "dropped", "left_out", "a", "b", "participant", "why"}
+        known = {"method", "reference", "task", "trials", "early", "dropped", "left_out", "track_rule", "a", "b", "participant", "why"}
         for name in studies.STUDIES:
             golden = check_r.read((check_r.GOLDEN / f"{name}.tsv").read_text(encoding="utf-8"))
             self.assertGreater(len(golden), 100)

@@ -89,7 +89,7 @@ THRICE = (FELT.partition("[[run]]")[0].replace("name", "sessions = 3\nname", 1) 
           + studies.toml("method", "hard", level_dbfs=-10) + studies.run("there", "detect", 24, catch=0.5)
           + '[[group]]\nname = "a"\n[[group]]\nname = "b"\n')
 
-TRACKS = studies.run("climb", "adaptive", 12, question="?", vary="length_mm", procedure="1up1down", range=[4, 8], standard=6)
+TRACKS = studies.run("climb", "adaptive", 12, question="?", vary="length_mm", procedure="1up1down", reversals=2, range=[4, 8], standard=6)
 
 LINE = FELT.replace('task = "identify"', 'task = "rate"\nattribute = "even"\nquestion = "?"\nscale = "vas"\nlabels = ["no", "yes"]')
 

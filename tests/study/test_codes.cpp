@@ -425,7 +425,7 @@ TEST_CASE("a trial that became void does not move its track, and its answer coun
         // The value under test, not its standard, was the stronger one.
         study::set_response(row, r, row.method_1 == "a" ? 1 : 2, 0.5);
         row.is_void = is_void;
-        held.add(step(trial, attempt), row, 0);
+        static_cast<void>(held.add(step(trial, attempt), row, 0));
         return *study::find_value(c.p.definition, t);
     };
     CHECK(add(1, 1, true) == -16.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sessions with a person: their steps, the participant's page, and the keys of input devices (for a device
 // itself see tests/vm/guest/test_keypad.py).
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -26,7 +27,16 @@ using json = nlohmann::ordered_json;
 
 flow_run make_flow_run(unsigned trials, unsigned practice = 0, bool rest = false)
 {
-    return {practice, 0, run_queue(trials), rest};
+    return {practice, 0, run_queue(std::vector<planned_trial>(trials)), rest};
+}
+
+// Plans n trials of three tracks by turns.
+std::vector<planned_trial> make_tracks(unsigned n)
+{
+    std::vector<planned_trial> all(n);
+    for (unsigned i = 0; i < n; ++i)
+        all[i].track = i % 3 + 1;
+    return all;
 }
 
 session_step trial_step(std::size_t run, unsigned trial, unsigned attempt = 1)
@@ -121,7 +131,7 @@ TEST_CASE("questionnaires come before the first run, between runs before the bre
     f.answered(ask(0));
     CHECK(f.next().what == step_kind::over);
     // Only questions are left: nothing is walked.
-    run_queue done(1);
+    run_queue done(std::vector<planned_trial>(1));
     done.take(false);
     CHECK(session_flow({{0, 0, done, false}}, false, 9, {{0, after}}).next() == ask(0));
 }
@@ -235,9 +245,9 @@ TEST_CASE("a pause comes before the next trial, and after five that became void 
 
 TEST_CASE("a resumed session skips its finished part")
 {
-    run_queue half(2);
+    run_queue half(std::vector<planned_trial>(2));
     half.take(true);
-    run_queue done(1);
+    run_queue done(std::vector<planned_trial>(1));
     done.take(false);
     session_flow f({{0, 0, done, true}, {2, 1, half, true}}, false, 0);
     CHECK(f.next() == session_step{.what = step_kind::introduce, .run = 1});
@@ -249,17 +259,47 @@ TEST_CASE("a resumed session skips its finished part")
     CHECK(session_flow({{0, 0, done, true}}, true, 9).next().what == step_kind::over);
 }
 
+TEST_CASE("trials of a track that has ended are skipped, until its last answer is made void")
+{
+    run_queue q(make_tracks(6)); // tracks 1, 2, 3, 1, 2, 3
+    q.take(true);                // track 1 comes again at the end
+    q.take(false, true);         // ends track 2
+    CHECK(q.next() == pending_trial{3, 1});
+    q.take(false, true); // ends track 3
+    CHECK(q.next() == pending_trial{4, 1});
+    CHECK(q.take_back()); // track 3 goes on
+    CHECK(q.next() == pending_trial{4, 1});
+    q.take(false);
+    CHECK(q.next() == pending_trial{6, 1});
+    q.take(false);
+    CHECK(q.next() == pending_trial{1, 2});
+    q.take(false, true); // ends track 1
+    CHECK(q.next() == pending_trial{3, 2});
+    q.take(false, true);
+    CHECK(q.done());
+    CHECK(q.take_back());
+    CHECK(q.next() == pending_trial{3, 3});
+}
+
 // A resumed session knows only the tables.
 TEST_CASE("in any course of events each trial counts once, and lines alone restore the same place")
 {
     random_numbers r("flow");
     for (int round = 0; round < test::rounds(300); ++round) {
-        session_flow f = begun({make_flow_run(6), make_flow_run(3)});
+        session_flow f = begun({flow_run{.trials = run_queue(make_tracks(9))}, make_flow_run(3)});
         struct line {
             pending_trial which;
             bool is_void;
         };
         std::map<std::size_t, std::vector<line>> lines;
+        // Track 1 ends at its first answer, track 2 at its second; track 3 has only three trials.
+        const auto ends = [](std::size_t run, const std::vector<line>& written) {
+            const auto find_track = [](const line& l) { return (l.which.trial - 1) % 3 + 1; };
+            return run == 0 && !written.back().is_void &&
+                   std::ranges::count_if(written, [&](const line& l) {
+                       return !l.is_void && find_track(l) == find_track(written.back());
+                   }) == find_track(written.back());
+        };
         for (session_step s = f.next(); s.what != step_kind::over; s = f.next()) {
             if (s.what != step_kind::trial) {
                 f.go_on();
@@ -267,19 +307,23 @@ TEST_CASE("in any course of events each trial counts once, and lines alone resto
             }
             const bool is_void = r.below(4) == 0;
             lines[s.run].push_back({s.which, is_void});
-            f.took(is_void);
+            f.took(is_void, ends(s.run, lines[s.run]));
             if (r.below(5) == 0 && f.void_last()) {
                 REQUIRE_FALSE(lines[f.void_run()].back().is_void);
                 lines[f.void_run()].back().is_void = true;
             }
         }
         for (const auto& [run, written] : lines) {
-            run_queue again(run == 0 ? 6 : 3);
+            run_queue again(run == 0 ? make_tracks(9) : std::vector<planned_trial>(3));
+            std::vector<line> so_far;
             for (const line& l : written) {
+                REQUIRE_FALSE(again.done());
                 REQUIRE(again.next() == l.which);
-                again.take(l.is_void);
+                so_far.push_back(l);
+                again.take(l.is_void, ends(run, so_far));
             }
             CHECK(again.done());
+            CHECK(std::ranges::count(written, false, &line::is_void) == (run == 0 ? 1 + 2 + 3 : 3));
         }
     }
 }

@@ -420,6 +420,8 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
                    counted(r.early, "answer"));
     if (r.n == 0)
         return;
+    if (!r.tracks.empty())
+        say(stdout, "{}", wrapped("  ", describe_tracks(r)));
     print_times(r.times);
     for (const study::result& row : r.results) {
         if (!has_table(row.value))

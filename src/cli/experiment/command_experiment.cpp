@@ -279,7 +279,8 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     }
     std::size_t trials = 0;
     for (const study::run_sequence& r : p.runs)
-        trials += r.trials.size();
+        trials += static_cast<std::size_t>(
+            std::ranges::count(store.rows(p.definition.runs[r.run]), false, &study::trial_row::is_void));
     say(stdout, "{}: {} in {}, in {}\n", who, counted(trials, "trial"), counted(p.runs.size(), "run"),
         o.folder);
     return status_ok;

@@ -104,6 +104,7 @@ struct listed_run {
     std::optional<study::rating_scale> scale = {};
     double break_s = 0.0;
     study::run_time time = {};
+    bool may_end_early = false;
     std::vector<counted_value> values = {};
     std::vector<listed_trial> practice = {};
     std::vector<listed_trial> trials = {};
@@ -130,6 +131,8 @@ void members(Io& io, Run& v)
        {"duration of the run with its practice, without the time for answers", detail::from_0});
     io("waits", v.time.waits, waiting);
     io("waits_s", v.time.waits_s, waiting);
+    io("may_end_early", v.may_end_early,
+       {"whether tracks may end before all trials are played; trials and duration_s are then the most"});
     io("values", v.values,
        {"trials by value; empty if the run varies none, or if the answers choose the values"});
     io("practice", v.practice, {"practice trials, which do not count"});
@@ -237,7 +240,8 @@ listed_run list_run(const study::prepared_experiment& p, const study::run_sequen
                    r.min_response_s,
                    task.scale(r.outline),
                    r.break_s,
-                   t};
+                   t,
+                   r.outline.adaptive.may_end_early()};
     for (const auto& [value, trials] : count_values(p, s))
         all.values.push_back({value, trials});
     all.practice = list_trials(p, r, s.practice);
@@ -347,9 +351,10 @@ void print_dry_run_text(const study::prepared_experiment& p)
     for (std::size_t i = 0; i < p.runs.size(); ++i) {
         const study::run_sequence& s = p.runs[i];
         const study::run_definition& r = d.runs[s.run];
-        say(stdout, "\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(), r.outline.name,
-            task_in(r.outline).name(), r.animation ? ", animation" : "", counted(s.trials.size(), "trial"),
-            time_text(times[i]), r.outline.question);
+        const char* const most = r.outline.adaptive.may_end_early() ? "at most " : "";
+        say(stdout, "\nrun {} of {}: {} ({}{}), {}{}, {}{}\n{}\n", i + 1, p.runs.size(), r.outline.name,
+            task_in(r.outline).name(), r.animation ? ", animation" : "", most,
+            counted(s.trials.size(), "trial"), most, time_text(times[i]), r.outline.question);
         std::vector<std::string> values;
         for (const auto& [value, trials] : count_values(p, s))
             values.push_back(

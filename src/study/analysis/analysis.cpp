@@ -10,6 +10,7 @@
 
 #include "core/words.hpp"
 #include "study/analysis/levels.hpp"
+#include "study/tasks/adaptive.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
@@ -46,6 +47,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
 {
     run_analysis r;
     r.run = d.experiment.runs[which];
+    r.track_rule = name_stop_rule(r.run.adaptive);
     run_people people{{}, has_groups(r.run, d.experiment.groups)};
     const auto plan = task_in(r.run).plan_cells(r.run);
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
@@ -64,6 +66,8 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         r.trials += own.trials.size();
         people.all.push_back(
             {d.participants[i], &own.trials, d.groups.empty() ? "" : d.groups[i], &own.predictions});
+        for (const played_track& t : own.tracks)
+            r.tracks.push_back({d.participants[i], t});
     }
     r.n = people.all.size();
     r.times = summarise_times(r.run, people.all);
@@ -79,9 +83,16 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const std::size_t count = d.data[i][which].trials.size() + d.data[i][which].dropped;
         const std::size_t planned = std::size_t{r.run.trials} * d.data[i][which].sessions;
-        if (planned != 0 && count != planned && count != 0)
-            a.warnings.push_back(fmt::format("{}: sub-{} has {} that count, of {}", r.run.name,
-                                             d.participants[i], counted(count, "trial"), planned));
+        const std::vector<played_track>& tracks = d.data[i][which].tracks;
+        if (planned == 0 || count == planned || count == 0)
+            continue;
+        // Tracks get equal shares of the trials, as far as their number allows.
+        const std::size_t share = tracks.empty() ? 0 : planned / tracks.size();
+        const auto is_whole = [share](const played_track& t) { return t.ended || t.trials >= share; };
+        if (tracks.empty() || !std::ranges::all_of(tracks, is_whole))
+            a.warnings.push_back(fmt::format("{}: sub-{} has {} that count, of {}{}", r.run.name,
+                                             d.participants[i], counted(count, "trial"),
+                                             tracks.empty() ? "" : "at most ", planned));
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,14 +58,18 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
     return all;
 }
 
-// Simulates the answers to all trials of a run. Repeats a void trial until it is valid.
+// Simulates the answers to the trials of a run, except those of tracks that have ended. Repeats a void trial
+// until it is valid. Adds the trials to `played`.
 void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
-                const run_definition& r)
+                const run_definition& r, std::vector<trial>& played)
 {
     const task& own = task_in(r.outline);
     const auto values = own.choose_values(r);
+    std::set<unsigned> ended;
     for (std::size_t i = 0; i < p.trials.size(); ++i) {
         planned_trial& t = p.planned[i];
+        if (ended.contains(t.track))
+            continue;
         values->choose(t);
         simulated_answer a;
         unsigned attempt = 0;
@@ -76,7 +81,12 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
             p.trials[i].target = *target;
         const std::string& method_1 = d.methods[t.method_1].name;
         own.score(p.trials[i], r.outline, method_1, a.response);
+        played.push_back(p.trials[i]);
+        if (t.track == 0)
+            continue;
         values->take(t.track, method_1, static_cast<unsigned>(a.response.number));
+        if (values->has_ended(t.track))
+            ended.insert(t.track);
     }
 }
 
@@ -154,8 +164,7 @@ struct simulated_study {
                 if (people[n].empty())
                     continue;
                 person_run& who = people[n][i];
-                answer_all(who, {s, sessions[n], run, stimuli, who.code}, sessions[n], run);
-                trials[i].insert(trials[i].end(), who.trials.begin(), who.trials.end());
+                answer_all(who, {s, sessions[n], run, stimuli, who.code}, sessions[n], run, trials[i]);
             }
             std::size_t test = 0;
             if (outcome.tests.front().factor.empty()) {

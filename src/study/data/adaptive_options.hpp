@@ -20,11 +20,16 @@ struct adaptive_track {
 
 /// Procedures of an adaptive run. They give values as indices into the run's values.
 struct adaptive_options {
+    /// Returns true if tracks may end before all their trials are played.
+    bool may_end_early() const noexcept { return stop_sd || reversals; }
+
     std::vector<adaptive_track> tracks = {}; ///< tracks of each condition; empty if the run is not adaptive
     bool two_sided = true;                   ///< false if answers are right or wrong; see read_procedure()
     std::vector<std::size_t> steps = {};     ///< step sizes; every second reversal moves on to the next
     std::vector<double> slopes = {};         ///< slopes for QUEST+, as standard deviations of the normal
     std::vector<double> lapses = {};
+    std::optional<double> stop_sd = {}; ///< a track of QUEST+ ends when the sd of its threshold is below this
+    std::optional<unsigned> reversals = {}; ///< a staircase ends at this reversal
 
     friend bool operator==(const adaptive_options&, const adaptive_options&) = default;
 };

@@ -18,6 +18,7 @@
 #include "files/json/json_value.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/definition.hpp"
+#include "study/tasks/adaptive.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
 
@@ -210,6 +211,10 @@ private:
             run_data own = read_whole_run(folder_ / table, run);
             run_data& all = set_.data.back()[i];
             all.voids += own.voids;
+            for (played_track& t : follow_tracks(run, own.trials)) {
+                t.session = session;
+                all.tracks.push_back(t);
+            }
             for (trial& t : own.trials) {
                 t.session = session;
                 all.trials.push_back(t);
@@ -442,6 +447,8 @@ run_data read_run(const text_table& t, const run_outline& run)
         trial r = read_trial(t, i, run);
         if (t.has("early") && t.cell(i, "early"))
             r.early = t.truth(i, "early");
+        if (run.is_adaptive() && t.has("track"))
+            r.track = t.whole(i, "track", 1, count_tracks(run)).value_or(0);
         r.place = *place;
         r.attempt = attempt;
         d.trials.push_back(r);

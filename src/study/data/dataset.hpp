@@ -256,6 +256,15 @@ struct trial {
     std::optional<double> response_time_s = {};
     std::optional<bool> early = {}; ///< sooner than min_response_s; missing if not recorded
     session_number session = {};
+    unsigned track = 0; ///< track of an adaptive run, from 1; 0 if not recorded
+};
+
+/// A track of an adaptive run in a session.
+struct played_track {
+    session_number session = {};
+    unsigned track = 0;     ///< from 1
+    std::size_t trials = 0; ///< number of trials that count
+    bool ended = false;     ///< true if stop_sd or reversals ended it
 };
 
 /// A participant's trials of one run in all sessions.
@@ -265,6 +274,7 @@ struct run_data {
     std::size_t dropped = 0;                      ///< number of trials that the selection leaves out
     unsigned sessions = 1;                        ///< number of sessions that the participant has begun
     std::vector<predicted_path> predictions = {}; ///< predictions of the first session, for all runs
+    std::vector<played_track> tracks = {};        ///< if tracks may end early; includes dropped trials
 };
 
 /// A participant whose trials are left out, with the reason.

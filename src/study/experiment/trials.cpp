@@ -370,7 +370,7 @@ void session_flow::go_on()
     }
 }
 
-void session_flow::took(bool is_void)
+void session_flow::took(bool is_void, bool ends_track)
 {
     flow_run& r = runs_[run_];
     answered_.clear();
@@ -380,7 +380,7 @@ void session_flow::took(bool is_void)
         ++r.practised;
         return;
     }
-    r.trials.take(is_void);
+    r.trials.take(is_void, ends_track);
     last_run_ = run_;
     has_last_ = true;
     leave_done_run(true);

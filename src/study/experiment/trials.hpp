@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,42 +96,61 @@ struct pending_trial {
     friend bool operator==(const pending_trial&, const pending_trial&) = default;
 };
 
-/// The remaining trials of a run: first those not yet played, in order, and then those that were void.
+/// The remaining trials of a run: first those not yet played, in order, and then those that were void. Skips
+/// the trials of tracks that have ended.
 class run_queue {
 public:
-    explicit run_queue(std::size_t trials)
+    explicit run_queue(const std::vector<planned_trial>& trials)
     {
-        for (std::size_t i = 0; i < trials; ++i)
-            all_.push_back({static_cast<unsigned>(i + 1), 1});
+        for (const planned_trial& t : trials) {
+            tracks_.push_back(t.track);
+            all_.push_back({static_cast<unsigned>(tracks_.size()), 1});
+        }
     }
 
     bool done() const noexcept { return at_ >= all_.size(); }
     /// Returns the next trial. \pre !done()
     pending_trial next() const { return all_.at(at_); }
-    /// Removes the next trial after it was played. A void trial comes again at the end.
-    void take(bool is_void)
+    /// Removes the next trial after it was played. A void trial comes again at the end. `ends_track`: true if
+    /// the answer ended the trial's track.
+    void take(bool is_void, bool ends_track = false)
     {
-        const pending_trial t = all_.at(at_++);
+        last_ = at_;
         last_counts_ = !is_void;
-        if (is_void)
-            all_.push_back({t.trial, t.attempt + 1});
+        if (ends_track)
+            ended_.insert(find_track(last_));
+        go_on_after_last();
     }
-    /// Queues the last trial again, and no longer counts it. Returns false if there is no last trial that
-    /// counts.
+    /// Queues the last trial again, and no longer counts it: its track goes on. Returns false if there is no
+    /// last trial that counts.
     bool take_back()
     {
         if (!last_counts_)
             return false;
-        const pending_trial t = all_.at(at_ - 1);
         last_counts_ = false;
-        all_.push_back({t.trial, t.attempt + 1});
+        ended_.erase(find_track(last_));
+        go_on_after_last();
         return true;
     }
 
 private:
+    unsigned find_track(std::size_t place) const { return tracks_.at(all_.at(place).trial - 1); }
+    void go_on_after_last()
+    {
+        const pending_trial last = all_.at(last_);
+        if (!last_counts_)
+            all_.push_back({last.trial, last.attempt + 1});
+        at_ = last_ + 1;
+        while (!done() && ended_.contains(find_track(at_)))
+            ++at_;
+    }
+
+    std::vector<unsigned> tracks_ = {}; ///< track of each trial, 0 without one
     std::vector<pending_trial> all_ = {};
     std::size_t at_ = 0;
+    std::size_t last_ = 0; ///< place of the last trial that was played
     bool last_counts_ = false;
+    std::set<unsigned> ended_ = {}; ///< tracks that have ended
 };
 
 /// Kind of the next step, with the function to call after it.
@@ -191,8 +211,8 @@ public:
     void felt() noexcept { ++walked_; }
     void walk_back() noexcept { walked_ -= walked_ > 0 ? 1 : 0; }
     void go_on();
-    /// Records that the present trial is over, and that its line is on the disk.
-    void took(bool is_void);
+    /// Records that the present trial is over, and that its line is on the disk. `ends_track`: see run_queue.
+    void took(bool is_void, bool ends_track = false);
     /// Records that an item is answered, and that the answer is on the disk. `s`: the step that asked it.
     void answered(const session_step& s);
     /// Returns true if an item was answered since the last trial, and the next step waits for the

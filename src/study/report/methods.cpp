@@ -265,6 +265,7 @@ json describe_results(const run_analysis& r)
              {"early", r.early},
              {"dropped", r.dropped != 0 ? json(r.dropped) : json()},
              {"left_out", excluded_json(r.missing)},
+             {"tracks", r.tracks.empty() ? json() : json(describe_tracks(r))},
              {"rows", json::array()},
              {"response_time", times_json(r.times)}};
     for (const result& row : r.results)
@@ -417,7 +418,9 @@ json describe_outline(const run_outline& o, json each)
             {"asked", task_in(o).describe(o)},
             {"motions", join(o.motions)},
             {"attributed", has("has_cells") || any_has(each, "attribute")},
-            {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
+            {"trials", o.trials == 0
+                           ? not_recorded
+                           : fmt::format("{}{}", o.adaptive.may_end_early() ? "at most " : "", o.trials)},
             {"only_in", o.sessions.empty() ? json() : json(fmt::format("{}", fmt::join(o.sessions, ", ")))},
             {"told", any_has(each, "feedback")},
             {"adapts", any_has(each, "procedure")},

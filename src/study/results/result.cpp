@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/words.hpp"
+
 namespace tactor::study {
 namespace {
 
@@ -175,6 +177,21 @@ const result* find_main(const std::vector<result>& results) noexcept
 {
     const auto at = std::ranges::find(results, true, &result::is_main);
     return at != results.end() ? &*at : nullptr;
+}
+
+std::string describe_tracks(const run_analysis& r)
+{
+    const auto trials = [](const person_track& t) { return t.track.trials; };
+    const auto [least, most] = std::ranges::minmax(r.tracks, {}, trials);
+    std::size_t all = 0;
+    std::size_t ended = 0;
+    for (const person_track& t : r.tracks) {
+        all += t.track.trials;
+        ended += t.track.ended ? 1 : 0;
+    }
+    return fmt::format("{} of {} ended by {}; trials of a track: {} to {}, mean {:.1f}", ended,
+                       counted(r.tracks.size(), "track"), r.track_rule, trials(least), trials(most),
+                       static_cast<double>(all) / static_cast<double>(r.tracks.size()));
 }
 
 bool has_table(const result_value& v)

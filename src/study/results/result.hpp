@@ -275,6 +275,12 @@ struct response_times {
     std::vector<std::pair<std::string, std::optional<double>>> by = {};
 };
 
+/// A track of a participant.
+struct person_track {
+    std::string participant;
+    played_track track;
+};
+
 struct run_analysis {
     run_outline run;
     std::size_t n = 0;                         ///< number of participants with a valid trial in each cell
@@ -284,6 +290,8 @@ struct run_analysis {
     std::size_t dropped = 0;                   ///< number of their trials that the selection leaves out
     std::size_t early = 0;     ///< number of early answers of all selected participants; they count
     response_times times = {}; ///< response times of the n
+    std::vector<person_track> tracks = {}; ///< tracks of the n, if they may end early
+    std::string track_rule = {};           ///< keys that may end tracks early; empty: none
     /// Group of the participants; the name of `run` has it, too. Empty for the participants whose group does
     /// the whole run.
     std::string group = {};
@@ -319,6 +327,9 @@ const result* find_main(const std::vector<result>& results) noexcept;
 
 /// Returns true if a value has figures to show in a table.
 bool has_table(const result_value& v);
+
+/// Describes how the tracks of a run ended, and how many trials they had. \pre There are tracks.
+std::string describe_tracks(const run_analysis& r);
 
 /// Lists the reasons why figures of a run are missing, each as "RUN: FIGURE: WHY".
 std::vector<std::string> explain_missing(const run_analysis& r);

@@ -32,6 +32,8 @@ void end_members(Io& io, const run_analysis& r)
     io("trials", r.trials, {"trials that count"});
     io("early", r.early, {"answers marked early"});
     io("dropped", r.dropped, {"trials left out by drop_rule"});
+    io("track_rule", r.track_rule, {"keys of the definition that may end tracks early; empty: none"});
+    io("tracks", r.tracks, {"tracks of these participants; empty without track_rule"});
     io("response_time", r.times, {"response times"});
     io("left_out", r.missing, {"participants who lack a cell"});
 }

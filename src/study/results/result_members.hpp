@@ -432,6 +432,17 @@ void members(Io& io, Times& v)
     io("by", by, {"the same by condition"});
 }
 
+template <class Io, detail::either<person_track> Track>
+void members(Io& io, Track& v)
+{
+    io("participant", v.participant, {"code"});
+    io.or_null("session", v.track.session,
+               {"number of the session; null if there is only one", detail::above_0});
+    io("track", v.track.track, {"number of the track, as in the tables", detail::above_0});
+    io("trials", v.track.trials, {"its trials that count, with those left out by drop_rule", detail::from_0});
+    io("ended", v.track.ended, {"whether track_rule ended it"});
+}
+
 template <class Io, detail::either<excluded_person> Person>
 void members(Io& io, Person& v)
 {

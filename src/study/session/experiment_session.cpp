@@ -205,11 +205,13 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     return doubts;
 }
 
-// Passes the answer in a line to the adaptive procedure.
-void take_line(value_chooser& values, const trial_row& row)
+// Passes the answer in a line to the adaptive procedure. Returns true if it ended the trial's track.
+bool take_line(value_chooser& values, const trial_row& row)
 {
-    if (!row.is_void && row.track)
-        values.take(*row.track, row.method_1, row.response == "2" ? 2 : 1);
+    if (row.is_void || !row.track)
+        return false;
+    values.take(*row.track, row.method_1, row.response == "2" ? 2 : 1);
+    return values.has_ended(*row.track);
 }
 
 using json = nlohmann::ordered_json;
@@ -538,7 +540,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
 {
     const run_definition& r = p.definition.runs[s.run];
     const auto values = task_in(r.outline).choose_values(r);
-    run_queue queue(s.trials.size());
+    run_queue queue(s.trials);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const trial_row& row = rows[i];
         bool same = !queue.done();
@@ -556,8 +558,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             throw error(error_kind::bad_input, fmt::format("run \"{}\": line {}", r.outline.name, i + 2),
                         fmt::format("trial {}, attempt {} does not come next", row.trial, row.attempt),
                         "restore the table: it was changed, or belongs to another session");
-        queue.take(row.is_void);
-        take_line(*values, row);
+        queue.take(row.is_void, take_line(*values, row));
     }
     return queue;
 }
@@ -652,11 +653,10 @@ planned_trial held_run::find_trial(const session_step& s) const
     return t;
 }
 
-void held_run::add(const session_step& s, const trial_row& row, std::int64_t started_ns)
+bool held_run::add(const session_step& s, const trial_row& row, std::int64_t started_ns)
 {
     (s.practice ? practice_ : trials_).add(row, started_ns, p_.render.rate);
-    if (!s.practice)
-        take_line(*values_, row);
+    return !s.practice && take_line(*values_, row);
 }
 
 } // namespace tactor::study

@@ -158,7 +158,8 @@ public:
     /// Returns the trial of a step, with its value.
     planned_trial find_trial(const session_step& s) const;
     /// Writes the line of a trial as run_table::add() does, and passes its answer to the adaptive procedure.
-    void add(const session_step& s, const trial_row& row, std::int64_t started_ns);
+    /// Returns true if the answer ended the trial's track.
+    [[nodiscard]] bool add(const session_step& s, const trial_row& row, std::int64_t started_ns);
     const run_table& table(const session_step& s) const { return s.practice ? practice_ : trials_; }
 
 private:

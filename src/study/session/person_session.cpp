@@ -490,8 +490,8 @@ void person_session::trial(const session_step& s)
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
-    held_->add(s, row, started_ns);
-    flow_.took(row.is_void);
+    const bool ends_track = held_->add(s, row, started_ns);
+    flow_.took(row.is_void, ends_track);
     // Comes after add(), so that a kill during the code does not lose the answer.
     codes_.write(r, row, held_->table(s));
     if (right)

@@ -58,11 +58,11 @@ public:
             }
             const planned_trial t = run->find_trial(s);
             const trial_row row = play(s, *who, t);
-            run->add(s, row, utc_ns(now_));
+            const bool ends_track = run->add(s, row, utc_ns(now_));
             note_codes(s, t, row);
             codes_.write(p_.run_at(s.run), row, run->table(s));
             pass(row);
-            flow_.took(row.is_void);
+            flow_.took(row.is_void, ends_track);
         }
         return 0;
     }

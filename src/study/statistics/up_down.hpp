@@ -41,6 +41,8 @@ public:
         return step{!positive, turned, std::min(reversals_ / 2, o_.sizes - 1)};
     }
 
+    std::size_t reversals() const noexcept { return reversals_; }
+
 private:
     options o_;
     unsigned in_row_ = 0;

@@ -29,6 +29,7 @@ namespace {
 using detail::toml_table;
 
 constexpr unsigned most_tracks = 8;
+constexpr unsigned most_reversals = 1000;
 constexpr double range_steps = 40.0; ///< number of steps in the range of values
 
 // Names of procedures, by the number of positive answers in a row that move a staircase down.
@@ -100,7 +101,11 @@ std::vector<adaptive_track> read_tracks(const toml_table& t, bool two_sided)
 // Refuses keys of QUEST+ in a run without it, and keys of staircases in a run without them.
 void refuse_unused_keys(const toml_table& t, const adaptive_options& a)
 {
-    for (const auto& [key, of_quest] : {std::pair("steps", false), {"slope", true}, {"lapse", true}})
+    for (const auto& [key, of_quest] : {std::pair("steps", false),
+                                        {"reversals", false},
+                                        {"slope", true},
+                                        {"lapse", true},
+                                        {"stop_sd", true}})
         if (t.has(key) && std::ranges::count(a.tracks, of_quest, is_quest) == 0)
             t.fail(key,
                    fmt::format("{} does not apply to procedure \"{}\"", key, procedures.at(a.tracks[0].down)),
@@ -163,6 +168,7 @@ public:
     {
         tracks_.answer(track, positive_(run_.outline, method_1, response));
     }
+    bool has_ended(unsigned track) const override { return tracks_.has_ended(track); }
 
 private:
     const run_definition& run_;
@@ -294,6 +300,8 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.slopes =
         read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / range_steps, width / 2.0}, 5, true);
     a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
+    a.stop_sd = t.number("stop_sd", {0.0, width, true});
+    a.reversals = t.whole("reversals", 1, most_reversals);
 }
 
 std::string describe_adaptive(const run_definition& r, std::set<std::string_view>& sections)
@@ -312,6 +320,13 @@ std::string describe_adaptive(const run_definition& r, std::set<std::string_view
         parts.push_back(which + (down == 0 ? describe_quest(a) : describe_staircases(o, down)));
         sections.insert(down == 0 ? "has_quest" : "has_staircases");
     }
+    if (a.stop_sd)
+        parts.push_back(fmt::format("a track of QUEST+ ended when the posterior standard deviation of its "
+                                    "threshold was below {}, or without trials left",
+                                    plain_number(*a.stop_sd)));
+    if (a.reversals)
+        parts.push_back(
+            fmt::format("a staircase ended at its reversal number {}, or without trials left", *a.reversals));
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
@@ -378,6 +393,47 @@ std::size_t adaptive_tracks::next(unsigned track)
 void adaptive_tracks::answer(unsigned track, bool positive)
 {
     std::visit([positive](auto& p) { p.answer(positive); }, find(track));
+}
+
+bool adaptive_tracks::has_ended(unsigned track) const
+{
+    const adaptive_options& a = run_.adaptive;
+    const procedure& p = tracks_.at(track);
+    if (const auto* staircase = std::get_if<value_staircase>(&p))
+        return a.reversals && staircase->reversals() >= *a.reversals;
+    return a.stop_sd && std::get<quest>(p).threshold_sd() < *a.stop_sd;
+}
+
+unsigned count_tracks(const run_outline& o)
+{
+    return static_cast<unsigned>(o.motions.size() * o.methods.size() * o.adaptive.tracks.size());
+}
+
+std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<trial>& trials)
+{
+    if (!o.adaptive.may_end_early() || std::ranges::count(trials, 0U, &trial::track) != 0)
+        return {};
+    std::vector<played_track> all;
+    for (unsigned track = 1; track <= count_tracks(o); ++track)
+        all.push_back({.track = track});
+    adaptive_tracks tracks(o);
+    for (const trial& t : trials) {
+        tracks.answer(t.track, t.positive);
+        ++all[t.track - 1].trials;
+    }
+    for (played_track& t : all)
+        t.ended = t.trials > 0 && tracks.has_ended(t.track);
+    return all;
+}
+
+std::string name_stop_rule(const adaptive_options& a)
+{
+    std::vector<std::string> keys;
+    if (a.stop_sd)
+        keys.push_back("stop_sd = " + plain_number(*a.stop_sd));
+    if (a.reversals)
+        keys.push_back(fmt::format("reversals = {}", *a.reversals));
+    return fmt::format("{}", fmt::join(keys, ", "));
 }
 
 } // namespace tactor::study

@@ -34,6 +34,7 @@ public:
     }
 
     std::size_t place() const noexcept { return at_; }
+    std::size_t reversals() const noexcept { return rule_.reversals(); }
     void answer(bool positive);
 
 private:
@@ -50,8 +51,8 @@ private:
 void read_procedure(const detail::toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided);
 
 /// Names of the keys that read_procedure() reads, besides those of read_vary().
-inline constexpr std::array<std::string_view, 7> procedure_keys{"procedure", "start", "steps", "range",
-                                                                "tracks",    "slope", "lapse"};
+inline constexpr std::array<std::string_view, 9> procedure_keys{
+    "procedure", "start", "steps", "range", "tracks", "slope", "lapse", "stop_sd", "reversals"};
 
 /// Returns these keys after `keys`.
 std::vector<std::string_view> add_procedure_keys(std::vector<std::string_view> keys);
@@ -79,6 +80,8 @@ public:
     std::size_t next(unsigned track);
     /// Takes the answer to the trial of next().
     void answer(unsigned track, bool positive);
+    /// Returns true if the answers so far have ended a track. \pre it has an answer.
+    bool has_ended(unsigned track) const;
 
 private:
     using procedure = std::variant<value_staircase, quest>;
@@ -87,5 +90,14 @@ private:
     const run_outline& run_;
     std::map<unsigned, procedure> tracks_ = {};
 };
+
+/// Returns the number of tracks of all conditions of an adaptive run.
+unsigned count_tracks(const run_outline& o);
+/// Follows the tracks of a session from its trials, in the order of the table. Returns nothing if tracks
+/// cannot end early, or if the trials do not say their tracks.
+std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<trial>& trials);
+/// Returns the keys of a definition that end tracks: "stop_sd = 2, reversals = 8". Returns an empty text if
+/// tracks cannot end early.
+std::string name_stop_rule(const adaptive_options& a);
 
 } // namespace tactor::study

@@ -54,6 +54,8 @@ public:
     virtual void choose(planned_trial&) {}
     /// Takes the answer to a trial of a track. `method_1`: name of the first stimulus' method.
     virtual void take(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
+    /// Returns true if the answers so far have ended a track. \pre it has an answer.
+    virtual bool has_ended(unsigned /*track*/) const { return false; }
 };
 
 /// Deviations of a simulated person from the mean of all, in standard deviations.
