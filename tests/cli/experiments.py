@@ -39,6 +39,9 @@ ESTIMATES = BARE + toml("run", "size", task="estimate", question="How strong?", 
 # A place, and then a path, that the participant draws.
 DRAWINGS = (BARE + toml("run", "where", task="locate", motions=["east"], methods=["Birch"], trials=3)
             + toml("run", "how", task="trace", motions=["east"], methods=["Birch"], trials=2))
+# A level that the participant moves until it equals that of the standard.
+ADJUST = BARE + toml("run", "equal", task="adjust", motions=["east"], methods=["Birch"], vary="level_dbfs", range=[-40, -20], steps=[1, 5], standard=-30,
+                     start=[-40, -22], trials=4)
 IDENTIFY = toml("run", "what", task="identify", trials=2, methods=["Birch"])
 
 

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from experiments import DESK, SHORT, SMALL, PersonTest, Terminal, contents, read_table
+from experiments import ADJUST, DESK, SHORT, SMALL, PersonTest, Terminal, contents, read_table
 from harness import ROOT, main
 import studies
 
@@ -140,6 +140,36 @@ class Codes(PersonTest):
         self.assertEqual([code for _, _, code in marks], [e["code"] for e in events + self.events("marks")])
         # The time of a marker is that of its event; the markers of both stimuli are sent after them.
         self.assertAlmostEqual(float(marks[1][0]) - float(marks[0][0]), float(events[1]["onset"]) - float(events[0]["onset"]), 2)
+
+    def test_each_time_that_an_adjustment_plays_has_its_codes(self):
+        self.write("desk.toml", DESK + "[sync]\ncode = { channel = 2 }\n")
+        self.write("short.toml", ADJUST)
+        self.ok(*self.args(), stdin="y\ny\n" + "+\n>\na\n" + "a\n" * 3)
+        self.simulate("01", definition="short.toml", folder="simulated", spec="seed=1,jnd=3")
+        levels = self.levels("equal")
+        for folder, steps in (("study", None), ("simulated", 5)):
+            events = iter(read_table(self.dir / folder / "sub-01/beh/sub-01_task-equal_events.tsv"))
+            for n, row in enumerate(self.rows("01", "equal", folder)):
+                value, end = int(float(row["start"])), int(float(row["value"]))
+                if steps is None:
+                    played = [value, min(-20, value + 5), min(-20, value + 6)] if n == 0 else [value]
+                else:
+                    played = [value]
+                    while value != end:
+                        value += (1 if end > value else -1) * (steps if abs(end - value) >= steps else 1)
+                        played.append(value)
+                    self.assertEqual(len(played), int(row["moves"]) + 1)
+                self.assertEqual(played[-1], end)
+                for level in played:
+                    for i in (1, 2):
+                        e = next(events)
+                        what = f", interval {i}" if row[f"method_{i}"] == "standard" else f", level_dbfs {level}, interval {i}"
+                        kind = "standard" if row[f"method_{i}"] == "standard" else "stimulus"
+                        self.assertEqual((e["trial"], e["event"], levels[e["code"]]), (row["trial"], kind, f'{kind}, motion "east", method "Birch"{what}'))
+                self.assertEqual(int(e["frame"]), int(row["frame_2"]) - LEAD)  # the row is about the last of them
+                e = next(events)
+                self.assertEqual((e["event"], levels[e["code"]]), ("answer", 'answer, run "equal"'))
+            self.assertEqual(list(events), [])
 
     def box(self):
         """Returns both ends of a terminal that stands for a trigger box, and its path. The tool's end stays open."""

@@ -9,7 +9,7 @@ import socket
 import statistics
 import urllib.request
 
-from experiments import DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
+from experiments import ADJUST, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, WITH_CONSENT, read_table
 from harness import main
 from pages import PageTest, Session
 from studies import toml
@@ -86,6 +86,25 @@ class Sessions(PageTest):
             p.say(ask=asked["ask"], text=number)
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([r["intensity_estimate"] for r in self.rows("01", "size")], ["0.5", "12.5", "1500", "0.25"])
+
+    def test_a_comparison_is_moved_by_buttons(self):
+        self.write("equal.toml", ADJUST)
+        s, p = self.start_both(definition="equal.toml")
+        p.begin(agrees=False)
+        told = []
+        for trial in range(4):
+            for choice in (4, 3, 5, 2, 1, 6):
+                asked = p.answer("question", choice)
+                self.assertEqual((asked["choices"], asked["question"], asked["progress"]["trial"]),
+                                 (["Much less", "Less", "More", "Much more", "Once more", "They are equal"], "Make both feel equal.", trial + 1))
+                self.assertEqual(set(asked), {"screen", "ask", "text", "question", "choices", "progress"})  # nothing tells the value
+            told.append(asked["text"])
+        self.assertEqual(s.end(), 0, s.said)
+        rows = self.rows("01", "equal")
+        self.assertEqual([(float(r["start"]), float(r["value"]), r["moves"]) for r in rows],
+                         [(v, {-40: -40, -22: -26}[v], {-40: "4", -22: "3"}[v]) for v in (float(r["start"]) for r in rows)])
+        self.assertEqual(told, [f"You change the {'second' if r['method_1'] == 'standard' else 'first'} one." for r in rows])
+        self.assertEqual({(r["start"], r["method_1"]) for r in rows}, {(v, m) for v in ("-40.000000", "-22.000000") for m in ("standard", "Birch")})
 
     def test_a_drawing_is_kept_as_it_was_drawn(self):
         self.write("drawn.toml", DRAWINGS)

@@ -10,7 +10,7 @@ import shutil
 import time
 import unittest
 
-from experiments import BARE, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
+from experiments import ADJUST, BARE, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, SMALL, WITH_CONSENT, PersonTest, Terminal, contents, noise_pieces, read_table
 from harness import PATIENCE_S, main
 from studies import toml
 
@@ -177,6 +177,58 @@ class AtTheTerminal(PersonTest):
         logs = {level: [math.log(float(r["response"])) for r in rows if float(r["value"]) == level] for level in (-30, -20)}
         found = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["size"]["exponent"]["participants"]["01"]
         self.assertAlmostEqual(found, (sum(logs[-20]) / 2 - sum(logs[-30]) / 2) / (0.5 * math.log(10)), 9)
+
+    def test_a_participant_moves_the_comparison_until_it_equals_the_standard(self):
+        self.write("short.toml", ADJUST)
+        t = self.start()
+        t.begin(agrees=False)
+        asked = r"You change the (first|second) one\. Make both feel equal\. - < > \+ n a: "
+        changed = []
+
+        def press(trial, key):
+            changed.append((trial, t.until(asked)[1]))
+            t.key(key)
+            if key not in "rv":
+                t.until(re.escape(key.replace("\n", "a")) + "\r?\n")  # the key, not the number of the answer
+
+        for trial, answers, after in (("Trial 1/4", "++>n<", "\n"), ("Trial 2/4", ">", "r"), ("Trial 3/4", "", "a"), ("Trial 4/4", "-", "v")):
+            t.until(trial)
+            for key in answers + after:
+                press(trial, key)
+            if after == "r":
+                t.until("Once more, later")
+        t.answer("", "q")  # in the trial that v left as it was
+        self.assertEqual(t.end(), 130, t.said())
+        self.assertIn("trial 3 is void: the experimenter made it void", t.said())
+        kept = (self.dir / "study/sub-01/beh/sub-01_task-equal_beh.tsv").read_text()
+        t = self.start("--resume")
+        t.begin(agrees=False)
+        t.until("Trial 4/4: ")
+        press("Trial 4/4", "a")  # again from its start
+        for trial in ("Trial 2/4 \\(again\\): ", "Trial 3/4 \\(again\\): "):
+            t.until(trial)
+            t.answer(asked, "<")
+            t.answer(asked, "a")
+        t.answer("Any key ends", " ")
+        self.assertEqual(t.end(), 0, t.said())
+        self.assertTrue((self.dir / "study/sub-01/beh/sub-01_task-equal_beh.tsv").read_text().startswith(kept))
+        rows = self.rows("01", "equal")
+        moves = {"++>n<": {-40: (-30, 4), -22: (-21, 2)}, ">": {-40: (-39, 1), -22: (-21, 1)}, "": {-40: (-40, 0), -22: (-22, 0)},
+                 "<": {-40: (-40, 0), -22: (-23, 1)}}
+        for row, (answers, void) in zip(rows, (("++>n<", "false"), (">", "true"), ("", "true"), ("", "false"), ("<", "false"), ("<", "false")), strict=True):
+            value, count = moves[answers][float(row["start"])]
+            self.assertEqual((float(row["value"]), row["moves"], row["void"], row["response"]),
+                             (value, str(count), void, "n/a" if answers == ">" else str(value)))
+            self.assertEqual({which for trial, which in changed if trial == f"Trial {row['trial']}/4"}, {"second" if row["method_1"] == "standard" else "first"})
+            played = self.frames_of_plan(row["plan_1"]) + RATE // 10
+            self.assertEqual(int(row["frame_2"]) - int(row["frame_1"]), played)
+            self.assertLess(0 if answers == ">" else float(row["response_time"]), PATIENCE_S)
+        self.assertEqual([(r["trial"], r["attempt"]) for r in rows], [("1", "1"), ("2", "1"), ("3", "1"), ("4", "1"), ("2", "2"), ("3", "2")])
+        # Each move plays both stimuli again: five of them before the first line's, each with gap and 0.5 s.
+        self.assertGreater(int(rows[0]["frame_1"]), 5 * RATE * (float(rows[0]["duration"]) + 0.5))
+        values = [float(r["value"]) for r in rows if r["void"] == "false"]
+        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["equal"]["adjustment"]["participants"]["01"]
+        self.assertAlmostEqual(told["constant_error"], sum(values) / 4 + 30, 9)
 
     def test_the_experimenter_s_keys_work(self):
         t = self.start()

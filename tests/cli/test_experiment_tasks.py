@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import random
 import re
 import statistics
 
@@ -23,6 +24,7 @@ RUNS = {name: toml("run", name, **keys) for name, keys in {
     "felt": dict(task="detect", methods=["park"], vary="level_dbfs", values=[-60, -50, -40, -30], catch=0.2, trials=50),
     "there": dict(task="detect", methods=["park"], catch=0.5, trials=40),
     "same": dict(task="same-different", trials=40),
+    "level": dict(task="adjust", vary="level_dbfs", range=[-40, -8], steps=[1, 4], standard=-24, trials=24, practice=1),
     "size": dict(task="estimate", question="How strong was it?", methods=["park"], vary="level_dbfs", values=[-40, -30, -20, -10], standard=-20, trials=12),
 }.items()}
 SIMULATE = "seed={},jnd=4,sigma=0.2,exponent=0.6,dprime=2"
@@ -93,10 +95,109 @@ class Tasks(ExperimentTest):
                 in_row, reversals, up = 0, reversals + (up is not None and up != (not more)), not more
                 value = min(200, max(40, value + (40, 20)[min(1, reversals // 2)] * (1 if up else -1)))
 
+    def test_adjustments_begin_on_both_sides_of_the_standard_and_arrive_by_steps(self):
+        self.hold(tasks("level"), spec=SIMULATE.format(1) + ",pse=-22,lapse=0.2")
+        rows = self.rows("level")
+        self.assertEqual(list(rows[0])[11:15], ["value", "start", "moves", "void"])
+        cells = [(r["method_1"], r["method_2"], float(r["start"]) < -24) for r in rows]
+        self.assertEqual({c: cells.count(c) for c in cells},
+                         {(*order, below): 3 for m in ("park", "soft") for order in ((m, "standard"), ("standard", m)) for below in (True, False)})
+        self.assertNotIn(-24, {float(r["start"]) for r in rows})
+        self.assertGreater(len({r["start"] for r in rows}), 12)
+        plans = {}
+        for r in rows:
+            value, apart = float(r["value"]), round(abs(float(r["value"]) - float(r["start"])))
+            self.assertEqual((float(r["response"]), int(r["moves"])), (value, apart // 4 + apart % 4))
+            moved = "1" if r["method_2"] == "standard" else "2"
+            plan = json.loads((self.dir / f"study/sourcedata/sub-01/plans/{r['plan_' + moved]}.json").read_text())
+            plans.setdefault((r["method_" + moved], value), set()).add(plan["render"]["level_dbfs"])
+        self.assertEqual(plans, {(m, v): {v} for m, v in plans})  # the plan is that of the accepted value
+        self.assertTrue(any(r["moves"] == "0" for r in rows))  # who lapses accepts the start
+        told = json.loads((self.dir / "study/task-level_beh.json").read_text())
+        self.assertEqual([told[c]["Description"].split()[0] for c in ("value", "start", "moves")], ["Value", "Value", "Number"])
+        given = tasks("level").replace("standard = -24", "standard = -24\nstart = [-40, -12.1]")
+        self.hold(given, folder="given")
+        self.assertEqual({r["start"] for r in super().rows("01", "level", "given")}, {"-40.000000", "-12.000000"})
+        self.assertEqual(json.loads(self.ok("analyze", "given", "--format", "json").stdout)["runs"]["level"]["trials"], 24)
+
+    def test_adjustments_have_the_figures_of_their_values(self):
+        for code in ("01", "02", "03", "04", "05"):
+            self.hold(tasks("level"), code, spec=f"seed=1{code},void=0.1,jnd=2,pse=-22,pse_sd=1")
+        told = self.analysis()["runs"]["level"]
+        self.assertEqual((told["against"], told["trials"], list(told["methods"])), (-24, 120, ["constant_error", "sd"]))
+
+        def values(code, method=None):
+            return [float(r["value"]) for r in self.rows("level", code) if r["void"] == "false" and method in (None, r["method_1"], r["method_2"])]
+
+        def check(found, method):
+            codes = found["participants"]
+            self.assertEqual(list(codes), ["01", "02", "03", "04", "05"])
+            for code, one in codes.items():
+                for key, expected in (("pse", statistics.mean(values(code, method))), ("constant_error", statistics.mean(values(code, method)) + 24),
+                                      ("sd", statistics.stdev(values(code, method)))):
+                    self.assertAlmostEqual(one[key], expected, places=9)
+            errors = [statistics.mean(values(code, method)) + 24 for code in codes]
+            mean, se, t = statistics.mean(errors), statistics.stdev(errors) / math.sqrt(5), found["constant_error"]
+            for key, expected in (("mean", mean), ("se", se), ("t", mean / se), ("d", mean / se / math.sqrt(5))):
+                self.assertAlmostEqual(t[key], expected, places=8)
+            self.assertAlmostEqual(t["ci"][1] - mean, 2.7764451051977987 * se, places=8)  # t(4) at 97.5 %
+            self.assertAlmostEqual(found["means"]["pse"]["mean"], mean - 24, places=9)
+            self.assertAlmostEqual(found["means"]["sd"]["mean"], statistics.mean(statistics.stdev(values(c, method)) for c in codes), places=9)
+
+        check(told["adjustment"], None)
+        for method in ("park", "soft"):
+            check(told["by"][f"{method}:east"]["adjustment"], method)
+        differences = [statistics.stdev(values(c, "park")) - statistics.stdev(values(c, "soft")) for c in told["adjustment"]["participants"]]
+        pair, = told["methods"]["sd"]["pairs"]
+        self.assertAlmostEqual(pair["difference"], statistics.mean(differences), places=9)
+        self.assertAlmostEqual(pair["t"], statistics.mean(differences) / (statistics.stdev(differences) / math.sqrt(5)), places=8)
+        tsv = self.ok("analyze", "study", "--format", "tsv").stdout
+        self.assertIn('lmer(I(value + 24) ~ method + (1 + method | participant), data = subset(d, run == "level"))', tsv)
+        report = " ".join(self.ok("report", "study").stdout.split())
+        for text in ("In the method of adjustment", "Procedure: small moves of 1 and large ones of 4; trials began at random values, below and above",
+                     f"| constant error | {told['adjustment']['constant_error']['mean']:.4g} |"):
+            self.assertIn(text, report)
+        self.assertIn("constant error of level (dBFS)", (self.ok("analyze", "study", "-o", "a.svg"), (self.dir / "a.svg").read_text())[1])
+
+    def test_adjustments_recover_other_observers_and_each_value_is_checked(self):
+        """People by a formula of this test: they stop before the end, a fifth of the way, and press in steps of 1 dB."""
+        true, noise = {"park": 1.5, "soft": -2.0}, {"park": 1.0, "soft": 2.0}
+        for code in range(1, 9):
+            draw = random.Random(code)
+            self.hold(tasks("level").replace("trials = 24", "trials = 80"), f"{code:02}")
+            table = self.dir / f"study/sub-{code:02}/beh/sub-{code:02}_task-level_beh.tsv"
+            head, *lines = (line.split("\t") for line in table.read_text(encoding="utf-8").splitlines())
+            at = {name: head.index(name) for name in ("method_1", "method_2", "start", "value", "response")}
+            for cells in lines:
+                method, = {cells[at["method_1"]], cells[at["method_2"]]} - {"standard"}
+                end = -24 + true[method] + 0.2 * (float(cells[at["start"]]) + 24) + draw.gauss(0, noise[method])
+                value = min(-8, max(-40, round(end)))
+                cells[at["value"]], cells[at["response"]] = f"{value:.6f}", f"{value:g}"
+            table.write_text("".join("\t".join(cells) + "\n" for cells in (head, *lines)), encoding="utf-8")
+        told = self.analysis()["runs"]["level"]
+        # Random starts on a side are uniform over 16 dB, and both sides together over 32.
+        sd = {m: math.sqrt(noise[m] ** 2 + 0.2 ** 2 * 32 ** 2 / 12 + 1 / 12) for m in true}
+        for method in true:
+            found = told["by"][f"{method}:east"]["adjustment"]
+            self.assertAlmostEqual(found["constant_error"]["mean"], true[method], delta=4 * sd[method] / math.sqrt(8 * 40))
+            self.assertAlmostEqual(found["means"]["sd"]["mean"], sd[method], delta=4 * sd[method] / math.sqrt(2 * 8 * 40))
+        for figure in ("constant_error", "sd"):
+            self.assertLess(told["methods"][figure]["pairs"][0]["p"], 0.001)
+        # The observer of the tool, who settles at the pse with the jnd's noise.
+        for code in "12":
+            self.hold(tasks("level").replace("trials = 24", "trials = 200"), code, "own", spec=f"seed={code},pse=-27,jnd=1")
+        own = json.loads(self.ok("analyze", "own", "--format", "json").stdout)["runs"]["level"]["adjustment"]
+        self.assertAlmostEqual(own["constant_error"]["mean"], -3, delta=4 * 1.5 / 20)
+        self.assertAlmostEqual(own["means"]["sd"]["mean"], math.sqrt(0.6745 ** -2 + 1 / 12), delta=4 * 1.5 / math.sqrt(800))
+        # Trials begin at -40, but a participant may move to -8.
+        self.write("desk.toml", DESK + "[limits]\npower_dbfs = -20\n")
+        self.write("tasks.toml", tasks("level").replace("standard = -24", "standard = -24\nstart = [-40]"))
+        self.refused(2, "experiment", "tasks.toml", "--dry-run", says=['with method "', "power_dbfs in [limits]"])
+
     def test_a_session_that_was_killed_goes_on_as_if_it_had_not_been(self):
-        self.hold(TASKS.replace("practice = 2\n", ""))
+        self.hold(re.sub("practice = .\n", "", TASKS))
         whole = contents(self.dir / "study")
-        for run, keep in (("stairs", 7), ("bayes", 20), ("felt", 1), ("size", 11)):
+        for run, keep in (("stairs", 7), ("bayes", 20), ("felt", 1), ("level", 9), ("size", 11)):
             table = self.dir / f"study/sub-01/beh/sub-01_task-{run}_beh.tsv"
             lines = table.read_text(encoding="utf-8").splitlines(True)
             order = json.loads((self.dir / "study/sourcedata/sub-01/session.json").read_text())["order"]
@@ -113,6 +214,7 @@ class Tasks(ExperimentTest):
                              "bayes": ({"value": "-8.5"}, {"response": "5000"}), "words": ({"value": "5"},), "same": ({"response": "0"},),
                              "felt": ({"value": "-45"}, {"value": "n/a"}), "size": (*({c: n} for c in ("response", "intensity_estimate") for n in ("5000", "0", "12,5")),
                                       *({"response": n, "intensity_estimate": n} for n in ("-1", "nan", "1e400", "1" * 40)), {"value": "-25"}),
+                             "level": ({"value": "-23.25"}, {"response": "-7"}, {"response": "n/a"}),
                              "there": ({"response": "yes"},)}.items():
             table = self.dir / f"study/sub-01/beh/sub-01_task-{run}_beh.tsv"
             text = table.read_text(encoding="utf-8")
@@ -219,7 +321,7 @@ class Tasks(ExperimentTest):
             self.assertAlmostEqual(sum(answers) / len(answers), expected, delta=4 * (0.16 / len(answers)) ** 0.5, msg=run)
 
     def check_picture(self, runs):
-        """Each participant's answers are points of their size, and d' is a bar."""
+        """Each participant's answers are points of their size; d' and a constant error are bars."""
         panels = {p.get("data-title"): p for p in Svg(self.dir / "a.svg").all("curves")}
         place = lambda panel, e: tuple((float(e.get(c)) - float(panel.get(f"data-{axis}0"))) / float(panel.get(f"data-{axis}-scale"))
                                        for c, axis in (("cx", "x"), ("cy", "y")))
@@ -244,7 +346,7 @@ class Tasks(ExperimentTest):
         words = "".join(panels["words (n = 6)"].itertext())
         self.assertIn('answered "two" (%)', words)
         self.assertIn("length (mm)", words)
-        self.assertEqual([p.get("data-title") for p in Svg(self.dir / "a.svg").all("bars")], ["there (n = 6)", "same (n = 6)"])
+        self.assertEqual([p.get("data-title") for p in Svg(self.dir / "a.svg").all("bars")], ["there (n = 6)", "same (n = 6)", "level (n = 6)"])
 
     def check_report(self, runs):
         report = self.ok("report", "study").stdout
@@ -312,6 +414,10 @@ class Tasks(ExperimentTest):
                 ("stairs", "tracks = 2", "tracks = 3", "tracks"), ("stairs", "tracks = 2", "tracks = 1", "tracks"),
                 ("felt", "catch = 0.2", "catch = 1", "catch"), ("same", "trials = 40", "trials = 40\ncatch = 0.1", "catch"),
                 ("same", "trials = 40", 'trials = 40\nmethods = ["park"]', "[[run]]"), ("same", "trials = 40", 'trials = 40\nvary = "soa"', "vary"),
+                ("level", "standard = -24\n", "", "[[run]]"), ("level", "standard = -24", "standard = -50", "range"),
+                ("level", "range = [-40, -8]\n", "", "vary"), ("level", "steps = [1, 4]", "steps = [1, 2, 4]", "steps"),
+                ("level", "steps = [1, 4]", "steps = [1, 3.9]", "steps"), ("level", "steps = [1, 4]", "start = [-41]", "start"),
+                ("level", "range = [-40, -8]", "range = [-40, 8]", "range"), ("level", "trials = 24", "trials_per_value = 2", "trials_per_value"),
                 ("size", "values = [-40", 'choices = ["a", "b"]\nvalues = [-40', "choices"),
                 ("there", 'name = "park"', 'name = "none"', None)):
             text = tasks(run).replace(old, new, 1)
@@ -366,8 +472,10 @@ class Tasks(ExperimentTest):
         for name, run in told.items():
             values = [t["value"] for t in run["trials"]]
             stated = {v["value"]: v["trials"] for v in run["values"]}
-            if name in ("values", "words", "felt", "size"):
+            if name in ("values", "words", "felt", "size", "level"):
                 self.assertEqual(stated, {v: values.count(v) for v in set(values)})
+                if name == "level":  # where the trials begin
+                    continue
                 own = TASKS.partition(f'name = "{name}"')[2].partition("values = [")[2].partition("]")[0]
                 self.assertEqual({v for v in stated if v is not None}, {float(v) for v in own.split(",")})
             else:

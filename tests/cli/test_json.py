@@ -44,7 +44,7 @@ MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
-        "runs{}.exponent.participants", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
+        "runs{}.exponent.participants", "runs{}.adjustment.participants", "runs{}.adjustment.means", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
         "runs{}.scaling.participants", "runs{}.scaling.participants{}.places", "runs{}.scaling.places", "runs{}.by",
         *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means"))}
 
@@ -82,6 +82,7 @@ MEASURED = (FELT.partition("[[run]]")[0] + studies.toml("method", "soft", level_
             + studies.run("same", "same-different", 16, methods=["park", "soft"])
             + studies.run("odd", "oddity", 12, methods=["park", "soft"], practice=1)
             + studies.run("size", "estimate", 8, question="?", vary="level_dbfs", values=[-30, -20])
+            + studies.run("even", "adjust", 8, vary="level_dbfs", range=[-40, -10], standard=-20)
             + studies.run("place", "locate", 4))
 
 # A task that measures, with three methods, three sessions and two groups.

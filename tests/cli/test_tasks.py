@@ -36,6 +36,7 @@ TASKS = {
     "trace": (dict(trials=8), "drawings.means.distance.mean", "distance"),
     "dissimilar": (dict(attribute="similarity", trials=12), "means.park - soft.all.mean", "response"),
     "oddity": (dict(trials=24), "dprime.mean", "positive"),
+    "adjust": (dict(question="?", vary="length_mm", range=[4, 20], standard=12, trials=16), "adjustment.constant_error.mean", "value"),
 }
 WEST = toml("motion", "west", path="M20 0H0", duration=0.2)
 
@@ -64,7 +65,7 @@ class EveryTask(ExperimentTest):
         for name, make in STUDIES.items():
             make(self.dir / name)
         texts = [json.loads(p.read_text())["experiment"]["text"] for p in self.dir.glob("*/sourcedata/sub-*/session.json")]
-        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, check_r.DRAWN, check_r.APART, *texts]), re.M))
+        checked = set(re.findall(r'^task = "(.*)"$', "\n".join([check_r.MEASURES, check_r.DRAWN, check_r.APART, check_r.ADJUSTED, *texts]), re.M))
         self.assertEqual(checked, set(TASKS))
 
     def test_from_definition_to_report(self):

@@ -9,7 +9,7 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import BARE, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
+from experiments import ADJUST, BARE, DRAWINGS, ESTIMATES, IDENTIFY, LINE, SHORT, read_table  # noqa: E402
 from harness import main  # noqa: E402
 from pages import PageTest, Session  # noqa: E402
 from studies import toml  # noqa: E402
@@ -564,6 +564,19 @@ class ParticipantPage(BrowserTest, PageTest):
         self.assertEqual([r["response"] for r in self.rows("01", "apart")], ["0", "25", "100"])
         truth = ["right" if r["motion"] == "east" else "wrong" for r in self.rows("01", "what")]
         self.assertEqual(told, [[t, t] for t in truth])
+
+    def test_a_comparison_is_moved_by_buttons_and_keys(self):
+        self.write("equal.toml", ADJUST.replace("trials = 4", "trials = 1").replace("[-40, -22]", "[-40]"))
+        s = self.start(definition="equal.toml")
+        p = self.open(s)
+        ask = self.asked(p, "question", self.click(p, "introduce", 1, self.walk(p)))
+        self.assertRegex(p.value("document.querySelector('main').innerText"), "^You change the (first|second) one\\.\\s+Make both feel equal\\.\\s")
+        self.picture(p, "adjust")
+        ask = self.click(p, "question", 4)
+        ask = self.key(p, "question", "3", ask)
+        self.click(p, "question", 6, ask)
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([(r["start"], r["response"], r["moves"]) for r in self.rows("01", "equal")], [("-40.000000", "-34", "2")])
 
     def test_thresholds_are_measured_on_it(self):
         for method in ("staircase", "adjustment"):

@@ -401,6 +401,29 @@ def check_scaling(tool, folder):
     return [f"{m}, R: {r}" for m, r in zip(mine, said, strict=True) if not all(abs(a - b) <= 1e-9 * max(1, abs(b)) for a, b in zip(m, r, strict=True))]
 
 
+ADJUSTED = studies.measures("palm-3x3", studies.run("level", "adjust", 24, vary="level_dbfs", range=[-40, -8], steps=[0.5, 4], standard=-24))
+# Constant error, mean and sd of each participant; the t test; the intercept of the model, which in a balanced design is the mean.
+ADJUST = COMMANDS + """
+for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
+per <- sapply(split(d$value, d$participant), function(v) c(mean(v) + 24, mean(v), sd(v)))
+test <- t.test(per[1, ])
+model <- fixef(suppressMessages(suppressWarnings(eval(parse(text = said[4])))))
+cat(format(c(per, test$statistic, test$p.value, test$conf.int, model[["(Intercept)"]]), digits = 15))
+"""
+
+
+def check_adjustments(tool, folder):
+    """Returns where the figures of adjustments differ from those of R."""
+    (folder / "adjusted.toml").write_text(ADJUSTED)
+    for code in ("01", "02", "03", "04", "05"):
+        run(tool, "experiment", folder / "adjusted.toml", "--participant", code, "-o", folder / "adjusted", "--simulate", "seed=1,pse=-22,pse_sd=2,jnd=2")
+    told = json.loads(run(tool, "analyze", folder / "adjusted", "--format", "json"))["runs"]["level"]["adjustment"]
+    said = list(map(float, fit(tool, folder / "adjusted", ADJUST).split()))
+    error = told["constant_error"]
+    mine = [*(one[k] for one in told["participants"].values() for k in ("constant_error", "pse", "sd")), error["t"], error["p"], *error["ci"], error["mean"]]
+    return [f"{m}, R: {r}" for m, r in zip(mine, said, strict=True) if not abs(m - r) <= 1e-7 * max(1, abs(r))]
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -419,6 +442,7 @@ def main():
                     cases["measures, models"] = lambda: check_measures(tool, folder)
                     cases["measures, methods"] = lambda: check_method_errors(tool, folder)
                     cases["drawings"] = lambda: check_drawings(tool, folder)
+                    cases["adjustments"] = lambda: check_adjustments(tool, folder)
                     cases["scaling"] = lambda: check_scaling(tool, folder)
                     cases["measures, comparisons"] = lambda: check_comparisons(tool, folder)
             else:

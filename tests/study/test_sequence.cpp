@@ -290,6 +290,39 @@ TEST_CASE("of three stimuli each differs equally often in each interval, as far 
             }
 }
 
+TEST_CASE("adjustments begin below and above the standard equally often, with each method too")
+{
+    for (const unsigned motions : {1U, 2U})
+        for (const unsigned n : {1U, 2U, 5U, 6U, 12U, 20U, 24U, 40U}) {
+            const experiment_definition d =
+                with_run(fmt::format("task = \"adjust\"\nquestion = \"?\"\nmax_in_a_row = 100\n"
+                                     "vary = \"speed_mm_s\"\nrange = [40, 80]\nstandard = 60\ntrials = {}\n",
+                                     n),
+                         motions, 2);
+            for (std::uint64_t seed = 0; seed < 20; ++seed) {
+                std::array<std::map<std::array<std::size_t, 3>, int>, 3> counts;
+                std::map<std::size_t, std::map<std::array<std::size_t, 3>, int>> by_method;
+                for (const planned_trial& t : make_run(d, 0, "01", seed).trials) {
+                    const bool first = d.methods[t.method_1].name == "standard";
+                    const std::size_t moved = first ? t.method_2.value() : t.method_1;
+                    const std::size_t above = *d.methods[moved].value > 60.0 ? 1 : 0;
+                    CHECK(*d.methods[moved].value != 60.0);
+                    ++counts[0][{above}];
+                    ++counts[1][{*d.methods[moved].made_of}];
+                    ++counts[2][{first ? 0U : 1U}];
+                    ++by_method[*d.methods[moved].made_of][{above}];
+                }
+                CHECK(spread(counts[0], 2) <= 1);
+                CHECK(spread(counts[1], 2) <= 1);
+                CHECK(spread(counts[2], 2) <= 2);
+                for (const auto& [method, sides] : by_method)
+                    CHECK(spread(sides, 2) <= (motions == 1 ? 1 : 2));
+                if (n % (8 * motions) == 0)
+                    CHECK(spread(counts[2], 2) == 0);
+            }
+        }
+}
+
 TEST_CASE("over 10,000 seeds no motion, order or position is favoured")
 {
     const experiment_definition d = load_definition("park2016");

@@ -60,12 +60,13 @@ std::vector<const Values*> list_conditions(const study::run_analysis& r)
     return all;
 }
 
-// Draws d' of each condition, or of all trials. Nothing where no participant has one.
+// Draws the main figure of each condition, or of all trials. Nothing where no participant has one.
 template <class Values>
-std::optional<plot::bar_panel> make_sensitivity_panel(const study::run_analysis& r, error_bars kind)
+std::optional<plot::bar_panel> make_figure_panel(const study::run_analysis& r, const std::string& axis,
+                                                 error_bars kind)
 {
     constexpr double unbounded = std::numeric_limits<double>::infinity();
-    plot::bar_panel p{fmt::format("{} (n = {})", r.run.name, r.n), "d'"};
+    plot::bar_panel p{fmt::format("{} (n = {})", r.run.name, r.n), axis};
     p.level = 0.0;
     plot::bar_series s;
     bool everybody = true;
@@ -386,9 +387,11 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
         add_drawings(f, r);
         std::optional<plot::bar_panel> p = make_panel(r, kind);
         if (!p && r.run.vary.empty())
-            p = make_sensitivity_panel<study::sensitivities>(r, kind);
+            p = make_figure_panel<study::sensitivities>(r, "d'", kind);
         if (!p)
-            p = make_sensitivity_panel<study::oddities>(r, kind);
+            p = make_figure_panel<study::oddities>(r, "d'", kind);
+        if (!p)
+            p = make_figure_panel<study::adjustments>(r, "constant error of " + axis_title(r.run), kind);
         if (p)
             f.bars.push_back(*std::move(p));
         for (const study::answer_counts* v : study::list_values<study::answer_counts>(r.results))

@@ -159,6 +159,10 @@ public:
     {
         return join(v.figures.front(), usual_decimals);
     }
+    std::string operator()(const study::adjustments& v) const
+    {
+        return join(v.figures.front(), count_decimals(run_));
+    }
     std::string operator()(const study::drawn_answers& v) const
     {
         return join(v.figures.front(), usual_decimals);
@@ -327,6 +331,11 @@ public:
     {
         print_figures(v, usual_decimals);
         print_people(v, usual_decimals, [](const auto&) { return std::string(); });
+    }
+    void operator()(const study::adjustments& v) const
+    {
+        print_figures(v, count_decimals(run_));
+        print_people(v, count_decimals(run_), [](const auto&) { return std::string(); });
     }
     void operator()(const study::drawn_answers& v) const
     {

@@ -69,8 +69,10 @@ void members(Io& io, Trial& v)
     io("method_1", r.method_1, methods);
     io.or_null("method_2", detail::omit_empty(r.method_2), methods);
     io("method_3", detail::omit_empty(r.method_3), methods);
-    io.or_null("value", r.value,
-               {"value of the comparison, in a run that varies one; null if the answers choose it"});
+    io.or_null(
+        "value", r.value,
+        {"value of the comparison, in a run that varies one, for adjust at the start; null if the answers "
+         "choose it"});
     io.or_null("track", r.track, {"track of an adaptive run, from 1; else null", detail::above_0});
     io("duration_s", r.duration_s,
        {"duration from the first frame to the last, including the gap", detail::from_0});

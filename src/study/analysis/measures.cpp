@@ -119,6 +119,20 @@ fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& t
     return e;
 }
 
+adjustment average_adjustments(const run_outline& run, const std::vector<trial>& trials)
+{
+    std::vector<double> values;
+    for (const trial& t : trials)
+        values.push_back(t.value);
+    if (values.empty())
+        return {};
+    adjustment a{.pse = mean(values)};
+    a.constant_error = *a.pse - run.standard.value();
+    if (values.size() > 1)
+        a.sd = deviation(values, *a.pse);
+    return a;
+}
+
 double size_ratio(const run_outline& run, double value, double to) noexcept
 {
     constexpr double db_per_tenfold = 20.0;
@@ -204,6 +218,11 @@ std::vector<named_value> list_oddity(const std::optional<odd_answers>& o)
 std::vector<named_value> list_exponent(const fitted_exponent& e)
 {
     return {{{"exponent"}, e.exponent}};
+}
+
+std::vector<named_value> list_adjustment(const adjustment& a)
+{
+    return {{{"constant_error"}, a.constant_error}, {{"pse"}, a.pse}, {{"sd"}, a.sd}};
 }
 
 std::vector<result> analyse_comparisons(const run_outline& run, const run_people& people, sigmoid kind)

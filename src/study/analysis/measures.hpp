@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Figures that a task measures from a participant's trials: a psychometric function, d', or the exponent of
-/// magnitude estimates.
+/// Figures that a task measures from a participant's trials: a psychometric function, d', the exponent of
+/// magnitude estimates, or the mean of adjustments.
 #pragma once
 
 #include <cstddef>
@@ -35,6 +35,9 @@ std::optional<odd_answers> measure_oddity(const std::vector<trial>& trials);
 
 fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials);
 
+/// Returns mean and standard deviation of the trials' values.
+adjustment average_adjustments(const run_outline& run, const std::vector<trial>& trials);
+
 /// Returns the ratio of two values; for levels in dB, the ratio of their amplitudes.
 double size_ratio(const run_outline& run, double value, double to) noexcept;
 
@@ -63,12 +66,13 @@ result make_row(const condition_trials& c, std::string_view name, std::string_vi
 std::string make_seed(const run_outline& run, const condition_trials& c, std::string_view code);
 
 /// List a participant's figures, the main figure first: pse and jnd; the threshold; d' and c; d'
-/// and the per cent of right answers; the exponent.
+/// and the per cent of right answers; the exponent; the constant error, pse and sd.
 std::vector<named_value> list_pse(const fitted_function& f);
 std::vector<named_value> list_threshold(const fitted_function& f);
 std::vector<named_value> list_sensitivity(const std::optional<detection>& d);
 std::vector<named_value> list_oddity(const std::optional<odd_answers>& o);
 std::vector<named_value> list_exponent(const fitted_exponent& e);
+std::vector<named_value> list_adjustment(const adjustment& a);
 
 /// Measures each participant in a condition with `fit(trials, code)`, and tests the figures that `list`
 /// lists. `against`: value for the test of the main figure.

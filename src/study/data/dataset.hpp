@@ -165,6 +165,8 @@ struct trial_row {
     std::optional<bool> early = {}; ///< missing without an answer, and if an older version wrote the data
     std::optional<unsigned> rating = {};
     std::optional<double> value = {};   ///< value that the run varies, if the trial has one
+    std::optional<double> start = {};   ///< value from which the participant moved the comparison
+    std::optional<unsigned> moves = {}; ///< number of moves
     std::optional<unsigned> track = {}; ///< track of an adaptive run, from 1
     std::optional<double> intensity_estimate = {};
     bool is_void = false;
@@ -202,7 +204,7 @@ enum class column_use {
     some,     ///< nothing needs it; tables have it if the study has values for it
     values,   ///< the analysis of runs that vary a value; other runs lack it
     third,    ///< sessions that resume, and the analysis; tables of trials with fewer stimuli lack it
-    own,      ///< the analysis of one task, and sessions that resume; other tasks lack it
+    own,      ///< the analysis of some tasks, and sessions that resume; other tasks lack it
 };
 
 struct trial_column {
@@ -219,7 +221,7 @@ struct trial_column {
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 27> trial_columns;
+extern const std::array<trial_column, 29> trial_columns;
 
 /// Returns true if tables of the run have the column or may have it.
 bool has_column(const run_outline& run, const trial_column& c);

@@ -103,7 +103,7 @@ void add_cells(trial_cells& into, const text_table& t, std::size_t row)
 
 } // namespace
 
-const std::array<trial_column, 27> trial_columns{{
+const std::array<trial_column, 29> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration",
@@ -127,6 +127,10 @@ const std::array<trial_column, 27> trial_columns{{
     {"rating", "The rating; n/a in other tasks", "", &trial_row::rating},
     {"value", "Value that the run varies, for the comparison; n/a in a trial without a stimulus", "",
      &trial_row::value, column_use::values},
+    {"start", "Value from which the participant began to move the comparison", "", &trial_row::start,
+     column_use::own},
+    {"moves", "Number of the participant's moves; both stimuli play again after each", "", &trial_row::moves,
+     column_use::own},
     {"track", "Track of the adaptive procedure, from 1", "", &trial_row::track, column_use::own, 1},
     {"intensity_estimate", "The number above 0 that the participant gave", "", &trial_row::intensity_estimate,
      column_use::own},
@@ -149,7 +153,8 @@ bool has_column(const run_outline& run, const trial_column& c)
 {
     return c.use == column_use::values  ? !run.vary.empty()
            : c.use == column_use::third ? task_in(run).about().has_three_stimuli
-           : c.use == column_use::own ? task_in(run).about().column == c.name && task_in(run).uses_column(run)
+           : c.use == column_use::own   ? std::ranges::count(task_in(run).about().columns, c.name) != 0 &&
+                                            task_in(run).uses_columns(run)
                                       : true;
 }
 

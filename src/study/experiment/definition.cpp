@@ -496,8 +496,8 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     r.choices = t.has("choices") ? r.outline.choices : own.usual_choices(d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
-    for (const planned_trial& t : own.list_cells(r))
-        r.stimuli = std::max(r.stimuli, t.list_methods().size());
+    for (const planned_trial& cell : own.list_cells(r))
+        r.stimuli = std::max(r.stimuli, cell.list_methods().size());
     return r;
 }
 

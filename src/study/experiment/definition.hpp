@@ -68,6 +68,12 @@ struct method_variants {
     std::vector<std::size_t> silences = {};
 };
 
+/// Moves of a run whose participants adjust the value, as indices into the run's values.
+struct adjustment_options {
+    std::size_t coarse = 0;              ///< size of a large move; a small one goes to the next value
+    std::vector<std::size_t> start = {}; ///< first values; empty: drawn from both sides of the standard
+};
+
 /// [[run]]. Motions and methods are indices into the definition's lists.
 struct run_definition {
     run_outline outline;
@@ -85,6 +91,7 @@ struct run_definition {
     std::map<std::size_t, method_variants> variants = {}; ///< variants by index of the method
     double catch_share = 0.0;                             ///< detect: share of trials without a stimulus
     std::size_t stimuli = 1;                              ///< number of stimuli of a trial
+    adjustment_options adjusting = {};
     unsigned max_in_a_row = 3; ///< greatest number of trials of one motion in a row
     std::string blocks = {};   ///< "methods" or "motions": one block for each; empty if all trials are mixed
     source_place where = {};

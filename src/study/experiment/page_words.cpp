@@ -40,6 +40,13 @@ constexpr std::array english{
     page_word{"any_number", "a number above 0, with a point: 0.5, 12, 1500"},
     page_word{"full_screen", "Full screen"},
     page_word{"most_different", "As different as can be"},
+    page_word{"moves_first", "You change the first one."},
+    page_word{"moves_second", "You change the second one."},
+    page_word{"much_less", "Much less"},
+    page_word{"less", "Less"},
+    page_word{"more", "More"},
+    page_word{"much_more", "Much more"},
+    page_word{"equal", "They are equal"},
     page_word{"right", "That was right."},
     page_word{"wrong", "That was wrong."},
     // Texts that only the terminal shows.

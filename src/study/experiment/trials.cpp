@@ -255,6 +255,9 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     }
     s.practice = task_in(r.outline).draw(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
+    for (auto* list : {&s.trials, &s.practice})
+        for (planned_trial& t : *list)
+            task_in(r.outline).draw_start(t, r, numbers);
     draw_rests(s.practice, d.rest, numbers);
     draw_rests(s.trials, d.rest, numbers);
     return s;

@@ -244,6 +244,7 @@ public:
     void operator()(const sensitivities&) { kind_ = "dprime"; }
     void operator()(const oddities&) { kind_ = "oddity"; }
     void operator()(const exponents&) { kind_ = "exponent"; }
+    void operator()(const adjustments&) { kind_ = "adjustment"; }
     void operator()(const drawn_answers&) { kind_ = "drawings"; }
 
 private:

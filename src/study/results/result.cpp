@@ -112,6 +112,7 @@ public:
     void operator()(const sensitivities& v) { note(v); }
     void operator()(const oddities& v) { note(v); }
     void operator()(const exponents& v) { note(v); }
+    void operator()(const adjustments& v) { note(v); }
     void operator()(const drawn_answers& v) { note(v); }
 
 private:

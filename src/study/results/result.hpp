@@ -201,6 +201,15 @@ struct oddities : measured<std::optional<odd_answers>> {
 
 struct exponents : measured<fitted_exponent> {};
 
+/// A participant's adjustments of one value to a standard.
+struct adjustment {
+    std::optional<double> constant_error = {}; ///< pse minus the standard
+    std::optional<double> pse = {};            ///< mean of the values that the participant accepted
+    std::optional<double> sd = {};             ///< their standard deviation; missing with one trial
+};
+
+struct adjustments : measured<adjustment> {};
+
 /// Number of equal parts of their lengths at which drawn paths are compared.
 inline constexpr std::size_t drawn_parts = 50;
 
@@ -226,10 +235,10 @@ struct drawn_answers : measured<drawn_by_person> {
     std::vector<predicted_drawing> predicted = {}; ///< with one motion and one method, if recorded
 };
 
-using result_value =
-    std::variant<std::monostate, std::string, double, cell_means, interval_share, method_difference,
-                 effect_list, tukey_list, paired_list, figure_comparison, worth_list, method_map,
-                 answer_counts, psychometric_functions, sensitivities, oddities, exponents, drawn_answers>;
+using result_value = std::variant<std::monostate, std::string, double, cell_means, interval_share,
+                                  method_difference, effect_list, tukey_list, paired_list, figure_comparison,
+                                  worth_list, method_map, answer_counts, psychometric_functions,
+                                  sensitivities, oddities, exponents, adjustments, drawn_answers>;
 
 /// A row of a run's results.
 struct result {

@@ -377,6 +377,24 @@ void row_member(Io& io, const char* name, const exponents& v)
     });
 }
 
+template <class Io>
+void row_member(Io& io, const char* name, const adjustments& v)
+{
+    io.object(name, {"values that participants adjusted to the standard"}, [&](auto& inner) {
+        inner.named_objects("participants", v.codes, v.people, {"by code"},
+                            [](auto& one, const adjustment& a) {
+                                one.or_null("constant_error", a.constant_error, {"pse minus the standard"});
+                                one.or_null("pse", a.pse, {"mean of the values"});
+                                one.or_null("sd", a.sd, {"their standard deviation", detail::from_0});
+                            });
+        inner.object("constant_error", {"mean constant error, tested against 0"},
+                     [&](auto& one) { test_members(one, v.figures.front().test); });
+        const std::vector<measured_figure> others(v.figures.begin() + 1, v.figures.end());
+        inner.named_objects("means", others, {"means of pse and sd over participants"},
+                            [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
+    });
+}
+
 /// Returns the places, or only the first, as lists of x and y.
 inline std::optional<std::vector<std::array<double, 2>>> list_points(const std::vector<point>& all,
                                                                      drawing_kind kind)

@@ -32,6 +32,7 @@
 #include "study/session/session_members.hpp"
 #include "study/session/sync_codes.hpp"
 #include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
@@ -166,6 +167,12 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
                          : "use a lower level, or raise the limit if the actuators bear it");
 }
 
+// Returns true if the answers choose the value of a trial, or move it.
+bool has_any_value(const experiment_definition& d, const run_sequence& r, const planned_trial& t)
+{
+    return t.track > 0 || task_in(d.runs[r.run].outline).about().moves_value;
+}
+
 // Checks the trials of all runs, including practice.
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
                   const stimulus_set& stimuli, const drive_limits& l, unsigned rate)
@@ -174,8 +181,9 @@ void check_limits(const experiment_definition& d, const std::vector<run_sequence
     for (const run_sequence& r : runs)
         for (const auto* list : {&r.practice, &r.trials})
             for (planned_trial t : *list)
-                for (std::size_t v = 0; v < (t.track > 0 ? d.runs[r.run].outline.values.size() : 1); ++v) {
-                    if (t.track > 0)
+                for (std::size_t v = 0;
+                     v < (has_any_value(d, r, t) ? d.runs[r.run].outline.values.size() : 1); ++v) {
+                    if (has_any_value(d, r, t))
                         set_value(t, d.runs[r.run], v);
                     if (seen.insert({t.motion, t.list_methods()}).second)
                         check_limits(d, t, stimuli, l, rate);
@@ -548,6 +556,8 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             const pending_trial next = queue.next();
             planned_trial t = s.trials[next.trial - 1];
             values->choose(t);
+            if (task_in(r.outline).about().moves_value && row.value)
+                set_value(t, r, find_nearest(r.outline.values, *row.value));
             const trial_row planned = planned_row(p, r, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
                    std::ranges::all_of(stimuli_cells, [&](const stimulus_cells& c) {

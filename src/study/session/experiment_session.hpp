@@ -90,8 +90,8 @@ struct run_time {
     std::size_t waits = 0; ///< number of trials that wait
 };
 
-/// Estimates the time of each run, in the session's order. Assumes that answers take no time, the device adds
-/// no latency, and the array has rested before.
+/// Estimates the time of each run, in the session's order. Assumes that answers take no time and move no
+/// value, the device adds no latency, and the array has rested before.
 std::vector<run_time> session_times(const prepared_experiment& p);
 
 /// Returns the content of session.json before a session begins.

@@ -194,7 +194,7 @@ void person_session::introduce(const session_step& s)
     held_.emplace(p_, s.run, store_);
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
-                                    r.outline.question, ask_about_trial(p_, s).possible));
+                                    r.outline.question, ask_about_trial(p_, s, {}).possible));
     on_page({.name = "introduce",
              .question = r.outline.question,
              .choices = {w["begin"]},
@@ -417,17 +417,18 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
     };
 }
 
-given_stimulus person_session::give(const session_step& s, const planned_trial& t)
+given_stimulus person_session::give(const session_step& s, const planned_trial& t, bool again)
 {
     const score stimuli = p_.stimuli.make_score(t);
     const run_definition& r = p_.run_at(s.run);
-    if (t.rest_s > 0.0)
+    const double rest_s = again ? 0.0 : t.rest_s;
+    if (rest_s > 0.0)
         on_page(stimulus_screen(p_, s));
     // Waits before the target, because the stimulus follows it at once.
-    if (!stage_.pass(t.rest_s, [&](double) { return heed(); }) ||
-        !stage_.make_room(stimuli, find_lead_s(p_, r, t), waiting()))
+    if (!stage_.pass(rest_s, [&](double) { return heed(); }) ||
+        !stage_.make_room(stimuli, again ? stimulus_lead_s : find_lead_s(p_, r, t), waiting()))
         return {.flaw = "the device is gone"};
-    if (r.animation)
+    if (r.animation && !again)
         if (std::string flaw = animate(s, t); !flaw.empty())
             return {.flaw = std::move(flaw)};
     on_page(stimulus_screen(p_, s));
@@ -458,21 +459,33 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
 void person_session::trial(const session_step& s)
 {
     const run_definition& r = p_.run_at(s.run);
-    const planned_trial t = held_->find_trial(s);
+    const planned_trial planned = held_->find_trial(s);
+    planned_trial t = planned;
     const page_words& w = p_.definition.page;
     session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                               s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
                               s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
-    const given_stimulus g = give(s, t);
+    given_stimulus g = give(s, t, false);
+    question q;
+    std::optional<given_answer> a;
+    unsigned moves = 0;
+    while (g.flaw.empty() && (a = ask(q = ask_about_trial(p_, s, t)))) {
+        const auto next = task_in(r.outline).move(r, t, a->number);
+        if (!next)
+            break;
+        moves += *next == t ? 0 : 1;
+        t = *next;
+        g = give(s, t, true);
+    }
     trial_row row = planned_row(p_, r, t, s.which);
+    row.start = find_value(p_.definition, planned);
+    row.moves = moves;
     row.stream = stream_;
     row.xruns = g.xruns;
     note_frames(row, p_.stimuli.starts(t), g.first_frame, g.frames);
     std::string flaw = g.flaw;
     std::optional<bool> right;
     if (flaw.empty()) {
-        const question q = ask_about_trial(p_, s);
-        const auto a = ask(q);
         if (!a) {
             flaw = "the experimenter repeated it";
         } else {

@@ -79,7 +79,8 @@ private:
     std::function<bool(double)> waiting();
     /// Shows the target. Returns a reason if that makes the trial void, else an empty text.
     std::string animate(const session_step& s, const planned_trial& t);
-    given_stimulus give(const session_step& s, const planned_trial& t);
+    /// Plays the stimuli of a trial. `again`: they played before, with these values or others.
+    given_stimulus give(const session_step& s, const planned_trial& t, bool again);
     /// Returns a watcher that shows which of two stimuli plays at a frame, and catches up on earlier changes.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     std::optional<given_answer> ask(const question& q);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "session/say.hpp"
 
@@ -50,6 +51,13 @@ std::string answers_text(const questionnaire_item& item, const page_words& w)
     return text;
 }
 
+// Returns the number of the choice with this key. At a terminal Enter is the key a, as on a keypad.
+std::optional<unsigned> find_choice(const page_screen& s, const std::string& key)
+{
+    const std::size_t at = key.size() == 1 ? s.keys.find(key == "\n" ? 'a' : key.front()) : s.keys.npos;
+    return at != s.keys.npos ? std::optional(static_cast<unsigned>(at) + 1) : std::nullopt;
+}
+
 } // namespace
 
 bool question::is_typed() const noexcept
@@ -68,9 +76,12 @@ std::optional<given_answer> question_asker::ask(const question& q,
     typed_number number;
     for (;;) {
         const bool on_hand = q.is_drawn() && page_ != nullptr;
-        const session_key k = q.is_text() || on_hand ? keys_.wait_for_text(text)
-                              : q.is_typed()         ? keys_.wait_for_number(number, q.is_estimate())
-                                                     : keys_.wait(subject);
+        session_key k = q.is_text() || on_hand ? keys_.wait_for_text(text)
+                        : q.is_typed()         ? keys_.wait_for_number(number, q.is_estimate())
+                                               : keys_.wait(subject);
+        const auto choice = find_choice(q.screen, k.text);
+        if (choice && !k.answer)
+            k.answer = choice;
         const bool is_shown = q.is_typed() && k.is_key;
         const std::optional<double> estimate = q.is_estimate() ? read_estimate(k.text) : std::nullopt;
         const bool is_answer =
@@ -88,7 +99,9 @@ std::optional<given_answer> question_asker::ask(const question& q,
                 answered_.answer.reset();
             given_answer a{estimate.value_or(k.answer.value_or(0)), {}, k.at_ns};
             a.text = q.is_text() || on_hand ? *k.entered : fmt::format("{}", a.number);
-            session::show(is_shown || on_hand ? "\n" : a.text + "\n");
+            if (!is_shown && !on_hand)
+                session::show(choice ? std::string(1, q.screen.keys[*choice - 1]) : a.text);
+            session::show("\n");
             return a;
         } else if (q.is_typed() || !keys_.come_early()) {
             session::show(fmt::format("{}{}: {}", is_shown ? "\n" : "", words_["no_answer"], possible));
@@ -142,11 +155,14 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
     return all;
 }
 
-question ask_about_trial(const prepared_experiment& p, const session_step& s)
+question ask_about_trial(const prepared_experiment& p, const session_step& s, const planned_trial& t)
 {
     const run_definition& r = p.run_at(s.run);
     trial_answers a = find_answers(p.definition, r);
-    page_screen shown{.name = "question", .question = r.outline.question, .where = find_progress(p, s)};
+    page_screen shown{.name = "question",
+                      .text = task_in(r.outline).announce(r, t, p.definition.page),
+                      .question = r.outline.question,
+                      .where = find_progress(p, s)};
     if (a.is_estimate) {
         shown.entry = entry_kind::estimate;
         return {std::move(shown), std::move(a.possible)};
@@ -161,13 +177,16 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s)
     shown.lowest = a.lowest;
     shown.greatest = a.lowest + static_cast<unsigned>(a.labels.size()) - 1;
     shown.choices = std::move(a.labels);
-    shown.keys = number_keys(shown.choices.size());
+    std::string prompt;
+    if (!shown.text.empty())
+        prompt = fmt::format("{} {} {}: ", shown.text, shown.question, fmt::join(a.keys, " "));
+    shown.keys = a.keys.empty() ? number_keys(shown.choices.size()) : std::move(a.keys);
     shown.is_line = a.is_line;
     shown.are_stimuli = r.stimuli > 2;
     if (a.shows_motions)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(draw_motion(p.definition.motions[m].strokes, layout(p.where.tactors)));
-    return {std::move(shown), std::move(a.possible)};
+    return {std::move(shown), std::move(a.possible), std::move(prompt)};
 }
 
 trial_answer read_trial_answer(const question& q, const given_answer& a, const array& where)

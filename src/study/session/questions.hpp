@@ -83,7 +83,7 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
                                                              const array& a, double parts);
 
 /// Returns the question of a trial.
-question ask_about_trial(const prepared_experiment& p, const session_step& s);
+question ask_about_trial(const prepared_experiment& p, const session_step& s, const planned_trial& t);
 
 /// Returns the answer to the question of a trial, with a drawing in place of a tactor's number.
 trial_answer read_trial_answer(const question& q, const given_answer& a, const array& where);

@@ -56,7 +56,7 @@ public:
                 flow_.go_on();
                 continue;
             }
-            const planned_trial t = run->find_trial(s);
+            planned_trial t = run->find_trial(s);
             const trial_row row = play(s, *who, t);
             const bool ends_track = run->add(s, row, utc_ns(now_));
             note_codes(s, t, row);
@@ -116,14 +116,26 @@ private:
         }
     }
 
-    trial_row play(const session_step& s, const simulated_observer& who, const planned_trial& t)
+    // Plays a trial, and sets its last value.
+    trial_row play(const session_step& s, const simulated_observer& who, planned_trial& t)
     {
         const run_definition& r = p_.run_at(s.run);
         if (r.animation)
             now_ += frames(find_duration_s(p_.definition.motions[t.motion].strokes));
         now_ += codes_.lead(s);
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
+        const std::optional<double> start = find_value(p_.definition, t);
+        const auto moves =
+            a.is_void ? std::vector<planned_trial>() : task_in(r.outline).list_moves(r, t, a.response);
+        for (const planned_trial& next : moves) {
+            if (!s.practice)
+                codes_.note_stimuli(s, t, now_, p_.stimuli.frames(t), utc_ns(now_));
+            now_ += p_.stimuli.frames(t) + frames(pause_s) + codes_.lead(s);
+            t = next;
+        }
         trial_row row = planned_row(p_, r, t, s.which);
+        row.start = start;
+        row.moves = static_cast<unsigned>(moves.size());
         row.stream = 1;
         note_frames(row, p_.stimuli.starts(t), now_, p_.stimuli.frames(t));
         row.is_void = a.is_void;

@@ -30,7 +30,7 @@ using detail::toml_table;
 
 constexpr unsigned most_tracks = 8;
 constexpr unsigned most_reversals = 1000;
-constexpr double range_steps = 40.0; ///< number of steps in the range of values
+constexpr double slope_parts = 40.0; ///< parts of the range; one is the smallest slope
 
 // Names of procedures, by the number of positive answers in a row that move a staircase down.
 constexpr std::array<std::string_view, 4> procedures{"quest", "1up1down", "1up2down", "1up3down"};
@@ -57,13 +57,6 @@ std::vector<double> read_prior(const toml_table& t, std::string_view key, const 
         all.push_back(by_ratio ? low * std::pow(high / low, part) : low + (high - low) * part);
     }
     return all;
-}
-
-// Returns a number rounded to nine decimals, which removes the error of a sum of steps.
-double tidy(double v)
-{
-    constexpr double digits = 1e9;
-    return std::round(v * digits) / digits;
 }
 
 // Returns the procedure with a name, as adaptive_track::down.
@@ -132,25 +125,6 @@ void set_sides(const toml_table& t, adaptive_options& a, std::size_t greatest)
                    fmt::format("{} of procedure \"{}\" would test one side of the pse more than the other",
                                counted(counts.at(down), "track"), procedures.at(down)),
                    "use an even number: every second track is mirrored");
-}
-
-std::size_t find_nearest(const std::vector<double>& values, double v)
-{
-    const auto at = std::ranges::min_element(values, {}, [v](double one) { return std::abs(one - v); });
-    return static_cast<std::size_t>(at - values.begin());
-}
-
-// Sets the steps of a staircase, as multiples of the smallest step.
-void set_steps(const toml_table& t, adaptive_options& a, const std::vector<double>& steps, double step)
-{
-    if (steps.empty())
-        a.steps = {4, 2, 1};
-    for (const double s : steps) {
-        a.steps.push_back(static_cast<std::size_t>(std::llround(s / step)));
-        if (std::abs(static_cast<double>(a.steps.back()) * step - s) > 1e-6 * step)
-            t.fail("steps", fmt::format("{} is not a multiple of the smallest step, {}", s, step),
-                   "give multiples, such as [4, 2, 1]");
-    }
 }
 
 class chooser final : public value_chooser {
@@ -230,7 +204,7 @@ public:
                                "previous answers choose the values",
                            .response = "Number of the chosen stimulus, or of the chosen word: 1 or 2",
                            .keys = add_procedure_keys({"choices", "vary", "standard"}),
-                           .column = "track"})
+                           .columns = {"track"}})
     {
     }
 
@@ -275,30 +249,17 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.two_sided = two_sided;
     a.tracks = read_tracks(t, two_sided);
     refuse_unused_keys(t, a);
-    const std::vector<double> range = read_numbers(t, "range", b);
-    if (range.size() != 2 || !(range[0] < range[1]))
-        t.fail(t.has("range") ? "range" : "procedure", "an adaptive run needs the range of its values",
-               "add range = [LEAST, GREATEST]");
-    const double width = range[1] - range[0];
-    const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
-    const double step = !steps.empty() ? *std::ranges::min_element(steps)
-                        : o.on_db_axis ? 1.0
-                                       : width / range_steps;
-    const auto count = static_cast<std::size_t>(std::floor(width / step + 1e-6)) + 1;
-    if (count > most_values)
-        t.fail(t.has("steps") ? "steps" : "range", fmt::format("the range has {} steps", count),
-               fmt::format("use at most {}", most_values));
-    for (std::size_t i = 0; i < count; ++i)
-        o.values.push_back(tidy(range[0] + step * static_cast<double>(i)));
-    set_steps(t, a, steps, step);
-    set_sides(t, a, count - 1);
-    const std::vector<double> start = read_one_or_more(t, "start", {range[0], range[1]});
+    const value_grid grid = read_grid(t, o, b, "procedure");
+    a.steps = grid.sizes.empty() ? std::vector<std::size_t>{4, 2, 1} : grid.sizes;
+    set_sides(t, a, o.values.size() - 1);
+    const std::vector<double> start = read_one_or_more(t, "start", {grid.least, grid.greatest});
     if (start.size() > 1 && start.size() != a.tracks.size())
         t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
     for (std::size_t i = 0; i < a.tracks.size() && !start.empty(); ++i)
         a.tracks[i].start = find_nearest(o.values, start[start.size() == 1 ? 0 : i]);
+    const double width = grid.greatest - grid.least;
     a.slopes =
-        read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / range_steps, width / 2.0}, 5, true);
+        read_prior(t, "slope", {0.0, detail::max_mm, true}, {width / slope_parts, width / 2.0}, 5, true);
     a.lapses = read_prior(t, "lapse", {0.0, 0.5}, {0.0, 0.04}, 3, false);
     a.stop_sd = t.number("stop_sd", {0.0, width, true});
     a.reversals = t.whole("reversals", 1, most_reversals);

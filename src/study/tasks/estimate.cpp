@@ -25,7 +25,7 @@ public:
                     "One stimulus, or a standard and then a stimulus, which the participant gives a number",
                 .response = "The number above 0 that the participant gave",
                 .keys = {"vary", "values", "standard", "trials_per_value"},
-                .column = "intensity_estimate"})
+                .columns = {"intensity_estimate"}})
     {
     }
 
@@ -58,7 +58,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o);
-        r.estimate = read_twice(t, row, about().column, [&](std::string_view column) {
+        r.estimate = read_twice(t, row, about().columns.front(), [&](std::string_view column) {
             const auto number = t.number(row, column); // R writes 100000 as 1e+05
             if (number && !(*number >= least_estimate && *number <= most_estimate))
                 t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),

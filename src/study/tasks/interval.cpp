@@ -38,7 +38,7 @@ public:
                 .questions = {"In which interval did you feel it?", "In which interval did you feel it?",
                               "In which interval did you feel it?"},
                 .keys = add_procedure_keys({"feedback", "vary", "values", "trials_per_value"}),
-                .column = "track",
+                .columns = {"track"},
                 .has_silences = true})
     {
     }
@@ -65,7 +65,7 @@ public:
     {
         return r.outline.is_adaptive() ? choose_adaptively(r, is_right) : task::choose_values(r);
     }
-    bool uses_column(const run_outline& o) const override { return o.is_adaptive(); }
+    bool uses_columns(const run_outline& o) const override { return o.is_adaptive(); }
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {

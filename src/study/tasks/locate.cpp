@@ -28,7 +28,7 @@ public:
                       .trial = "One stimulus; the participant shows where it was",
                       .response = "Place that the participant showed: 0, then x and y in mm as in the array",
                       .questions = {"Where was it?", "Where was it?", "Where was it?"},
-                      .column = "target"},
+                      .columns = {"target"}},
                      drawing_kind::place)
     {
     }

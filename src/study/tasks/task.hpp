@@ -42,6 +42,7 @@ struct trial_answers {
     bool is_estimate = false;                ///< the answer is a number above 0, and all else is unused
     drawing_kind draws = drawing_kind::none; ///< what participants draw, if anything; all else is unused
     bool names_stimuli = false;              ///< labels name the stimuli of the trial
+    std::string keys = {};                   ///< key of each answer; empty for their numbers
     bool shows_motions = false;              ///< answers are the run's motions, which a page draws
 };
 
@@ -115,10 +116,11 @@ public:
         std::string_view response; ///< meaning of its response; {} is the range of ratings
         /// Usual questions about similarity, uniformity and other attributes; empty if there is none.
         std::array<std::string_view, 3> questions = {};
-        std::vector<std::string_view> keys = {}; ///< keys of [[run]] that only some tasks have
-        std::string_view column = {};            ///< column that only its tables have; empty if none
-        bool has_silences = false;               ///< true if one of a trial's two stimuli is silence
-        bool has_three_stimuli = false;          ///< true if a trial has three stimuli
+        std::vector<std::string_view> keys = {};    ///< keys of [[run]] that only some tasks have
+        std::vector<std::string_view> columns = {}; ///< columns that only some tasks have
+        bool has_silences = false;                  ///< true if one of a trial's two stimuli is silence
+        bool has_three_stimuli = false;             ///< true if a trial has three stimuli
+        bool moves_value = false;                   ///< true if participants move the value; see move()
     };
 
     virtual ~task() = default;
@@ -147,15 +149,35 @@ public:
     /// Draws n trials in no particular order: each cell equally often as far as n allows.
     virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                             random_numbers& numbers) const;
+    /// Draws the value at which a trial begins. Usually leaves the trial as it is.
+    virtual void draw_start(planned_trial&, const run_definition&, random_numbers&) const {}
     virtual std::unique_ptr<value_chooser> choose_values(const run_definition& r) const;
-    /// Returns true if the tables of a run have the task's own column.
-    virtual bool uses_column(const run_outline&) const { return true; }
+    /// Returns true if the tables of a run have the task's own columns.
+    virtual bool uses_columns(const run_outline&) const { return true; }
 
     /// Returns the possible answers; usually two.
     virtual trial_answers ask(const run_definition& r, const page_words& w) const;
+    /// Returns a text for the participant above the question of a trial; usually empty.
+    virtual std::string announce(const run_definition&, const planned_trial&, const page_words&) const
+    {
+        return {};
+    }
+    /// Returns the trial to play after an answer that does not end it: the same trial, or with another value.
+    /// Returns nothing if the answer ends the trial, as most do.
+    virtual std::optional<planned_trial> move(const run_definition&, const planned_trial&,
+                                              const trial_answer&) const
+    {
+        return {};
+    }
+    /// Lists the trials that a simulated observer plays after the first, to reach an answer; usually none.
+    virtual std::vector<planned_trial> list_moves(const run_definition&, const planned_trial&,
+                                                  const trial_answer&) const
+    {
+        return {};
+    }
     /// Returns the target of a motion as its tables have it; empty if they do not.
     virtual std::string write_target(const motion_definition&) const { return {}; }
-    /// Sets the cells of an answer in the row of its trial.
+    /// Sets the cells of an answer in the row of its trial, as it was last played.
     virtual void take(trial_row& row, const run_definition& r, const trial_answer& answer) const;
     /// Returns whether an answer is right; nothing if it can be neither right nor wrong.
     virtual std::optional<bool> was_right(const experiment_definition&, const run_definition&,

@@ -27,13 +27,14 @@ const task& locate_task();
 const task& trace_task();
 const task& dissimilar_task();
 const task& oddity_task();
+const task& adjust_task();
 
 std::span<const task* const> list_tasks() noexcept
 {
     static const std::array all{
         &choose_task(),   &rate_task(),       &identify_task(), &detect_task(),   &same_different_task(),
         &estimate_task(), &constant_task(),   &adaptive_task(), &interval_task(), &locate_task(),
-        &trace_task(),    &dissimilar_task(), &oddity_task()};
+        &trace_task(),    &dissimilar_task(), &oddity_task(),   &adjust_task()};
     return all;
 }
 

@@ -15,7 +15,7 @@ public:
                       .response = "Points that the participant drew, with ; between them: time in s since "
                                   "the first point, then x and y in mm as in the array",
                       .questions = {"Draw how it moved.", "Draw how it moved.", "Draw how it moved."},
-                      .column = "target"},
+                      .columns = {"target"}},
                      drawing_kind::path)
     {
     }

@@ -80,6 +80,41 @@ void read_values(const toml_table& t, run_outline& o, const detail::bounds& b)
         t.fail("values", "a value occurs twice", "leave one of them out");
 }
 
+value_grid read_grid(const toml_table& t, run_outline& o, const detail::bounds& b, std::string_view own)
+{
+    constexpr double parts = 40.0;
+    constexpr double digits = 1e9; // rounds to nine decimals, which removes the error of a sum of steps
+    const std::vector<double> range = read_numbers(t, "range", b);
+    if (range.size() != 2 || !(range[0] < range[1]))
+        t.fail(t.has("range") ? "range" : own, "the run needs the range of its values",
+               "add range = [LEAST, GREATEST]");
+    const double width = range[1] - range[0];
+    const std::vector<double> steps = read_numbers(t, "steps", {0.0, width, true});
+    value_grid g{range[0], range[1],
+                 !steps.empty() ? *std::ranges::min_element(steps)
+                 : o.on_db_axis ? 1.0
+                                : width / parts};
+    const auto count = static_cast<std::size_t>(std::floor(width / g.step + 1e-6)) + 1;
+    if (count > most_values)
+        t.fail(t.has("steps") ? "steps" : "range", fmt::format("the range has {} steps", count),
+               fmt::format("use at most {}", most_values));
+    for (std::size_t i = 0; i < count; ++i)
+        o.values.push_back(std::round((g.least + g.step * static_cast<double>(i)) * digits) / digits);
+    for (const double s : steps) {
+        g.sizes.push_back(static_cast<std::size_t>(std::llround(s / g.step)));
+        if (std::abs(static_cast<double>(g.sizes.back()) * g.step - s) > 1e-6 * g.step)
+            t.fail("steps", fmt::format("{} is not a multiple of the smallest step, {}", s, g.step),
+                   "give multiples, such as [4, 2, 1]");
+    }
+    return g;
+}
+
+std::size_t find_nearest(const std::vector<double>& values, double v)
+{
+    const auto at = std::ranges::min_element(values, {}, [v](double one) { return std::abs(one - v); });
+    return static_cast<std::size_t>(at - values.begin());
+}
+
 void refuse_method_blocks(const toml_table& t, const run_outline& o)
 {
     if (t.text("blocks") == "methods")
@@ -214,11 +249,10 @@ std::optional<double> find_truth(const std::vector<double>& values, const simula
 
 } // namespace
 
-bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r)
+psychometric find_function(const simulated_run& who, const planned_trial& t)
 {
     const run_outline& o = who.run.outline;
     const simulation& s = who.truth;
-    const double value = find_value(who.definition, t).value();
     const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
     const double pse = find_truth(s.pse, who, t).value_or(o.standard.value_or(0.5 * (least + greatest))) +
                        s.pse_sd * who.person.pse;
@@ -227,7 +261,13 @@ bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers
         const double variance = std::log1p(std::pow(s.jnd_sd / jnd, 2.0));
         jnd *= std::exp(std::sqrt(variance) * who.person.jnd - 0.5 * variance);
     }
-    return r.unit() < normal_chance(value, {pse, jnd / normal_quartile, 0.0}, 0.0);
+    return {pse, jnd / normal_quartile, 0.0};
+}
+
+bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r)
+{
+    const double value = find_value(who.definition, t).value();
+    return r.unit() < normal_chance(value, find_function(who, t), 0.0);
 }
 
 double find_dprime(const simulated_run& who, const planned_trial& t)

@@ -12,6 +12,7 @@
 #include "study/experiment/definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
+#include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
@@ -29,6 +30,19 @@ std::vector<double> read_numbers(const detail::toml_table& t, std::string_view k
 /// Reads a list of numbers, or one number.
 std::vector<double> read_one_or_more(const detail::toml_table& t, std::string_view key,
                                      const detail::bounds& b);
+/// Grid of a run's values.
+struct value_grid {
+    double least = 0.0; ///< ends of the range
+    double greatest = 0.0;
+    double step = 0.0;                   ///< distance between two values
+    std::vector<std::size_t> sizes = {}; ///< sizes of `steps`, as multiples of the step; empty if not given
+};
+/// Reads `range` and `steps`, and makes the values: from the smallest on, in the smallest of the steps, or in
+/// steps of 1 dB or a fortieth of the range. `own`: key to name if there is no range.
+value_grid read_grid(const detail::toml_table& t, run_outline& o, const detail::bounds& b,
+                     std::string_view own);
+/// Returns the index of the value nearest to v.
+std::size_t find_nearest(const std::vector<double>& values, double v);
 /// Throws if a run has blocks by methods, but two methods in a trial.
 void refuse_method_blocks(const detail::toml_table& t, const run_outline& o);
 /// Throws if a method has the name `name`, which has another meaning in the run's tables.
@@ -80,8 +94,10 @@ bool is_more(const run_outline& o, std::string_view method_1, unsigned response)
 
 // Simulated observers.
 
-/// Returns true with the probability of the person's psychometric function at the value of a trial. The
-/// person's PSE is normal, the JND lognormal, so that it stays positive.
+/// Returns the person's psychometric function for the method of a trial. The person's PSE is normal, the JND
+/// lognormal, so that it stays positive.
+psychometric find_function(const simulated_run& who, const planned_trial& t);
+/// Returns true with the probability of that function at the value of a trial.
 bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r);
 /// Returns the person's d' for the method of a trial: normal, at least 0.
 double find_dprime(const simulated_run& who, const planned_trial& t);
