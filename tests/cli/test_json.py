@@ -46,7 +46,7 @@ MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
         "runs{}.exponent.participants", "runs{}.adjustment.participants", "runs{}.adjustment.means", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
         "runs{}.scaling.participants", "runs{}.scaling.participants{}.places", "runs{}.scaling.places", "runs{}.by",
-        *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means"))}
+        *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means", factor + "{}.group_means"))}
 
 
 def member(at):

@@ -126,6 +126,35 @@ class EveryTask(ExperimentTest):
         for motion in ("both", "many"):
             self.assertLess(told[f"park:{motion}"]["drawings"]["predicted"]["centroid"]["distance"], 0.01)
 
+    def test_directions_over_a_half_turn_are_near_each_other(self):
+        self.write("t.toml", '[experiment]\nname = "t"\narray = "palm-3x3"\nlevel = { dbfs = -20 }\n' + toml("method", "park")
+                   + toml("motion", "east", path="M 10 20 H 30", duration=0.2) + toml("run", "path", task="trace", trials=4)
+                   + toml("group", "near") + toml("group", "turned"))
+        # By participant the angle, clockwise, from the target to what is drawn.
+        angles = {"near": {"1": -3.0, "2": 1.0, "3": 5.0, "4": 2.0}, "turned": {"5": 174.0, "6": -178.0, "7": 179.0, "8": -173.0}}
+        for group, people in angles.items():
+            for code, angle in people.items():
+                self.simulate(code, "--group", group, definition="t.toml")
+                turn = math.radians(angle)
+                drawn = ";".join(f"{i / 10} {20 + r * math.cos(turn):.6f} {20 + r * math.sin(turn):.6f}" for i, r in enumerate((-10, -5, 0, 5, 10)))
+                table = self.dir / f"study/sub-{code}/beh/sub-{code}_task-path_beh.tsv"
+                lines = [line.split("\t") for line in table.read_text().splitlines()]
+                at = lines[0].index("response")
+                table.write_text("\n".join("\t".join([*line[:at], drawn, *line[at + 1:]] if i else line) for i, line in enumerate(lines)) + "\n")
+        told = self.valid(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["path"]["methods"]["direction"]
+        near, turned = ([a % 360 if group == "turned" else a for a in angles[group].values()] for group in angles)
+        means = told["group_means"]
+        self.assertEqual({group: m["n"] for group, m in means.items()}, {"near": 4, "turned": 4})
+        self.assertAlmostEqual((means["turned"]["mean"] - means["near"]["mean"]) % 360, statistics.mean(turned) - statistics.mean(near), 3)
+        self.assertAlmostEqual(means["turned"]["se"], statistics.stdev(turned) / 2, 3)
+        # One way, with as many people in both groups: F is the square of Student's t.
+        t = (statistics.mean(turned) - statistics.mean(near)) / math.sqrt((statistics.variance(near) + statistics.variance(turned)) / 4)
+        self.assertAlmostEqual(told["group_anova"]["group"]["F"] / t ** 2, 1.0, 4)
+        alone = self.valid(self.ok("analyze", "study", "--participants", "5,6,7,8", "--format", "json").stdout)["runs"]["path"]["drawings"]["means"]["direction"]
+        self.assertAlmostEqual(alone["mean"] % 360, statistics.mean(turned), 3)
+        self.assertAlmostEqual(alone["se"], statistics.stdev(turned) / 2, 3)
+        self.assertRegex(self.ok("analyze", "study", "--format", "tables").stdout, r"(?s)distance by group:\n    with the group as a factor between participants:\n    near   [^\n]*\n    turned ")
+
     def test_means_of_cells_are_compared_between_methods_and_sessions(self):
         self.write("desk.toml", DESK)
         text = measures("desk.toml", toml("method", "hard", burst=0.02),

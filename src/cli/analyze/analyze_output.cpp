@@ -266,7 +266,7 @@ public:
     {
         const int decimals = count_decimals(run_);
         const std::size_t w = widest(v.levels);
-        for (std::size_t i = 0; i < v.levels.size(); ++i)
+        for (std::size_t i = 0; i < v.levels.size() && v.levels.size() > 1; ++i)
             say(stdout, "    {:<{}} {}\n", v.levels[i], w, mean_text(v.means[i], decimals));
         for (const study::paired_comparison& c : v.pairs)
             say(stdout, "{}",
@@ -277,6 +277,9 @@ public:
             fmt::print("{}", wrapped(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
         if (v.groups && has_table(*v.groups)) {
             fmt::print("    with the group as a factor between participants:\n");
+            const std::size_t wide = widest(v.group_names);
+            for (std::size_t i = 0; i < v.group_names.size(); ++i)
+                say(stdout, "    {:<{}} {}\n", v.group_names[i], wide, mean_text(v.group_means[i], decimals));
             (*this)(*v.groups);
         }
     }

@@ -158,7 +158,7 @@ std::vector<named_value> list_path_figures(const std::vector<trial>& trials)
     return {{{"distance"}, mean_if_any(distances)},
             {{"frechet"}, mean_if_any(frechet)},
             {{"length"}, mean_if_any(lengths)},
-            {{"direction"}, mean_angle(directions)},
+            {{"direction"}, mean_angle(directions), true},
             {{"curvature"}, mean_if_any(curvatures)}};
 }
 

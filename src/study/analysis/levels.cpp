@@ -66,6 +66,35 @@ effect_list compare_with_groups(const std::string& factor, std::size_t levels, c
             true};
 }
 
+// Joins the angles of all participants at all levels.
+void join_all_angles(std::vector<std::vector<double>>& rows)
+{
+    std::vector<double> all;
+    for (const std::vector<double>& own : rows)
+        all.insert(all.end(), own.begin(), own.end());
+    all = join_angles(std::move(all));
+    auto next = all.begin();
+    for (std::vector<double>& own : rows)
+        for (double& value : own)
+            value = *next++;
+}
+
+// Adds the mean of each group, in the order of their participants.
+void add_group_means(figure_comparison& c, const level_values& v)
+{
+    for (const std::string& group : v.groups)
+        if (std::ranges::count(c.group_names, group) == 0)
+            c.group_names.push_back(group);
+    for (const std::string& group : c.group_names) {
+        std::vector<double> own;
+        for (std::size_t i = 0; i < v.rows.size(); ++i)
+            if (v.groups[i] == group)
+                own.push_back(mean(v.rows[i]));
+        const t_test t = test_mean(own, 0.0);
+        c.group_means.push_back({.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci});
+    }
+}
+
 // Compares a figure between levels.
 figure_comparison compare_levels(const std::string& factor, const std::string& figure,
                                  const std::vector<level>& levels, const level_values& v, bool groups)
@@ -89,8 +118,10 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
     c.pairs = compare_pairs(by_level, 0.0, test_mean);
     if (levels.size() > 2)
         c.anova = repeated_measures({values, levels.size(), 1}).first;
-    if (groups)
+    if (groups) {
         c.groups = compare_with_groups(factor, levels.size(), v);
+        add_group_means(c, v);
+    }
     return c;
 }
 
@@ -148,7 +179,9 @@ void add_factor(std::vector<result>& results, const run_people& people, const co
             }
     }
     for (std::size_t k = 0; k < f.figures.size(); ++k) {
-        const std::string& name = f.figures[k];
+        const std::string& name = f.figures[k].name.front();
+        if (f.figures[k].is_angle)
+            join_all_angles(values[k].rows);
         results.push_back({{f.name + "s", name},
                            f.levels.size() > 1 ? fmt::format("{} by {}, within participants", name, f.name)
                                                : fmt::format("{} by group", name),
@@ -166,18 +199,18 @@ std::vector<compared_factor> list_factors(const run_outline& run, const run_peop
         if (plan->figure.empty())
             return {};
         if (own.has_one_method(run) && plan->methods.size() > (tests_difference(run) ? 2U : 1U))
-            all.push_back(
-                {"method", split_by_method(run), {plan->figure}, measure_cells(run, plan_one_method(*plan))});
+            all.push_back({"method",
+                           split_by_method(run),
+                           {{{plan->figure}}},
+                           measure_cells(run, plan_one_method(*plan))});
         if (std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
-            all.push_back({"session", std::move(sessions), {plan->figure}, measure_cells(run, *plan)});
+            all.push_back({"session", std::move(sessions), {{{plan->figure}}}, measure_cells(run, *plan)});
         return all;
     }
     const auto measure = [&run, &own, kind](const std::vector<trial>& trials) {
         return own.measure(run, trials, kind);
     };
-    std::vector<std::string> figures;
-    for (const named_value& v : measure({}))
-        figures.push_back(v.name.front());
+    const std::vector<named_value> figures = measure({});
     if (own.has_one_method(run))
         all.push_back({"method", split_by_method(run), figures, measure});
     all.push_back({"session", split_by_session(people), figures, measure});

@@ -23,7 +23,7 @@ struct level {
 struct compared_factor {
     std::string name; ///< method or session
     std::vector<level> levels = {};
-    std::vector<std::string> figures = {};
+    std::vector<named_value> figures = {}; ///< without values
     /// Returns a participant's figures in some trials.
     std::function<std::vector<named_value>(const std::vector<trial>&)> measure = {};
 };

@@ -94,6 +94,8 @@ Values measure_people(Values v, const condition_trials& c, const run_people& peo
         for (const auto& own : v.values)
             if (own[k])
                 there.push_back(*own[k]);
+        if (names[k].is_angle)
+            there = join_angles(std::move(there));
         const std::optional<double> its = k == 0 ? against : std::nullopt;
         v.figures.push_back({names[k].name.front(), test_mean(there, its.value_or(0.0)), its});
     }

@@ -139,8 +139,8 @@ struct simulated_study {
         if (task_in(run.outline).name_comparison(run.outline).against)
             outcome.tests.emplace_back();
         for (const compared_factor& f : factors)
-            for (const std::string& figure : f.figures) {
-                outcome.tests.push_back({f.name, figure});
+            for (const named_value& figure : f.figures) {
+                outcome.tests.push_back({f.name, figure.name.front()});
                 for (const level& l : f.levels)
                     outcome.tests.back().levels.push_back(l.name);
             }

@@ -39,6 +39,7 @@ struct run_people {
 struct named_value {
     std::vector<std::string> name;
     std::optional<double> value = {};
+    bool is_angle = false; ///< true for degrees, of which 360 are a turn
 };
 
 /// Mean over participants for one motion or for all motions.
@@ -101,6 +102,8 @@ struct figure_comparison {
     std::optional<effect> anova = {};          ///< with three levels or more
     /// Effects of the groups, the factor and both; missing if groups are not compared.
     std::optional<effect_list> groups = {};
+    std::vector<std::string> group_names = {};
+    std::vector<t_test> group_means = {}; ///< of each participant's mean over the levels, not tested
 };
 
 /// Worths from the trials of all participants.

@@ -609,6 +609,30 @@ std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, s
     return all;
 }
 
+std::vector<double> join_angles(std::vector<double> degrees)
+{
+    constexpr double turn = 360.0;
+    if (degrees.empty())
+        return degrees;
+    for (double& d : degrees)
+        d -= turn * std::floor(d / turn);
+    std::vector<double> sorted = degrees;
+    std::ranges::sort(sorted);
+    double first = sorted.front(); // after the largest gap
+    double gap = first + turn - sorted.back();
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        if (sorted[i] - sorted[i - 1] > gap) {
+            gap = sorted[i] - sorted[i - 1];
+            first = sorted[i];
+        }
+    for (double& d : degrees)
+        d += d < first ? turn : 0.0;
+    const double turns = std::round(mean(degrees) / turn);
+    for (double& d : degrees)
+        d -= turn * turns;
+    return degrees;
+}
+
 std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding,
                                              t_test (*test)(std::span<const double>, double, double))
 {

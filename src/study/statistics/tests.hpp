@@ -157,6 +157,10 @@ std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cros
 /// takes a millisecond for few levels.
 double studentized_range_p(double q, std::size_t levels, double df);
 
+/// Returns angles, degrees, with whole turns added, so that they lie close together: the largest gap between
+/// them is outside. Their mean is from -180 to 180.
+std::vector<double> join_angles(std::vector<double> degrees);
+
 struct comparison {
     std::size_t a;
     std::size_t b;     ///< after a
