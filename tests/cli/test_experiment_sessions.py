@@ -65,7 +65,7 @@ class Held(SessionTest):
         self.assertIn("- Sessions that have the run: 1, 3\n", self.ok("report", "study").stdout)
         power = json.loads(self.ok("experiment", "two.toml", "--power", "2", "--studies", "2", "--simulate", "sigma=1", "--format", "json").stdout)
         by = {r["name"]: r["comparisons"][-1]["comparison"] for r in power["runs"] if r["comparisons"]}
-        self.assertEqual((by["how good"], by["what"]), ("rating by session, 3 - 1, paired t against 0", "correct by session, analysis of variance (p_gg)"))
+        self.assertEqual((by["how good"], by["what"]), ("rating by session, 1 - 3, paired t against 0", "correct by session, analysis of variance (p_gg)"))
         # A table of a session that does not have the run is not silently left out.
         table = self.dir / "study/sub-01/ses-2/beh/sub-01_ses-2_task-howgood_beh.tsv"
         table.write_bytes((self.dir / "study/sub-01/ses-1/beh/sub-01_ses-1_task-howgood_beh.tsv").read_bytes())

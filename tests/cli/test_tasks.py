@@ -147,7 +147,7 @@ class EveryTask(ExperimentTest):
         self.assertEqual({group: m["n"] for group, m in means.items()}, {"near": 4, "turned": 4})
         self.assertAlmostEqual((means["turned"]["mean"] - means["near"]["mean"]) % 360, statistics.mean(turned) - statistics.mean(near), 3)
         self.assertAlmostEqual(means["turned"]["se"], statistics.stdev(turned) / 2, 3)
-        # One way, with as many people in both groups: F is the square of Student's t.
+        # With one factor and as many people in both groups, F is the square of Student's t.
         t = (statistics.mean(turned) - statistics.mean(near)) / math.sqrt((statistics.variance(near) + statistics.variance(turned)) / 4)
         self.assertAlmostEqual(told["group_anova"]["group"]["F"] / t ** 2, 1.0, 4)
         alone = self.valid(self.ok("analyze", "study", "--participants", "5,6,7,8", "--format", "json").stdout)["runs"]["path"]["drawings"]["means"]["direction"]

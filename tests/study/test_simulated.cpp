@@ -165,6 +165,42 @@ TEST_CASE("a given share of the trials is void, and no practice")
     CHECK(voids < 1100);
 }
 
+TEST_CASE("the deviations of people correlate between methods")
+{
+    const experiment_definition d =
+        read_definition("[experiment]\nname = \"c\"\nlevel = { dbfs = -12 }\n"
+                        "[[motion]]\nname = \"right\"\npath = \"M0 20H40\"\n"
+                        "[[method]]\nname = \"a\"\n[[method]]\nname = \"b\"\nphantom = \"linear\"\n"
+                        "[[run]]\nname = \"far\"\ntask = \"adjust\"\nvary = \"length_mm\"\n"
+                        "range = [0.5, 39.5]\nsteps = [0.5]\nstandard = 20\ntrials = 8\n",
+                        "c.toml", {});
+    const stimulus_set stimuli(d, felt_array(), {});
+    const run_definition& r = d.runs[0];
+    constexpr unsigned people = 1500;
+    for (const double correlation : {0.0, 0.5, 1.0}) {
+        const simulation s = parse_simulation(fmt::format("pse_sd=4,jnd=0.001,correlation={}", correlation));
+        double sum = 0.0;
+        double product = 0.0;
+        double square = 0.0;
+        for (unsigned i = 0; i < people; ++i) {
+            const simulated_observer who(s, d, r, stimuli, fmt::format("{}", i));
+            std::array<double, 2> settled{};
+            for (std::size_t m = 0; m < 2; ++m)
+                settled.at(m) =
+                    who.answer({0, r.variants.at(m).values[3], r.variants.at(m).standard}, 1, 1, true)
+                        .response.number -
+                    20.0;
+            sum += settled[0] + settled[1];
+            product += settled[0] * settled[1];
+            square += settled[0] * settled[0] + settled[1] * settled[1];
+        }
+        CHECK(std::abs(sum / (2.0 * people)) < 0.4);
+        CHECK(std::sqrt(square / (2.0 * people)) == doctest::Approx(4.0).epsilon(0.05));
+        // The standard error of r is 1 / sqrt(n) at most: 0.026.
+        CHECK(std::abs(2.0 * product / square - correlation) < 0.08);
+    }
+}
+
 TEST_CASE("impossible simulations are refused")
 {
     const auto refusal = [](const char* text) { return caught_message([&] { parse_simulation(text); }); };
@@ -178,7 +214,7 @@ TEST_CASE("impossible simulations are refused")
     has(refusal("seed=1,"), "\"\" has no =");
     CHECK(parse_simulation("sigma=2") == simulation{1, 2.0, 0.0});
     CHECK(to_text(parse_simulation("void=0.1,sigma=0.5,seed=9")) == "seed=9,sigma=0.5,void=0.1");
-    for (const char* text : {"seed=1,sigma=1,pse=60,64,jnd=8,pse_sd=4,jnd_sd=2,method_sd=0.5",
+    for (const char* text : {"seed=1,sigma=1,pse=60,64,jnd=8,pse_sd=4,jnd_sd=2,correlation=0.5,method_sd=0.5",
                              "seed=1,sigma=1,dprime=2,exponent=0.5,0.7,dprime_sd=1,exponent_sd=0.1"})
         CHECK(to_text(parse_simulation(text)) == text);
     has(refusal("pse_sd=-1"), "pse_sd is \"-1\"");

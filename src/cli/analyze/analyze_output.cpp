@@ -520,6 +520,31 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
     return unique;
 }
 
+// Lists the figures that are compared, by factor, each with the p of its test: "jnd, p = 0.004".
+std::vector<std::pair<std::string, std::vector<std::string>>>
+list_compared(const std::vector<study::result>& results)
+{
+    std::vector<std::pair<std::string, std::vector<std::string>>> all;
+    const auto add = [&](const std::string& factor, const std::string& figure, std::optional<double> p) {
+        auto at = std::ranges::find(all, factor, [](const auto& one) { return one.first; });
+        if (at == all.end())
+            at = all.insert(all.end(), {factor, {}});
+        std::string text = fmt::format("{}, {}", figure, p_clause(p));
+        if (p && std::ranges::count(at->second, text) == 0) // methods and sessions have the groups' test
+            at->second.push_back(std::move(text));
+    };
+    for (const study::figure_comparison* c : study::list_values<study::figure_comparison>(results)) {
+        if (c->pairs.size() == 1)
+            add(c->factor, c->figure, c->pairs.front().test.p);
+        else if (c->anova)
+            add(c->factor, c->figure, c->anova->p_gg ? c->anova->p_gg : c->anova->p);
+        if (c->groups && c->groups->effects.front().second)
+            add("group", c->figure, c->groups->effects.front().second->p);
+    }
+    std::erase_if(all, [](const auto& one) { return one.second.empty(); });
+    return all;
+}
+
 } // namespace
 
 void print_summary(const study::analysis& a)
@@ -542,16 +567,20 @@ void print_summary(const study::analysis& a)
         say(stdout, "excluded: {}\n", fmt::join(who, ", "));
         --room;
     }
-    const std::size_t shown = a.runs.size() > room ? room - 1 : a.runs.size();
-    for (std::size_t i = 0; i < shown; ++i) {
-        const study::run_analysis& r = a.runs[i];
+    std::vector<std::string> lines;
+    for (const study::run_analysis& r : a.runs) {
         const study::result* main = find_main(r.results);
-        say(stdout, "{}: {}\n", r.run.name,
-            r.n == 0 || main == nullptr ? counted(r.n, "participant")
-                                        : std::visit(summary(r.run), main->value));
+        lines.push_back(fmt::format("{}: {}", r.run.name,
+                                    r.n == 0 || main == nullptr ? counted(r.n, "participant")
+                                                                : std::visit(summary(r.run), main->value)));
+        for (const auto& [factor, figures] : list_compared(r.results))
+            lines.push_back(fmt::format("{} by {}: {}", r.run.name, factor, fmt::join(figures, "; ")));
     }
-    if (shown < a.runs.size())
-        fmt::print("and {}: --format tables\n", counted(a.runs.size() - shown, "more result"));
+    const std::size_t shown = lines.size() > room ? room - 1 : lines.size();
+    for (std::size_t i = 0; i < shown; ++i)
+        say(stdout, "{}\n", lines[i]);
+    if (shown < lines.size())
+        fmt::print("and {}: --format tables\n", counted(lines.size() - shown, "more result"));
 }
 
 void print_tables(const study::analysis& a)

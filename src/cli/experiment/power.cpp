@@ -69,7 +69,7 @@ std::string comparison_text(const study::run_outline& r)
 std::string comparison_text(const study::tested_power& t)
 {
     return t.levels.size() == 2 ? fmt::format("{} by {}, {} - {}, paired t against 0", t.figure, t.factor,
-                                              t.levels.back(), t.levels.front())
+                                              t.levels.front(), t.levels.back())
                                 : fmt::format("{} by {}, analysis of variance (p_gg)", t.figure, t.factor);
 }
 

@@ -66,6 +66,7 @@ simulation parse_simulation(std::string_view text)
         {"jnd_sd", 0.0, 1e6, into(s.jnd_sd)},
         {"dprime_sd", 0.0, 10.0, into(s.dprime_sd)},
         {"exponent_sd", 0.0, 10.0, into(s.exponent_sd)},
+        {"correlation", 0.0, 1.0, into(s.correlation)},
         {"method_sd", 0.0, 1e6, into(s.method_sd)}};
     read_observer(text, keys, "seed=1,sigma=1");
     return s;
@@ -93,6 +94,7 @@ std::string to_text(const simulation& s)
     add("jnd_sd", s.jnd_sd, usual.jnd_sd);
     add("dprime_sd", s.dprime_sd, usual.dprime_sd);
     add("exponent_sd", s.exponent_sd, usual.exponent_sd);
+    add("correlation", s.correlation, usual.correlation);
     add("method_sd", s.method_sd, usual.method_sd);
     return text;
 }
@@ -120,10 +122,17 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
                         "give one value, or one for each method");
     // A person is the same in all runs and sessions.
     random_numbers numbers(fmt::format("{}/{}/{}/person", s.seed, d.outline.name, code));
-    for (double* own : {&run_.person.pse, &run_.person.jnd, &run_.person.dprime, &run_.person.exponent})
-        *own = numbers.normal();
+    const auto draw = [&numbers] {
+        simulated_figures one;
+        for (double* own : {&one.pse, &one.jnd, &one.dprime, &one.exponent})
+            *own = numbers.normal();
+        return one;
+    };
+    run_.person.figures = draw();
     for (std::size_t m = 0; m < d.methods.size(); ++m)
         run_.person.methods.push_back(numbers.normal());
+    for (std::size_t m = 0; m < d.methods.size(); ++m)
+        run_.person.figures_by_method.push_back(draw());
     task_.prepare(run_);
 }
 

@@ -34,7 +34,8 @@ struct simulation {
     double jnd_sd = 0.0;
     double dprime_sd = 0.0;
     double exponent_sd = 0.0;
-    double method_sd = 0.0; ///< of the worth of each method, in the unit of sigma (choose, rate)
+    double correlation = 1.0; ///< between methods, of the four deviations above
+    double method_sd = 0.0;   ///< of the worth of each method, in the unit of sigma (choose, rate)
 
     friend bool operator==(const simulation&, const simulation&) = default;
 };

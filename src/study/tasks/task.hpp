@@ -59,13 +59,19 @@ public:
     virtual bool has_ended(unsigned /*track*/) const { return false; }
 };
 
-/// Deviations of a simulated person from the mean of all, in standard deviations.
-struct simulated_person {
+/// Deviations of a simulated person's figures from the mean of all, in standard deviations.
+struct simulated_figures {
     double pse = 0.0;
     double jnd = 0.0;
     double dprime = 0.0;
     double exponent = 0.0;
-    std::vector<double> methods = {}; ///< of the worth of each method of the definition
+};
+
+/// Deviations of a simulated person from the mean of all, in standard deviations.
+struct simulated_person {
+    simulated_figures figures = {};                        ///< common to all methods
+    std::vector<simulated_figures> figures_by_method = {}; ///< of each method of the definition alone
+    std::vector<double> methods = {};                      ///< of the worth of each method
 };
 
 /// A run as a simulated observer knows it.

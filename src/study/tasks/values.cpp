@@ -233,6 +233,24 @@ bool is_more(const run_outline& o, std::string_view method_1, unsigned response)
 
 namespace {
 
+// Returns the method of a trial, as an index in the definition; that of the comparison if there is a
+// standard.
+std::size_t find_base(const simulated_run& who, const planned_trial& t)
+{
+    const auto base = [&who](std::size_t m) { return who.definition.methods[m].made_of.value_or(m); };
+    return std::ranges::count(who.run.methods, base(t.method_1)) == 0 && t.method_2 ? base(*t.method_2)
+                                                                                    : base(t.method_1);
+}
+
+// Returns how far a person's figure is from the mean, in standard deviations.
+double find_deviation(const simulated_run& who, const planned_trial& t, double simulated_figures::*figure)
+{
+    const double common =
+        task_in(who.run.outline).has_one_method(who.run.outline) ? who.truth.correlation : 1.0;
+    const double own = who.person.figures_by_method[find_base(who, t)].*figure;
+    return std::sqrt(common) * (who.person.figures.*figure) + std::sqrt(1.0 - common) * own;
+}
+
 // Returns the true value for the method of a trial.
 std::optional<double> find_truth(const std::vector<double>& values, const simulated_run& who,
                                  const planned_trial& t)
@@ -240,10 +258,7 @@ std::optional<double> find_truth(const std::vector<double>& values, const simula
     if (values.size() < 2 || who.run.methods.size() < 2 ||
         !task_in(who.run.outline).has_one_method(who.run.outline))
         return values.empty() ? std::nullopt : std::optional(values.front());
-    const auto base = [&who](std::size_t m) { return who.definition.methods[m].made_of.value_or(m); };
-    auto at = std::ranges::find(who.run.methods, base(t.method_1));
-    if (at == who.run.methods.end() && t.method_2) // the first stimulus is the standard
-        at = std::ranges::find(who.run.methods, base(*t.method_2));
+    const auto at = std::ranges::find(who.run.methods, find_base(who, t));
     return values.at(static_cast<std::size_t>(at - who.run.methods.begin()));
 }
 
@@ -255,11 +270,12 @@ psychometric find_function(const simulated_run& who, const planned_trial& t)
     const simulation& s = who.truth;
     const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
     const double pse = find_truth(s.pse, who, t).value_or(o.standard.value_or(0.5 * (least + greatest))) +
-                       s.pse_sd * who.person.pse;
+                       s.pse_sd * find_deviation(who, t, &simulated_figures::pse);
     double jnd = find_truth(s.jnd, who, t).value_or(0.1 * (greatest - least));
     if (s.jnd_sd > 0.0) {
         const double variance = std::log1p(std::pow(s.jnd_sd / jnd, 2.0));
-        jnd *= std::exp(std::sqrt(variance) * who.person.jnd - 0.5 * variance);
+        jnd *=
+            std::exp(std::sqrt(variance) * find_deviation(who, t, &simulated_figures::jnd) - 0.5 * variance);
     }
     return {pse, jnd / normal_quartile, 0.0};
 }
@@ -272,13 +288,14 @@ bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers
 
 double find_dprime(const simulated_run& who, const planned_trial& t)
 {
-    return std::max(0.0,
-                    find_truth(who.truth.dprime, who, t).value() + who.truth.dprime_sd * who.person.dprime);
+    return std::max(0.0, find_truth(who.truth.dprime, who, t).value() +
+                             who.truth.dprime_sd * find_deviation(who, t, &simulated_figures::dprime));
 }
 
 double find_exponent(const simulated_run& who, const planned_trial& t)
 {
-    return find_truth(who.truth.exponent, who, t).value() + who.truth.exponent_sd * who.person.exponent;
+    return find_truth(who.truth.exponent, who, t).value() +
+           who.truth.exponent_sd * find_deviation(who, t, &simulated_figures::exponent);
 }
 
 std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys)
