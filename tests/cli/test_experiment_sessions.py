@@ -147,7 +147,10 @@ class Read(SessionTest):
                 for r in read_table(self.dir / f"study/{code}/ses-{n}/beh/{code}_ses-{n}_task-howgood_beh.tsv"):
                     cells[f"how_good.{r['method_1']}.{r['motion'].replace(' ', '_')}"].append(int(r["rating"]))
             self.assertEqual({c: float(person[c]) for c in cells}, {c: sum(v) / len(v) for c, v in cells.items()})
-        rows = self.trials()[1]
+        lines, rows = self.trials()
+        self.assertIn('# lmer(rating ~ method * (motion * factor(session)) + (1 + method + factor(session) | participant), data = subset(d, run == "how good"))', lines)
+        self.assertIn("# lmer(rating ~ method * motion + (1 + method | participant), ",  # no trials of another session
+                      self.ok("analyze", "study", "--participants", "03", "--format", "tsv").stdout)
         self.assertEqual(list(rows[0])[:3], ["participant", "session", "run"])
         self.assertEqual(collections.Counter((r["participant"], r["session"]) for r in rows), {(c, s): 11 for c, s in (("01", "1"), ("01", "2"), ("02", "1"), ("02", "2"), ("03", "2"))})
 

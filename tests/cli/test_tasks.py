@@ -223,6 +223,9 @@ class EveryTask(ExperimentTest):
                 self.assertAlmostEqual(pair["ci"][1] - pair["ci"][0], 2 * 3.182446305284263 * sd / math.sqrt(n), places=9)  # t(3) at 97.5 %
                 self.assertIn(f"park - soft: {mean:.2f} (", text)
         self.assertIn("pse by session, within participants", self.ok("report", "study").stdout)
+        tsv = self.ok("analyze", "study", "--format", "tsv").stdout
+        slopes = "+ (1 + I(value - 12) + method + factor(session) | participant)"
+        self.assertIn(f'# glmer(positive ~ I(value - 12) * method * factor(session) {slopes}, family = binomial("probit"), ', tsv)
 
     def find_odd(self, row):
         """Returns the place of the stimulus that differs."""
@@ -305,8 +308,8 @@ class EveryTask(ExperimentTest):
         pair, = told["far"]["methods"]["dprime"]["pairs"]
         self.assertAlmostEqual(pair["difference"], statistics.mean(dprime(a, 36 * 2) - dprime(b, 36 * 2) for a, b in zip(*of)), places=6)
         tsv = self.ok("analyze", "study", "--format", "tsv").stdout
-        for line in ('glmer(positive ~ 1 + (1 | participant), family = sensR::triangle(), data = subset(d, run == "two"))',
-                     "glmer(positive ~ abs(value - 4) * method + (1 + abs(value - 4) + method | participant), family = sensR::triangle(), "):
+        for line in ('glmer(positive ~ factor(session) + (1 + factor(session) | participant), family = sensR::triangle(), data = subset(d, run == "two"))',
+                     "glmer(positive ~ abs(value - 4) * method * factor(session) + (1 + abs(value - 4) + method + factor(session) | participant), family = sensR::triangle(), "):
             self.assertIn(line, tsv)
         report = self.ok("report", "study").stdout
         for text in ("(Ennis 1993)", "- Ennis, D. M. (1993)", "| participant | right | trials | d' |", "Three stimuli, one after the other"):

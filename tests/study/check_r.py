@@ -424,6 +424,49 @@ def check_adjustments(tool, folder):
     return [f"{m}, R: {r}" for m, r in zip(mine, said, strict=True) if not abs(m - r) <= 1e-7 * max(1, abs(r))]
 
 
+SESSIONS = studies.measures(
+    "palm-3x3", studies.toml("method", "hard", burst=0.02), studies.run("marks", "rate", 24, attribute="similarity"),
+    studies.run("level", "constant", 120, question="Which was stronger?", vary="level_dbfs", values=[-32, -28, -24, -20, -16], standard=-24),
+    studies.run("taste", "choose", 36, attribute="similarity"), studies.run("apart", "dissimilar", 24, attribute="similarity"),
+    keys="sessions = 2\n")
+# Terms of the session in each run's model. Then ratings by people who change from session to session, but not in common: how often
+# the printed line finds an effect of the session all the same, and one without slopes.
+CHANGES = COMMANDS + """
+quiet <- function(line) suppressMessages(suppressWarnings(eval(parse(text = line), globalenv())))
+for (line in said[1:3]) quiet(line)
+for (line in said[-(1:3)]) cat("terms", length(grep("factor(session)1", names(fixef(quiet(line))), fixed = TRUE)), "\n")
+d <- d[d$run == "marks", ]
+line <- said[4]
+flat <- sub(" + factor(session) |", " |", line, fixed = TRUE)
+stopifnot(flat != line)
+who <- match(d$participant, unique(d$participant))
+people <- max(who)
+set.seed(20261130)
+found <- replicate(100, {
+  d$rating <<- 3 + rnorm(people, 0, 0.5)[who] + (d$session - 1.5) * rnorm(people, 0, 0.8)[who] + rnorm(nrow(d), 0, 0.8)
+  sapply(c(line, flat), function(l) 2 * pt(-abs(coef(summary(quiet(l)))["factor(session)1", "t value"]), people - 1) < 0.05)
+})
+cat("found", rowMeans(found), "\n")
+"""
+
+
+def check_sessions(tool, folder):
+    """Checks that each model has the session as a factor, and that a slope by participant keeps it from finding too much."""
+    (folder / "sessions.toml").write_text(SESSIONS)
+    for code in ("01", "02", "03", "04", "05", "06", "07", "08"):
+        for session in ("1", "2"):
+            run(tool, "experiment", folder / "sessions.toml", "--participant", code, "--session", session, "-o", folder / "sessions",
+                "--simulate", "seed=1,jnd=4,sigma=20")
+    said = [line.split() for line in fit(tool, folder / "sessions", CHANGES).splitlines()]
+    terms = [int(words[1]) for words in said if words[0] == "terms"]
+    # The session; its interactions with two contrasts of methods, with the value and both, with two worths, with two contrasts of pairs.
+    bad = [] if terms == [3, 6, 2, 3] else [f"terms of the session: {terms}"]
+    printed, flat = next(map(float, words[1:]) for words in said if words[0] == "found")
+    print(f"sessions: false effects of the session: {printed:.1%} by the line printed, {flat:.1%} without slopes")
+    bad += [f"false effects: {printed:.1%}"] if printed > 0.1 else []
+    return bad + ([f"without slopes only {flat:.1%}: the simulation shows nothing"] if flat < 0.25 else [])
+
+
 def main():
     tool, write = pathlib.Path(sys.argv[1]).resolve(), "--write" in sys.argv
     has_lme4 = subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True, check=False).returncode == 0
@@ -441,6 +484,7 @@ def main():
                     cases[f"{name}, slopes"] = lambda n=name: check_slopes(tool, n, folder)
                     cases["measures, models"] = lambda: check_measures(tool, folder)
                     cases["measures, methods"] = lambda: check_method_errors(tool, folder)
+                    cases["sessions, models"] = lambda: check_sessions(tool, folder)
                     cases["drawings"] = lambda: check_drawings(tool, folder)
                     cases["adjustments"] = lambda: check_adjustments(tool, folder)
                     cases["scaling"] = lambda: check_scaling(tool, folder)

@@ -621,8 +621,9 @@ void print_trials(const study::dataset& d)
                         "colClasses = c(participant = \"character\"))\n",
                         notes);
     std::set<std::string_view> needed;
-    for (const study::run_outline& r : d.experiment.runs) {
-        text += fmt::format("# {}\n", task_in(r).model_in_r(r, has_groups(r, d.experiment.groups)));
+    for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+        const study::run_outline& r = d.experiment.runs[k];
+        text += fmt::format("# {}\n", task_in(r).model_in_r(r, find_model_factors(d, k)));
         for (const std::string_view column : task_in(r).list_columns(r))
             needed.insert(column);
     }

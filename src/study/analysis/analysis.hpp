@@ -3,10 +3,12 @@
 /// The analysis of a study, run by run.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "study/analysis/model.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {
@@ -14,6 +16,9 @@ namespace tactor::study {
 /// Returns true if two or more groups do the whole run. For other groups the effect of the group cannot be
 /// separated from the parts that it lacks.
 bool has_groups(const run_outline& run, const std::vector<group_outline>& groups);
+
+/// Returns the factors of a run's model: groups, and sessions if its trials are in several.
+model_factors find_model_factors(const dataset& d, std::size_t run);
 
 /// Analyses a study. `kind`: shape of the psychometric functions.
 analysis analyse(const dataset& d, sigmoid kind = sigmoid::normal);

@@ -17,11 +17,17 @@ std::string quote(const std::string& text)
     return nlohmann::json(text).dump(); // R reads the texts of JSON
 }
 
-std::string list_factors(const run_outline& run, bool grouped)
+std::string list_factors(const run_outline& run, const model_factors& f)
 {
-    if (run.motions.size() < 2)
-        return grouped ? "group" : "1";
-    return grouped ? "(group * motion)" : "motion";
+    std::vector<std::string> all;
+    if (f.group)
+        all.emplace_back("group");
+    if (run.motions.size() > 1)
+        all.emplace_back("motion");
+    if (f.session)
+        all.emplace_back(session_factor);
+    const std::string term = all.empty() ? "1" : fmt::format("{}", fmt::join(all, " * "));
+    return all.size() > 1 ? "(" + term + ")" : term;
 }
 
 std::string write_value(const run_outline& run)
@@ -32,7 +38,7 @@ std::string write_value(const run_outline& run)
     return fmt::format("I(value {} {})", at < 0.0 ? '+' : '-', plain_number(std::abs(at), 12));
 }
 
-std::string write_model(const run_outline& run, bool grouped, const r_model& m)
+std::string write_model(const run_outline& run, const model_factors& f, const r_model& m)
 {
     const bool has_method = m.by_method && run.methods.size() > 1;
     std::vector<std::string> factors;
@@ -42,10 +48,12 @@ std::string write_model(const run_outline& run, bool grouped, const r_model& m)
     people.insert(people.end(), factors.begin(), factors.end());
     if (has_method || run.motions.size() > 1)
         people.emplace_back(has_method ? "method" : "motion");
+    if (f.session)
+        people.emplace_back(session_factor);
     if (has_method)
         factors.emplace_back("method");
-    if (const std::string motion = list_factors(run, grouped); motion != "1" || factors.empty())
-        factors.push_back(motion);
+    if (const std::string others = list_factors(run, f); others != "1" || factors.empty())
+        factors.push_back(others);
     return fmt::format("{} ~ {} + {}({} | participant), {}data = subset(d, run == {}))", m.response,
                        fmt::join(factors, " * "), m.first, fmt::join(people, " + "), m.family,
                        quote(run.name));

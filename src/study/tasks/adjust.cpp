@@ -280,9 +280,9 @@ public:
         const std::string value = fmt::format("{}", t.value);
         return {{"method", own.methods[t.method_1]}, {"response", value}, {"value", value}};
     }
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, grouped, {"lmer(" + write_value(o)});
+        return write_model(o, f, {"lmer(" + write_value(o)});
     }
 
     std::string describe(const run_outline& o) const override

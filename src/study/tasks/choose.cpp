@@ -203,18 +203,20 @@ public:
 
     // Worths have a column for each method but the first, 1 where it was felt first, -1 where it was felt
     // second. The intercept is the preference for the first interval.
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         if (!has_several(o))
-            return write_model(o, grouped, {"glmer(chosen", "family = binomial, ", "order + ", "", false});
+            return write_model(o, f, {"glmer(chosen", "family = binomial, ", "order + ", "", false});
         std::string others;
         for (std::size_t m = 1; m < o.methods.size(); ++m)
             others += (m > 1 ? ", " : "") + quote(o.methods[m]);
-        const std::string factors = list_factors(o, grouped);
-        return fmt::format("glmer(chosen ~ worth{} + (1 + worth | participant), family = binomial, "
+        const std::string factors = list_factors(o, f);
+        return fmt::format("glmer(chosen ~ worth{} + (1 + worth{} | participant), family = binomial, "
                            "data = within(subset(d, run == {}), "
                            "worth <- sapply(c({}), function(m) (method == m) - (other == m))))",
-                           factors == "1" ? "" : " + worth:" + factors, quote(o.name), others);
+                           factors == "1" ? "" : " + worth:" + factors,
+                           f.session ? fmt::format(" + worth:{}", session_factor) : "", quote(o.name),
+                           others);
     }
 
     std::string describe(const run_outline& o) const override

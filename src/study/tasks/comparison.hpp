@@ -70,9 +70,9 @@ public:
         return compare_with("pse", "t", o.standard);
     }
 
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, grouped, {"glmer(positive", probit, "", write_value(o)});
+        return write_model(o, f, {"glmer(positive", probit, "", write_value(o)});
     }
 
     std::vector<std::string_view> list_sections(const run_outline&) const override

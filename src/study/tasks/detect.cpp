@@ -151,10 +151,10 @@ public:
 
     // The slope is over the values, or over the presence of a signal. With several methods, the factor of
     // methods already has the signal: the method of a trial without a stimulus is "none".
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;
-        return write_model(o, grouped, {"glmer(positive", probit, "", by_signal ? "signal" : write_value(o)});
+        return write_model(o, f, {"glmer(positive", probit, "", by_signal ? "signal" : write_value(o)});
     }
 
     std::vector<std::string_view> list_sections(const run_outline& o) const override

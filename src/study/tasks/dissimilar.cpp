@@ -183,12 +183,14 @@ public:
     }
 
     // The pair is the same in both orders.
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
-        const std::string factors = list_factors(o, grouped);
-        return fmt::format("lmer(response ~ pair{} + (1 | participant), data = within(subset(d, run == {}), "
-                           "pair <- paste(pmin(method, other), pmax(method, other))))",
-                           factors == "1" ? "" : " * " + factors, quote(o.name));
+        const std::string factors = list_factors(o, f);
+        return fmt::format(
+            "lmer(response ~ pair{} + (1{} | participant), data = within(subset(d, run == {}), "
+            "pair <- paste(pmin(method, other), pmax(method, other))))",
+            factors == "1" ? "" : " * " + factors, f.session ? fmt::format(" + {}", session_factor) : "",
+            quote(o.name));
     }
 
     std::string describe(const run_outline& o) const override

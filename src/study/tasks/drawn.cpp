@@ -120,9 +120,9 @@ named_texts drawn_task::describe_trial(const trial& t, const run_outline& own, c
     return cells;
 }
 
-std::string drawn_task::model_in_r(const run_outline& o, bool grouped) const
+std::string drawn_task::model_in_r(const run_outline& o, const model_factors& f) const
 {
-    return write_model(o, grouped, {kind_ == drawing_kind::place ? "lmer(error" : "lmer(distance"});
+    return write_model(o, f, {kind_ == drawing_kind::place ? "lmer(error" : "lmer(distance"});
 }
 
 std::vector<std::string_view> drawn_task::list_sections(const run_outline&) const

@@ -129,11 +129,11 @@ public:
     }
 
     // Estimates follow the logarithm of a value that is not a level.
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const double middle = std::sqrt(o.values.front() * o.values.back());
         return write_model(
-            o, grouped,
+            o, f,
             {"lmer(log(estimate)", "", "",
              o.on_db_axis ? write_value(o)
                           : fmt::format("log(value / {})", plain_number(o.standard.value_or(middle), 12))});

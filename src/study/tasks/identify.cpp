@@ -190,9 +190,9 @@ public:
                 {"correct", t.response == t.motion ? "1" : "0"}};
     }
 
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, grouped, {"glmer(correct", "family = binomial, "});
+        return write_model(o, f, {"glmer(correct", "family = binomial, "});
     }
 
     std::string describe(const run_outline& o) const override

@@ -125,11 +125,10 @@ public:
         return compare_with("threshold", "t", {});
     }
 
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         return write_model(
-            o, grouped,
-            {"glmer(positive", "family = binomial(psyphy::mafc.probit(2)), ", "", write_value(o)});
+            o, f, {"glmer(positive", "family = binomial(psyphy::mafc.probit(2)), ", "", write_value(o)});
     }
 
     std::string describe(const run_outline& o) const override

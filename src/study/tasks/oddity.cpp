@@ -259,11 +259,11 @@ public:
 
     // The link of the triangular model, whose intercept is d'. That of psyphy for three alternatives is for
     // observers who know how the stimulus differs.
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const std::string apart =
             o.standard ? fmt::format("abs(value - {})", plain_number(*o.standard, 12)) : "";
-        return write_model(o, grouped,
+        return write_model(o, f,
                            {"glmer(positive", "family = sensR::triangle(), ", "", apart, has_one_method(o)});
     }
 

@@ -182,9 +182,9 @@ public:
         return {{"method", own.methods[t.method_1]}, {"response", rating}, {"rating", rating}};
     }
 
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, grouped, {"lmer(rating"});
+        return write_model(o, f, {"lmer(rating"});
     }
 
     std::string describe(const run_outline& o) const override

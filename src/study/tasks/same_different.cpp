@@ -138,9 +138,9 @@ public:
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 
-    std::string model_in_r(const run_outline& o, bool grouped) const override
+    std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, grouped, {"glmer(positive", probit, "", "signal", false});
+        return write_model(o, f, {"glmer(positive", probit, "", "signal", false});
     }
 
     std::vector<std::string_view> list_sections(const run_outline&) const override

@@ -32,6 +32,7 @@
 namespace tactor::study {
 
 struct simulation;
+struct model_factors;
 
 /// Answers that a participant may give in a trial.
 struct trial_answers {
@@ -248,8 +249,8 @@ public:
     /// participant's group does it.
     virtual named_texts describe_trial(const trial& t, const run_outline& own,
                                        const run_outline& whole) const;
-    /// Returns the model of a run for R. `grouped`: the model has a factor for groups.
-    virtual std::string model_in_r(const run_outline& o, bool grouped) const = 0;
+    /// Returns the model of a run for R.
+    virtual std::string model_in_r(const run_outline& o, const model_factors& f) const = 0;
 
     /// Describes a trial in the methods section.
     virtual std::string describe(const run_outline& o) const;
