@@ -147,12 +147,25 @@ class Read(SessionTest):
                 for r in read_table(self.dir / f"study/{code}/ses-{n}/beh/{code}_ses-{n}_task-howgood_beh.tsv"):
                     cells[f"how_good.{r['method_1']}.{r['motion'].replace(' ', '_')}"].append(int(r["rating"]))
             self.assertEqual({c: float(person[c]) for c in cells}, {c: sum(v) / len(v) for c, v in cells.items()})
+        names = [f"how_good.{method}.{motion}" for method in ("brush", "park") for motion in ("to_the_right", "down")]
+        self.assertEqual([c for c in wide[0] if c.startswith("how_good")], [*names, *(f"{c}.ses_{n}" for n in (1, 2) for c in names)])
+        self.assertEqual({c: wide[2][c] for c in cells}, {c: wide[2][f"{c}.ses_2"] for c in cells})
+        self.assertEqual({wide[2][f"{c}.ses_1"] for c in cells}, {""})
+        self.assertNotIn(".ses_", self.ok("analyze", "study", "--participants", "03", "--format", "wide").stdout)
         lines, rows = self.trials()
         self.assertIn('# lmer(rating ~ method * (motion * factor(session)) + (1 + method + factor(session) | participant), data = subset(d, run == "how good"))', lines)
         self.assertIn("# lmer(rating ~ method * motion + (1 + method | participant), ",  # no trials of another session
                       self.ok("analyze", "study", "--participants", "03", "--format", "tsv").stdout)
         self.assertEqual(list(rows[0])[:3], ["participant", "session", "run"])
         self.assertEqual(collections.Counter((r["participant"], r["session"]) for r in rows), {(c, s): 11 for c, s in (("01", "1"), ("01", "2"), ("02", "1"), ("02", "2"), ("03", "2"))})
+
+    def test_long_names_of_columns_keep_the_session(self):
+        self.write("long.toml", several(SMALL.replace('"how good"', f'"{"r" * 30}"').replace('"to the right"', f'"{"m" * 30}"')))
+        for n in (1, 2):
+            self.hold("01", n, definition="long.toml", folder="long")
+        columns = self.ok("analyze", "long", "--format", "wide").stdout.splitlines()[0].split(",")
+        self.assertLessEqual(max(map(len, columns)), 64)
+        self.assertIn(f"{'r' * 14}.brush.{'m' * 14}.ses_2", columns)
 
     def test_the_first_study_of_power_has_all_sessions(self):
         told = json.loads(self.ok("experiment", "two.toml", "--power", "2", "--studies", "1", "--simulate", "seed=1,sigma=1", "--format", "json").stdout)

@@ -169,6 +169,7 @@ class EveryTask(ExperimentTest):
         self.assertEqual({name: (list(run.get("methods", {})), list(run["sessions"])) for name, run in told.items()},
                          {"marks": (["rating"], ["rating"]), "pair": ([], ["rating"]), "names": (["correct"], ["correct"])})
         _, rows = self.trials("study")
+        wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
         for run, column, scale in (("marks", "rating", 1), ("names", "correct", 100)):
             for factor, levels in (("method", ("park", "soft", "hard")), ("session", ("1", "2"))):
                 with self.subTest(run=run, factor=factor):
@@ -192,6 +193,12 @@ class EveryTask(ExperimentTest):
                         self.assertAlmostEqual(pair["difference"], mean, places=9)
                         self.assertAlmostEqual(pair["t"], mean / (sd / 2), places=7)
                     self.assertAlmostEqual(min(pair["p_holm"] for pair in compared["pairs"]), min(1, len(p) * p[0]), places=12)
+                    if factor == "session":
+                        for row in wide:
+                            for n in levels:
+                                own = [float(v) for c, v in row.items() if c.startswith(f"{run}.") and c.endswith(f".ses_{n}")]
+                                self.assertEqual(len(own), 6)
+                                self.assertAlmostEqual(statistics.mean(own), figure(row["participant_id"][4:], n), places=9)
                     self.assertIn(f"{column} by {factor}, within participants:", self.ok("analyze", "study", "--format", "tables").stdout)
 
     def test_figures_are_compared_between_methods_and_sessions(self):
@@ -222,6 +229,15 @@ class EveryTask(ExperimentTest):
                     self.assertAlmostEqual(pair[key], expected, places=9)
                 self.assertAlmostEqual(pair["ci"][1] - pair["ci"][0], 2 * 3.182446305284263 * sd / math.sqrt(n), places=9)  # t(3) at 97.5 %
                 self.assertIn(f"park - soft: {mean:.2f} (", text)
+        # The columns of each session give the tests between sessions.
+        wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
+        for run, figure in (("length", "pse"), ("length", "jnd"), ("felt", "threshold"), ("there", "dprime"), ("same", "dprime")):
+            of = [[float(row[f"{run}.{figure}.ses_{n}"]) for row in wide] for n in "12"]
+            compared = told[run]["sessions"][figure]
+            differences = [a - b for a, b in zip(*of)]
+            for n, values in zip("12", of):
+                self.assertAlmostEqual(compared["means"][n]["mean"], statistics.mean(values), places=9)
+            self.assertAlmostEqual(compared["pairs"][0]["t"], statistics.mean(differences) / (statistics.stdev(differences) / 2), places=7)
         self.assertIn("pse by session, within participants", self.ok("report", "study").stdout)
         tsv = self.ok("analyze", "study", "--format", "tsv").stdout
         slopes = "+ (1 + I(value - 12) + method + factor(session) | participant)"

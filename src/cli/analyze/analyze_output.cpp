@@ -504,7 +504,8 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
     std::string name;
     for (const std::string& part : parts) {
         name += name.empty() ? "" : ".";
-        for (const char c : first_characters(part, fits ? longest : longest / 3 - 1))
+        for (const char c :
+             first_characters(part, fits ? longest : longest / std::max<std::size_t>(3, parts.size()) - 1))
             if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.')
                 name += c;
             else if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) // one for each character of UTF-8
@@ -544,6 +545,13 @@ list_compared(const std::vector<study::result>& results)
     std::erase_if(all, [](const auto& one) { return one.second.empty(); });
     return all;
 }
+
+// Columns of --format wide for the trials of a run.
+struct wide_block {
+    std::size_t run = 0;
+    study::session_number session = {}; // missing: the trials of all sessions
+    std::vector<study::named_value> columns = {};
+};
 
 } // namespace
 
@@ -663,12 +671,21 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
     std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
     text += grouped ? ",group" : "";
     std::set<std::string> taken;
-    std::vector<std::vector<study::named_value>> columns; // by run
-    for (const study::run_outline& r : d.experiment.runs) {
-        columns.push_back(task_in(r).measure(r, {}, kind));
-        for (const study::named_value& v : columns.back()) {
+    std::vector<wide_block> blocks;
+    for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+        blocks.push_back({.run = k});
+        if (const auto sessions = list_played_sessions(d, k); sessions.size() > 1)
+            for (const study::session_number n : sessions)
+                blocks.push_back({.run = k, .session = n});
+    }
+    for (wide_block& block : blocks) {
+        const study::run_outline& r = d.experiment.runs[block.run];
+        block.columns = task_in(r).measure(r, {}, kind);
+        for (const study::named_value& v : block.columns) {
             std::vector<std::string> parts{r.name};
             parts.insert(parts.end(), v.name.begin(), v.name.end());
+            if (block.session)
+                parts.push_back(fmt::format("ses-{}", *block.session));
             text += "," + name_column(parts, taken);
         }
     }
@@ -676,12 +693,16 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
         text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // quotes it
-        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
-            const study::run_outline& own = find_run(d, i, k);
+        for (const wide_block& block : blocks) {
+            const study::run_outline& own = find_run(d, i, block.run);
             std::vector<study::named_value> values;
-            if (!own.motions.empty()) // else the group lacks the run
-                values = task_in(own).measure(own, d.data[i][k].trials, kind);
-            for (const study::named_value& column : columns[k]) {
+            if (!own.motions.empty()) { // else the group lacks the run
+                std::vector<study::trial> trials = d.data[i][block.run].trials;
+                if (block.session)
+                    std::erase_if(trials, [&](const study::trial& t) { return t.session != block.session; });
+                values = task_in(own).measure(own, trials, kind);
+            }
+            for (const study::named_value& column : block.columns) {
                 const auto at = std::ranges::find(values, column.name, &study::named_value::name);
                 text += at != values.end() && at->value ? fmt::format(",{}", *at->value) : ",";
             }

@@ -142,13 +142,18 @@ bool has_groups(const run_outline& run, const std::vector<group_outline>& groups
                                  [&](const auto& g) { return std::ranges::count(g.runs, run) != 0; }) > 1;
 }
 
-model_factors find_model_factors(const dataset& d, std::size_t run)
+std::set<session_number> list_played_sessions(const dataset& d, std::size_t run)
 {
     std::set<session_number> sessions;
     for (const std::vector<run_data>& own : d.data)
         for (const trial& t : own[run].trials)
             sessions.insert(t.session);
-    return {has_groups(d.experiment.runs[run], d.experiment.groups), sessions.size() > 1};
+    return sessions;
+}
+
+model_factors find_model_factors(const dataset& d, std::size_t run)
+{
+    return {has_groups(d.experiment.runs[run], d.experiment.groups), list_played_sessions(d, run).size() > 1};
 }
 
 } // namespace tactor::study

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,9 @@ namespace tactor::study {
 /// Returns true if two or more groups do the whole run. For other groups the effect of the group cannot be
 /// separated from the parts that it lacks.
 bool has_groups(const run_outline& run, const std::vector<group_outline>& groups);
+
+/// Lists the sessions with trials of a run.
+std::set<session_number> list_played_sessions(const dataset& d, std::size_t run);
 
 /// Returns the factors of a run's model: groups, and sessions if its trials are in several.
 model_factors find_model_factors(const dataset& d, std::size_t run);
