@@ -47,6 +47,14 @@ class Svg:
         return float(g.get("data-x0")) + float(g.get("data-x-scale")) * t_s
 
 
+def read_bars(panel):
+    """Maps the group and series of each bar to the value of its end, which is above 0, and to both ends of its error bar."""
+    y0, ky = number(panel, "data-y0"), number(panel, "data-y-scale")
+    bars, errors = ([e for e in panel.iter() if e.get("class") == kind] for kind in ("bar", "error"))
+    return {(bar.get("data-group"), bar.get("data-series")): ((number(bar, "y") - y0) / ky, sorted((number(error, y) - y0) / ky for y in ("y1", "y2")))
+            for bar, error in zip(bars, errors, strict=True)}
+
+
 def number(e, name):
     return float(e.get(name))
 

@@ -9,7 +9,7 @@ import re
 import shutil
 
 from harness import ToolTest, main
-from pictures import Svg, number
+from pictures import Svg, number, read_bars
 import check_r
 import studies
 
@@ -103,6 +103,16 @@ class Figures(AnalyzeTest):
         # R 4.2.2, car: Anova(lm(values ~ group), type = 3) with contr.sum
         self.assertIn("  Analysis of variance with the group as a factor between participants:\n    group: F(1, 10) = 0.48, p = 0.503; eta squared partial 0.046, generalised\n           0.023\n", self.ok("analyze", self.study("grouped"), "--format", "tables").stdout)
         self.assertIn("| group:motion | 3.584 | 2, 20 | 0.04674 | 0.6159 | 0.07584 |", self.ok("report", "grouped").stdout)
+        # The picture has the mean of each group by method, with its interval within the participants of the group.
+        self.ok("analyze", "grouped", "-o", "a.svg")
+        panels = {p.get("data-title"): p for p in Svg(self.dir / "a.svg").all("bars")}
+        self.assertNotIn("marks: rating by method (n = 12)", panels)  # the bars of all motions have these means
+        drawn, groups = read_bars(panels["which: correct by method (n = 12)"]), self.analysis("grouped")["runs"]["which"]["groups"]
+        self.assertEqual(len(drawn), 4)
+        for (method, group), (mean, ends) in drawn.items():
+            cell = groups[group]["methods"]["correct"]["means"][method]
+            self.assertAlmostEqual(mean, cell["mean"], delta=0.5)
+            self.assertEqual([round(e - x) for e, x in zip(ends, cell["ci_within"])], [0, 0])
         told = self.analysis("grouped", "--participants", "01,02")
         self.assertEqual(told["runs"]["which"]["groups"]["palm"]["n"], 2)
         self.assertEqual({e["F"] for e in told["runs"]["which"]["group_anova"].values()}, {None})

@@ -346,7 +346,8 @@ class Tasks(ExperimentTest):
         words = "".join(panels["words (n = 6)"].itertext())
         self.assertIn('answered "two" (%)', words)
         self.assertIn("length (mm)", words)
-        self.assertEqual([p.get("data-title") for p in Svg(self.dir / "a.svg").all("bars")], ["there (n = 6)", "same (n = 6)", "level (n = 6)"])
+        self.assertEqual([p.get("data-title").replace(" (n = 6)", "") for p in Svg(self.dir / "a.svg").all("bars")],
+                         ["stairs: pse by method", "there", "same", "level", "level: constant_error by method", "level: sd by method"])
 
     def check_report(self, runs):
         report = self.ok("report", "study").stdout

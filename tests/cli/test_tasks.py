@@ -15,7 +15,7 @@ import sys
 import jsonschema
 from experiments import DESK, ExperimentTest
 from harness import main
-from pictures import Svg
+from pictures import Svg, number, read_bars
 import check_r
 from studies import STUDIES, measures, toml
 
@@ -238,10 +238,42 @@ class EveryTask(ExperimentTest):
             for n, values in zip("12", of):
                 self.assertAlmostEqual(compared["means"][n]["mean"], statistics.mean(values), places=9)
             self.assertAlmostEqual(compared["pairs"][0]["t"], statistics.mean(differences) / (statistics.stdev(differences) / 2), places=7)
+        # A picture has each figure by method and by session, with intervals within participants and a dot for each of them.
+        self.ok("analyze", "study", "-o", "a.svg")
+        panels = {p.get("data-title"): p for p in Svg(self.dir / "a.svg").all("bars")}
+        self.assertEqual(len([title for title in panels if " by " in title]), 12)
+        for factor, columns in (("method", {m: [p["jnd"] for p in told["length"]["by"][f"{m}:east"]["psychometric"]["participants"].values()] for m in ("park", "soft")}),
+                                ("session", {n: [float(row[f"length.jnd.ses_{n}"]) for row in wide] for n in "12"})):
+            panel = panels[f"length: jnd by {factor} (n = 4)"]
+            drawn = read_bars(panel)
+            self.assertEqual(list(drawn), [(level, "") for level in columns])
+            self.assertEqual(len([e for e in panel.iter() if e.get("class") == "value"]), 8)
+            a, b = columns.values()
+            # Cousineau and Morey for two conditions: the half width is that of the paired difference by the square root of 2.
+            half = 3.182446305284263 * statistics.stdev(x - y for x, y in zip(a, b)) / math.sqrt(2 * 4)
+            for level, values in columns.items():
+                mean, (low, high) = drawn[level, ""]
+                self.assertAlmostEqual(mean, statistics.mean(values), delta=0.02)
+                self.assertAlmostEqual(low, statistics.mean(values) - half, delta=0.02)
+                self.assertAlmostEqual(high, statistics.mean(values) + half, delta=0.02)
         self.assertIn("pse by session, within participants", self.ok("report", "study").stdout)
         tsv = self.ok("analyze", "study", "--format", "tsv").stdout
         slopes = "+ (1 + I(value - 12) + method + factor(session) | participant)"
         self.assertIn(f'# glmer(positive ~ I(value - 12) * method * factor(session) {slopes}, family = binomial("probit"), ', tsv)
+
+    def test_a_picture_of_levels_leaves_0_db_out(self):
+        self.write("desk.toml", DESK)
+        self.write("t.toml", measures("desk.toml", toml("run", "level", task="constant", question="?", vary="level_dbfs",
+                                                        values=[-32, -28, -24, -20, -16], standard=-24, trials_per_value=20)))
+        for code in "123":
+            self.simulate(code, definition="t.toml", folder="study", spec=f"seed={code},jnd=3")
+        self.ok("analyze", "study", "-o", "a.svg")
+        panels = {p.get("data-title"): p for p in Svg(self.dir / "a.svg").all("bars")}
+        ends = {name: [number(e, y) for e in panels[f"level: {name} by method (n = 3)"].iter() if e.get("class") == "error" for y in ("y1", "y2")]
+                for name in ("pse", "jnd")}
+        self.assertGreater(max(ends["pse"]) - min(ends["pse"]), 40)  # pt: some dB fill the panel
+        foot = [number(e, "y") + number(e, "height") for e in panels["level: jnd by method (n = 3)"].iter() if e.get("class") == "bar"]
+        self.assertAlmostEqual(foot[0], number(panels["level: jnd by method (n = 3)"], "data-y0"), places=2)
 
     def find_odd(self, row):
         """Returns the place of the stimulus that differs."""

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -60,12 +61,33 @@ std::vector<const Values*> list_conditions(const study::run_analysis& r)
     return all;
 }
 
+constexpr study::interval unbounded{-std::numeric_limits<double>::infinity(),
+                                    std::numeric_limits<double>::infinity()};
+
+// Returns the range of a bar's values and of its error bar.
+study::interval find_range(const plot::bar& b)
+{
+    std::vector<double> all = b.values;
+    if (b.error)
+        all.insert(all.end(), {b.error->first, b.error->second});
+    const auto [low, high] = std::ranges::minmax(all);
+    return {low, high};
+}
+
+// Adds a bar with its values, and makes room for it.
+void add_bar(plot::bar_panel& p, plot::bar_series& s, plot::bar b)
+{
+    const auto [low, high] = find_range(b);
+    p.y_from = std::min(p.y_from, 1.1 * low);
+    p.y_to = std::max(p.y_to, 1.1 * high);
+    s.bars.push_back(std::move(b));
+}
+
 // Draws the main figure of each condition, or of all trials. Nothing where no participant has one.
 template <class Values>
 std::optional<plot::bar_panel> make_figure_panel(const study::run_analysis& r, const std::string& axis,
                                                  error_bars kind)
 {
-    constexpr double unbounded = std::numeric_limits<double>::infinity();
     plot::bar_panel p{fmt::format("{} (n = {})", r.run.name, r.n), axis};
     p.level = 0.0;
     plot::bar_series s;
@@ -74,24 +96,68 @@ std::optional<plot::bar_panel> make_figure_panel(const study::run_analysis& r, c
         const study::t_test& t = v->figures.front().test;
         if (!t.mean)
             continue;
-        plot::bar b{*t.mean, find_ends(t, kind, {-unbounded, unbounded})};
+        plot::bar b{*t.mean, find_ends(t, kind, unbounded)};
         for (const std::vector<std::optional<double>>& own : v->values)
             if (own.front())
                 b.values.push_back(*own.front());
         everybody = everybody && b.values.size() == r.n;
-        std::vector<double> all = b.values;
-        if (b.error)
-            all.insert(all.end(), {b.error->first, b.error->second});
-        const auto [low, high] = std::ranges::minmax(all);
-        p.y_from = std::min(p.y_from, 1.1 * low);
-        p.y_to = std::max(p.y_to, 1.1 * high);
         p.groups.push_back(v->condition.empty() ? "all" : v->condition);
-        s.bars.push_back(std::move(b));
+        add_bar(p, s, std::move(b));
     }
     if (s.bars.empty())
         return {};
     p.joined = everybody ? p.groups.size() : 0; // by place: a value for each participant
     p.series.push_back(std::move(s));
+    return p;
+}
+
+// Lists the comparisons to draw. The bars of all motions already show a mean over cells by method.
+std::vector<const study::figure_comparison*> list_comparisons(const study::run_analysis& r)
+{
+    const bool cells = !study::list_values<study::cell_means>(r.results).empty();
+    std::vector<const study::figure_comparison*> all =
+        study::list_values<study::figure_comparison>(r.results);
+    std::erase_if(all, [cells](const study::figure_comparison* v) {
+        return v->all.means.front().n == 0 ||
+               (v->by_group.size() < 2 && (v->levels.size() < 2 || (cells && v->factor == "method")));
+    });
+    return all;
+}
+
+// Draws a figure by level, for each group if groups are compared. Only levels have intervals within
+// participants.
+plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study::figure_comparison& v,
+                                      error_bars kind)
+{
+    const bool levels = v.levels.size() > 1;
+    plot::bar_panel p{.title = fmt::format("{}: {} by {} (n = {})", r.run.name, v.figure,
+                                           levels ? v.factor : "group", v.all.means.front().n),
+                      .y_title = v.figure,
+                      .y_to = 0.0,
+                      .groups = v.levels,
+                      .joined = v.levels.size()};
+    for (const study::level_means& m : v.by_group.size() > 1 ? v.by_group : std::vector{v.all}) {
+        plot::bar_series s{m.group};
+        for (std::size_t i = 0; i < v.levels.size(); ++i)
+            add_bar(p, s,
+                    {*m.means[i].mean, find_ends(m.means[i], levels ? error_bars::within : kind, unbounded),
+                     m.values[i]});
+        p.series.push_back(std::move(s));
+    }
+    if (r.run.on_db_axis && p.y_to == 0.0) { // levels far below 0 dB, which is no origin
+        double low = p.y_to;
+        double high = p.y_from;
+        for (const plot::bar_series& s : p.series)
+            for (const plot::bar& b : s.bars) {
+                low = std::min(low, find_range(b).first);
+                high = std::max(high, find_range(b).second);
+            }
+        const double space = std::max(0.5, 0.2 * (high - low));
+        p.y_from = low - space;
+        p.y_to = high + space;
+    }
+    if (p.y_from == p.y_to)
+        p.y_to = 1.0; // all values are 0
     return p;
 }
 
@@ -344,7 +410,10 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
                         all_error_bars[static_cast<std::size_t>(kind)].second));
     bool without_function = false;
     bool estimates = false;
+    bool levels = false;
     for (const study::run_analysis& r : a.runs) {
+        for (const study::figure_comparison* v : list_comparisons(r))
+            levels = levels || v->levels.size() > 1;
         for (const auto* v : study::list_values<study::psychometric_functions>(r.results))
             for (const study::fitted_function& one : v->people)
                 without_function = without_function || (!one.blocks.empty() && !one.fit);
@@ -352,6 +421,9 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
             for (const study::fitted_exponent& one : v->people)
                 estimates = estimates || !one.estimates.empty();
     }
+    if (levels && kind != error_bars::within)
+        notes.push_back(fmt::format("By method or session: {}.",
+                                    all_error_bars[static_cast<std::size_t>(error_bars::within)].second));
     const auto is_drawn = [](const plot::curve_panel& p) { return p.to_scale; };
     if (std::ranges::any_of(f.curves, is_drawn))
         notes.emplace_back(
@@ -394,6 +466,8 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
             p = make_figure_panel<study::adjustments>(r, "constant error of " + axis_title(r.run), kind);
         if (p)
             f.bars.push_back(*std::move(p));
+        for (const study::figure_comparison* v : list_comparisons(r))
+            f.bars.push_back(make_comparison_panel(r, *v, kind));
         for (const study::answer_counts* v : study::list_values<study::answer_counts>(r.results))
             if (v->motions.size() > 1)
                 f.matrices.push_back({fmt::format("{}: answers with {}", r.run.name, v->method), "played",

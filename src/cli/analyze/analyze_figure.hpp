@@ -23,7 +23,8 @@ inline constexpr std::array<std::pair<const char*, const char*>, 3> all_error_ba
 
 /// Draws a panel for each run. The panel shows means with error bars and each participant by motion, as the
 /// paper's figures 8 and 9 do, or d'. Runs that measure have psychometric functions or estimates: one for
-/// each condition, and their means. Runs that identify have their answers.
+/// each condition, and their means. Runs that identify have their answers. Comparisons between methods,
+/// sessions and groups have the figure by level.
 plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, error_bars kind);
 
 } // namespace tactor::cli

@@ -267,7 +267,7 @@ public:
         const int decimals = count_decimals(run_);
         const std::size_t w = widest(v.levels);
         for (std::size_t i = 0; i < v.levels.size() && v.levels.size() > 1; ++i)
-            say(stdout, "    {:<{}} {}\n", v.levels[i], w, mean_text(v.means[i], decimals));
+            say(stdout, "    {:<{}} {}\n", v.levels[i], w, mean_text(v.all.means[i], decimals));
         for (const study::paired_comparison& c : v.pairs)
             say(stdout, "{}",
                 wrapped(fmt::format("    {} - {}: ", v.levels[c.a], v.levels[c.b]),

@@ -95,32 +95,47 @@ void add_group_means(figure_comparison& c, const level_values& v)
     }
 }
 
+// Returns the means of a group, or of all participants if `group` is empty.
+level_means average_levels(const level_values& v, std::size_t levels, const std::string& group)
+{
+    level_means m{group};
+    m.values.resize(levels);
+    std::vector<std::vector<double>> rows;
+    for (std::size_t i = 0; i < v.rows.size(); ++i) {
+        if (!group.empty() && v.groups[i] != group)
+            continue;
+        rows.push_back(v.rows[i]);
+        for (std::size_t k = 0; k < levels; ++k)
+            m.values[k].push_back(v.rows[i][k]);
+    }
+    const auto within = within_intervals(rows);
+    for (std::size_t k = 0; k < levels; ++k) {
+        const t_test t = test_mean(m.values[k], 0.0);
+        m.means.push_back({.n = t.n,
+                           .mean = t.mean,
+                           .se = t.se,
+                           .ci = t.ci,
+                           .ci_within = rows.empty() ? std::nullopt : within[k]});
+    }
+    return m;
+}
+
 // Compares a figure between levels.
 figure_comparison compare_levels(const std::string& factor, const std::string& figure,
                                  const std::vector<level>& levels, const level_values& v, bool groups)
 {
-    const std::vector<std::vector<double>>& values = v.rows;
     figure_comparison c{.factor = factor, .figure = figure};
-    std::vector<std::vector<double>> by_level(levels.size());
-    for (const std::vector<double>& own : values)
-        for (std::size_t i = 0; i < levels.size(); ++i)
-            by_level[i].push_back(own[i]);
-    const auto within = within_intervals(values);
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        const t_test t = test_mean(by_level[i], 0.0);
-        c.levels.push_back(levels[i].name);
-        c.means.push_back({.n = t.n,
-                           .mean = t.mean,
-                           .se = t.se,
-                           .ci = t.ci,
-                           .ci_within = values.empty() ? std::nullopt : within[i]});
-    }
-    c.pairs = compare_pairs(by_level, 0.0, test_mean);
+    for (const level& l : levels)
+        c.levels.push_back(l.name);
+    c.all = average_levels(v, levels.size(), "");
+    c.pairs = compare_pairs(c.all.values, 0.0, test_mean);
     if (levels.size() > 2)
-        c.anova = repeated_measures({values, levels.size(), 1}).first;
+        c.anova = repeated_measures({v.rows, levels.size(), 1}).first;
     if (groups) {
         c.groups = compare_with_groups(factor, levels.size(), v);
         add_group_means(c, v);
+        for (const std::string& g : std::set(v.groups.begin(), v.groups.end()))
+            c.by_group.push_back(average_levels(v, levels.size(), g));
     }
     return c;
 }

@@ -204,7 +204,7 @@ bool has_table(const result_value& v)
     if (const auto* p = std::get_if<paired_list>(&v))
         return !p->pairs.empty();
     if (const auto* c = std::get_if<figure_comparison>(&v))
-        return c->means.front().n != 0;
+        return c->all.means.front().n != 0;
     if (const auto* counts = std::get_if<answer_counts>(&v))
         return counts->motions.size() > 1;
     return v.index() > 2; // not null, a text or a number

@@ -92,12 +92,20 @@ struct paired_list {
     std::vector<paired_comparison> pairs = {};
 };
 
+/// Means of a figure by level, of all participants or of a group.
+struct level_means {
+    std::string group = {};                       ///< empty: all
+    std::vector<t_test> means = {};               ///< by level, not tested
+    std::vector<std::vector<double>> values = {}; ///< by level, of each participant
+};
+
 /// A figure compared between the levels of a factor, within participants.
 struct figure_comparison {
     std::string factor;                        ///< method or session
     std::string figure;                        ///< "jnd"
     std::vector<std::string> levels = {};      ///< names
-    std::vector<t_test> means = {};            ///< by level, not tested
+    level_means all = {};                      ///< of all participants
+    std::vector<level_means> by_group = {};    ///< of each group, if groups are compared
     std::vector<paired_comparison> pairs = {}; ///< by level, tests with d_z
     std::optional<effect> anova = {};          ///< with three levels or more
     /// Effects of the groups, the factor and both; missing if groups are not compared.

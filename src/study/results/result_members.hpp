@@ -184,9 +184,9 @@ template <class Io>
 void row_member(Io& io, const char* name, const figure_comparison& v)
 {
     io.object(name, {"a figure compared within participants"}, [&v](auto& inner) {
-        inner("n", v.means.empty() ? std::size_t{} : v.means.front().n,
+        inner("n", v.all.means.empty() ? std::size_t{} : v.all.means.front().n,
               {"participants with the figure at each level"});
-        inner.named_objects("means", v.levels, v.means, {"by level"},
+        inner.named_objects("means", v.levels, v.all.means, {"by level"},
                             [](auto& one, const t_test& t) { mean_members(one, t); });
         inner.list("pairs", v.pairs, {"all pairs of levels"},
                    [&v](auto& one, const paired_comparison& c, std::size_t) {
