@@ -87,8 +87,9 @@ struct matrix_panel {
 };
 
 struct weighted_dot {
-    spot at;             ///< in units of the axes
-    double weight = 1.0; ///< the area grows with it
+    spot at;               ///< in units of the axes
+    double weight = 1.0;   ///< the area grows with it
+    std::string name = {}; ///< next to the dot; may be empty
 };
 
 /// A function, and the values to which it was fitted.
@@ -133,8 +134,8 @@ struct panel_figure {
 /// with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error
 /// bar of kind "error", a dot of kind "value", a line between dots of kind "value-line". One of curves is of
 /// kind "curves", with data-x0 and data-x-scale, too: lines are of kind "curve" or "mean-curve", dots of kind
-/// "dot". A matrix is a group of kind "matrix" with data-title: each cell, of kind "cell", is the darker the
-/// larger its share of the row.
+/// "dot", their names of kind "name". A matrix is a group of kind "matrix" with data-title: each cell, of
+/// kind "cell", is the darker the larger its share of the row.
 canvas draw_panels(const panel_figure& f);
 
 /// Returns the vibration, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of

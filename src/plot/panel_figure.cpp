@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/paint/canvas.hpp"
 
@@ -18,8 +19,10 @@ namespace {
 
 constexpr double two_columns = 120.0 * pt_per_mm; // width from which panels stand in two columns
 constexpr double panel_height = 150.0;
-constexpr double labels_height = 24.0; // height of the names of the groups and the legend
+constexpr double labels_height = 24.0; // height of the names of the groups and one row of the legend
+constexpr double sides_width = 30.0;   // width of a panel of bars beside them
 constexpr double between = 14.0;
+constexpr double largest_dot = 2.3; // radius
 constexpr double bars_share = 0.72; // part of a group's width for its bars
 
 constexpr double names_length = 40.0; // greatest length of an upright name
@@ -156,19 +159,31 @@ void write_across(canvas& c, const std::string& text, box inside)
            {.kind = "across"});
 }
 
-void draw_legend(canvas& c, const bar_panel& p, double x, double y, double width)
+// Draws the names of the series in rows up to `width`; the first one ends at y. Returns the height of the
+// other rows, also without a canvas.
+double draw_legend(canvas* c, const bar_panel& p, double x, double y, double width)
 {
+    constexpr double row_height = 9.0;
     double at = x;
+    double row = y;
     for (std::size_t i = 0; i < p.series.size(); ++i) {
         if (p.series[i].name.empty())
             continue;
-        const double space = width / static_cast<double>(p.series.size()) - 12.0;
-        const std::string name = shorten(clean(p.series[i].name), small_text, space);
-        c.rect({at, y - 5.0, 6.0, 5.0},
-               {.fill = fill_colour(i, p.series.size()), .stroke = ink, .width = 0.4}, {.kind = "legend"});
-        c.text({at + 8.0, y}, name, {.size = small_text}, {.kind = "legend"});
-        at += 12.0 + text_width(name, small_text) + 6.0;
+        const std::string name = shorten(clean(p.series[i].name), small_text, width - 8.0);
+        const double need = 8.0 + text_width(name, small_text);
+        if (at > x && at + need > x + width) {
+            at = x;
+            row += row_height;
+        }
+        if (c != nullptr) {
+            c->rect({at, row - 5.0, 6.0, 5.0},
+                    {.fill = fill_colour(i, p.series.size()), .stroke = ink, .width = 0.4},
+                    {.kind = "legend"});
+            c->text({at + 8.0, row}, name, {.size = small_text}, {.kind = "legend"});
+        }
+        at += need + 10.0;
     }
+    return row - y;
 }
 
 void draw_panel_title(canvas& c, const std::string& title, box where)
@@ -179,8 +194,10 @@ void draw_panel_title(canvas& c, const std::string& title, box where)
 
 void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, box where)
 {
-    box inside{where.x + 28.0, where.y + 14.0, where.width - 30.0, where.height - 14.0 - labels_height};
-    inside.height -= find_names_height(p, inside.width) - cap_height(small_text);
+    box inside{where.x + 28.0, where.y + 14.0, where.width - sides_width,
+               where.height - 14.0 - labels_height};
+    const double legend = draw_legend(nullptr, p, 0.0, 0.0, inside.width);
+    inside.height -= find_names_height(p, inside.width) - cap_height(small_text) + legend;
     const scale y{p.y_from, p.y_to, inside.bottom(), inside.y};
     const group one(c, {.kind = "bars",
                         .data = {{"title", clean(p.title)},
@@ -198,12 +215,11 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
     c.line({inside.x, inside.bottom()}, {inside.right(), inside.bottom()}, {.stroke = ink, .width = 0.6});
     write_across(c, across, inside);
     draw_spread(c, p, y, inside);
-    draw_legend(c, p, inside.x, where.bottom() - 2.0, inside.width);
+    draw_legend(&c, p, inside.x, where.bottom() - 2.0 - legend, inside.width);
 }
 
 void draw_dots(canvas& c, const curve_panel& p, const scale& x, const scale& y)
 {
-    constexpr double largest = 2.3;
     constexpr double least = 0.5;
     double heaviest = 0.0;
     for (const curve& one : p.curves)
@@ -211,7 +227,7 @@ void draw_dots(canvas& c, const curve_panel& p, const scale& x, const scale& y)
             heaviest = std::max(heaviest, d.weight);
     for (const curve& one : p.curves)
         for (const weighted_dot& d : one.dots)
-            c.circle({x(d.at.x), y(d.at.y)}, std::max(least, largest * std::sqrt(d.weight / heaviest)),
+            c.circle({x(d.at.x), y(d.at.y)}, std::max(least, largest_dot * std::sqrt(d.weight / heaviest)),
                      {.fill = with_alpha(stroke_colour(one.colour), 0.3),
                       .stroke = with_alpha(ink, 0.6),
                       .width = 0.3},
@@ -228,6 +244,28 @@ void draw_curves(canvas& c, const curve_panel& p, const scale& x, const scale& y
                          .width = one.thick ? 1.6 : 0.5};
         for (const std::vector<spot>& part : clip(on_page, inside))
             c.poly(simplify(part, 0.05), false, look, {.kind = one.thick ? "mean-curve" : "curve"});
+    }
+}
+
+// Writes the names of dots next to them, within the panel; above them where there is no space.
+void draw_names(canvas& c, const curve_panel& p, const scale& x, const scale& y, box inside)
+{
+    std::vector<spot> sites;
+    std::vector<std::string> names;
+    for (const curve& one : p.curves)
+        for (const weighted_dot& d : one.dots)
+            if (!d.name.empty()) {
+                sites.push_back({x(d.at.x), y(d.at.y)});
+                names.push_back(shorten(clean(d.name), small_text, inside.width / 2.0));
+            }
+    label_placer taken(inside);
+    for (const spot& site : sites)
+        taken.block_disc(site, largest_dot);
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        constexpr double reach = 20.0;
+        const spot above{sites[i].x, sites[i].y - largest_dot - 1.5};
+        c.text(taken.place(names[i], small_text, sites, i, largest_dot + 1.5, reach).value_or(above),
+               names[i], {.size = small_text}, {.kind = "name"});
     }
 }
 
@@ -280,6 +318,7 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
     write_across(c, across, inside);
     draw_dots(c, p, x, y);
     draw_curves(c, p, x, y, inside);
+    draw_names(c, p, x, y, inside);
 }
 
 // Returns a colour from white, for no share, to blue.
@@ -357,20 +396,23 @@ canvas draw_panels(const panel_figure& f)
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+    double height = panel_height; // more if a legend has several rows
+    for (const bar_panel& p : f.bars)
+        height = std::max(height, panel_height + draw_legend(nullptr, p, 0.0, 0.0, width - sides_width));
     std::size_t count = 0;
     const auto draw_each = [&](const auto& panels, const auto& draw) {
         for (const auto& p : panels) {
             if (count % columns == 0 && count > 0)
-                y += panel_height + 8.0;
+                y += height + 8.0;
             draw(c, p, across,
-                 {margin + (width + between) * static_cast<double>(count % columns), y, width, panel_height});
+                 {margin + (width + between) * static_cast<double>(count % columns), y, width, height});
             ++count;
         }
     };
     draw_each(f.bars, draw_bar_panel);
     draw_each(f.curves, draw_curve_panel);
     draw_each(f.matrices, draw_matrix_panel);
-    y += count > 0 ? panel_height + 8.0 : 0.0;
+    y += count > 0 ? height + 8.0 : 0.0;
     y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 6, "note");
     c.height = y + margin;
     return c;

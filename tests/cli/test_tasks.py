@@ -15,7 +15,7 @@ import sys
 import jsonschema
 from experiments import DESK, ExperimentTest
 from harness import main
-from pictures import Svg, number, read_bars
+from pictures import Svg, box, number, overlap, read_bars
 import check_r
 from studies import STUDIES, measures, toml
 
@@ -154,6 +154,29 @@ class EveryTask(ExperimentTest):
         self.assertAlmostEqual(alone["mean"] % 360, statistics.mean(turned), 3)
         self.assertAlmostEqual(alone["se"], statistics.stdev(turned) / 2, 3)
         self.assertRegex(self.ok("analyze", "study", "--format", "tables").stdout, r"(?s)distance by group:\n    with the group as a factor between participants:\n    near   [^\n]*\n    turned ")
+
+    def test_a_picture_has_methods_in_the_plane_and_names_of_all_pairs(self):
+        self.write("desk.toml", DESK)
+        self.write("t.toml", define("dissimilar"))
+        for code in "123":
+            self.simulate(code, definition="t.toml", folder="study", spec=f"seed={code},sigma=8")
+        self.ok("analyze", "study", "-o", "a.svg")
+        picture, told = Svg(self.dir / "a.svg"), self.analysis()["runs"]["only"]
+        panel, = picture.all("curves")
+        self.assertEqual(panel.get("data-title"), f"only: methods (n = 3, stress {told['scaling']['stress']:.3f})")
+        x0, kx, y0, ky = (number(panel, f"data-{k}") for k in ("x0", "x-scale", "y0", "y-scale"))
+        self.assertAlmostEqual(abs(ky / kx), 1, places=6)  # to scale
+        names = [e for e in panel.iter() if e.get("class") == "name"]
+        dots = [e for e in panel.iter() if e.get("class") == "dot"]
+        for dot, name, (method, (x, y)) in zip(dots, names, told["scaling"]["places"].items(), strict=True):
+            self.assertEqual(name.text, method)
+            self.assertAlmostEqual((number(dot, "cx") - x0) / kx, x, delta=0.2)
+            self.assertAlmostEqual((number(dot, "cy") - y0) / ky, y, delta=0.2)
+        panel, = picture.all("bars")
+        legend = [e for e in panel.iter() if e.get("class") == "legend" and e.text]
+        self.assertEqual([e.text for e in legend], list(told["means"]))
+        texts = [box(e) for e in legend + [e for e in panel.iter() if e.get("class") == "group"]]
+        self.assertFalse([(a, b) for i, a in enumerate(texts) for b in texts[:i] if overlap(a, b)])
 
     def test_means_of_cells_are_compared_between_methods_and_sessions(self):
         self.write("desk.toml", DESK)

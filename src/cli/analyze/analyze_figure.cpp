@@ -400,6 +400,31 @@ void add_drawings(plot::panel_figure& f, const study::run_analysis& r)
     }
 }
 
+// Draws the methods in the plane.
+void add_maps(plot::panel_figure& f, const study::run_analysis& r)
+{
+    for (const study::method_map* v : study::list_values<study::method_map>(r.results)) {
+        plot::curve_panel p{
+            fmt::format("{}: methods (n = {}, stress {:.3f})", r.run.name, r.n, v->all.scaled.stress),
+            {"first dimension"},
+            {"second dimension"}};
+        p.to_scale = true;
+        double farthest = 1.0;
+        plot::curve& all = p.curves.emplace_back();
+        for (std::size_t m = 0; m < v->methods.size(); ++m) {
+            const auto& [x, y] = v->all.scaled.places[m];
+            all.dots.push_back({{x, y}, 1.0, v->methods[m]});
+            farthest = std::max({farthest, std::abs(x), std::abs(y)});
+        }
+        constexpr double space = 1.2; // for the names
+        for (plot::curve_axis* axis : {&p.x, &p.y}) {
+            axis->from = -space * farthest;
+            axis->to = space * farthest;
+        }
+        f.curves.push_back(std::move(p));
+    }
+}
+
 // Says what is drawn.
 std::string describe_panels(const plot::panel_figure& f, const study::analysis& a, error_bars kind)
 {
@@ -411,9 +436,15 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
     bool without_function = false;
     bool estimates = false;
     bool levels = false;
+    bool drawings = false;
+    bool maps = false;
     for (const study::run_analysis& r : a.runs) {
+        if (r.n == 0)
+            continue;
         for (const study::figure_comparison* v : list_comparisons(r))
             levels = levels || v->levels.size() > 1;
+        drawings = drawings || !study::list_values<study::drawn_answers>(r.results).empty();
+        maps = maps || !study::list_values<study::method_map>(r.results).empty();
         for (const auto* v : study::list_values<study::psychometric_functions>(r.results))
             for (const study::fitted_function& one : v->people)
                 without_function = without_function || (!one.blocks.empty() && !one.fit);
@@ -424,11 +455,12 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
     if (levels && kind != error_bars::within)
         notes.push_back(fmt::format("By method or session: {}.",
                                     all_error_bars[static_cast<std::size_t>(error_bars::within)].second));
-    const auto is_drawn = [](const plot::curve_panel& p) { return p.to_scale; };
-    if (std::ranges::any_of(f.curves, is_drawn))
+    if (drawings)
         notes.emplace_back(
             "To scale: each drawing of each participant, their mean, the target, and predictions.");
-    if (!std::ranges::all_of(f.curves, is_drawn))
+    if (maps)
+        notes.emplace_back("Methods in the plane: the more they differ, the farther apart they are.");
+    if (!std::ranges::all_of(f.curves, &plot::curve_panel::to_scale))
         notes.emplace_back("Thin lines and points: participants; the area of a point grows with its trials.");
     if (std::ranges::any_of(f.curves,
                             [](const plot::curve_panel& p) { return !p.to_scale && p.curves.back().thick; }))
@@ -457,6 +489,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
         add_curves<study::psychometric_functions>(f, r);
         add_curves<study::exponents>(f, r);
         add_drawings(f, r);
+        add_maps(f, r);
         std::optional<plot::bar_panel> p = make_panel(r, kind);
         if (!p && r.run.vary.empty())
             p = make_figure_panel<study::sensitivities>(r, "d'", kind);
