@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// The trials and figures of a study as tables for other programs.
+#include "cli/analyze/analyze_output.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/say.hpp"
+#include "core/words.hpp"
+#include "study/analysis/analysis.hpp"
+#include "study/tasks/task.hpp"
+
+namespace tactor::cli {
+namespace {
+
+// A column of the trials.
+struct trial_column {
+    const char* name;
+    /// Null: the task has it.
+    std::string (*cell)(const study::trial& t, const study::run_outline& own) = nullptr;
+    bool always = true; ///< else only studies in which a task needs it have it
+};
+
+constexpr trial_column trial_columns[] = {
+    {"run", [](const auto&, const auto& r) { return r.name; }},
+    {"task", [](const auto&, const auto& r) { return std::string(task_in(r).name()); }},
+    {"trial", [](const auto& t, const auto&) { return fmt::format("{}", t.place); }},
+    {"attempt", [](const auto& t, const auto&) { return fmt::format("{}", t.attempt); }},
+    {"motion", [](const auto& t, const auto& r) { return r.motions[t.motion]; }},
+    {"method"},
+    {"other", nullptr, false},
+    {"order"},
+    {"response"},
+    {"chosen"},
+    {"rating"},
+    {"correct"},
+    {"value", nullptr, false},
+    {"signal", nullptr, false},
+    {"positive", nullptr, false},
+    {"estimate", nullptr, false},
+    {"x", nullptr, false},
+    {"y", nullptr, false},
+    {"target_x", nullptr, false},
+    {"target_y", nullptr, false},
+    {"error", nullptr, false},
+    {"distance", nullptr, false},
+    {"frechet", nullptr, false},
+    {"length", nullptr, false},
+    {"direction", nullptr, false},
+    {"curvature", nullptr, false},
+    {"response_time",
+     [](const auto& t, const auto&) {
+         return t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a";
+     }},
+    {"early",
+     [](const auto& t, const auto&) -> std::string {
+         return !t.early ? "n/a" : *t.early ? "true" : "false";
+     }},
+};
+
+// Returns a name for a column that SPSS, JASP and R take as it is: RUN.METHOD.MOTION or RUN.FIGURE of at most
+// 64 letters, digits, dots and underscores, with a letter first and no dot last. Adds it to `taken`, where no
+// two differ in case only.
+std::string name_column(const std::vector<std::string>& parts, std::set<std::string>& taken)
+{
+    constexpr std::size_t longest = 60; // leaves room for a number
+    std::size_t length = parts.size() - 1;
+    for (const std::string& part : parts)
+        length += part.size();
+    const bool fits = length < longest;
+    std::string name;
+    for (const std::string& part : parts) {
+        name += name.empty() ? "" : ".";
+        for (const char c :
+             first_characters(part, fits ? longest : longest / std::max<std::size_t>(3, parts.size()) - 1))
+            if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.')
+                name += c;
+            else if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) // one for each character of UTF-8
+                name += '_';
+    }
+    if (const char first = in_small_letters(name)[0]; first < 'a' || first > 'z')
+        name.insert(0, "x");
+    if (name.back() == '.')
+        name.back() = '_';
+    std::string unique = name;
+    for (unsigned n = 2; !taken.insert(in_small_letters(unique)).second; ++n)
+        unique = fmt::format("{}_{}", name, n);
+    return unique;
+}
+
+// Columns of --format wide for the trials of a run.
+struct wide_block {
+    std::size_t run = 0;
+    study::session_number session = {}; // missing: the trials of all sessions
+    std::vector<study::named_value> columns = {};
+};
+
+} // namespace
+
+void print_trials(const study::dataset& d)
+{
+    std::string text;
+    if (d.simulated)
+        text += "# simulated: no person gave these answers\n";
+    // Names may have "#" in them: the notes are counted, not told by their first letter.
+    const std::size_t notes = 3 + (d.simulated ? 1 : 0) + d.experiment.runs.size();
+    // With sum contrasts an effect is over all motions, not that at the first one.
+    text += fmt::format("# library(lme4)\n"
+                        "# options(contrasts = c(\"contr.sum\", \"contr.poly\"))\n"
+                        "# d <- read.delim(\"trials.tsv\", skip = {}, na.strings = \"n/a\", quote = \"\", "
+                        "colClasses = c(participant = \"character\"))\n",
+                        notes);
+    std::set<std::string_view> needed;
+    for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+        const study::run_outline& r = d.experiment.runs[k];
+        text += fmt::format("# {}\n", task_in(r).model_in_r(r, find_model_factors(d, k)));
+        for (const std::string_view column : task_in(r).list_columns(r))
+            needed.insert(column);
+    }
+    std::vector<trial_column> columns;
+    std::ranges::copy_if(trial_columns, std::back_inserter(columns),
+                         [&](const trial_column& c) { return c.always || needed.contains(c.name); });
+    const bool grouped = !d.experiment.groups.empty();
+    const bool several = d.experiment.sessions > 1;
+    text += fmt::format("participant{}{}", grouped ? "\tgroup" : "", several ? "\tsession" : "");
+    for (const trial_column& c : columns)
+        text += fmt::format("\t{}", c.name);
+    text += '\n';
+    for (std::size_t i = 0; i < d.participants.size(); ++i)
+        for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+            const study::run_outline& own = find_run(d, i, k);
+            const study::run_outline& whole = d.experiment.runs[k];
+            for (const study::trial& t : d.data[i][k].trials) {
+                text += d.participants[i];
+                text += grouped ? "\t" + d.groups[i] : "";
+                text += several ? fmt::format("\t{}", t.session.value()) : "";
+                const study::named_texts cells = task_in(own).describe_trial(t, own, whole);
+                for (const trial_column& c : columns) {
+                    const auto at = std::ranges::find(cells, c.name, &study::named_texts::value_type::first);
+                    text += "\t" + (c.cell != nullptr   ? c.cell(t, own)
+                                    : at != cells.end() ? at->second
+                                                        : "n/a");
+                }
+                text += '\n';
+            }
+        }
+    fmt::print("{}", text);
+}
+
+void print_wide(const study::dataset& d, study::sigmoid kind)
+{
+    const bool grouped = !d.experiment.groups.empty();
+    std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
+    text += grouped ? ",group" : "";
+    std::set<std::string> taken;
+    std::vector<wide_block> blocks;
+    for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
+        blocks.push_back({.run = k});
+        if (const auto sessions = list_played_sessions(d, k); sessions.size() > 1)
+            for (const study::session_number n : sessions)
+                blocks.push_back({.run = k, .session = n});
+    }
+    for (wide_block& block : blocks) {
+        const study::run_outline& r = d.experiment.runs[block.run];
+        block.columns = task_in(r).measure(r, {}, kind);
+        for (const study::named_value& v : block.columns) {
+            std::vector<std::string> parts{r.name};
+            parts.insert(parts.end(), v.name.begin(), v.name.end());
+            if (block.session)
+                parts.push_back(fmt::format("ses-{}", *block.session));
+            text += "," + name_column(parts, taken);
+        }
+    }
+    text += '\n';
+    for (std::size_t i = 0; i < d.participants.size(); ++i) {
+        text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
+        text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // quotes it
+        for (const wide_block& block : blocks) {
+            const study::run_outline& own = find_run(d, i, block.run);
+            std::vector<study::named_value> values;
+            if (!own.motions.empty()) { // else the group lacks the run
+                std::vector<study::trial> trials = d.data[i][block.run].trials;
+                if (block.session)
+                    std::erase_if(trials, [&](const study::trial& t) { return t.session != block.session; });
+                values = task_in(own).measure(own, trials, kind);
+            }
+            for (const study::named_value& column : block.columns) {
+                const auto at = std::ranges::find(values, column.name, &study::named_value::name);
+                text += at != values.end() && at->value ? fmt::format(",{}", *at->value) : ",";
+            }
+        }
+        text += '\n';
+    }
+    fmt::print("{}", text);
+}
+
+} // namespace tactor::cli
