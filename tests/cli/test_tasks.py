@@ -153,6 +153,7 @@ class EveryTask(ExperimentTest):
         alone = self.valid(self.ok("analyze", "study", "--participants", "5,6,7,8", "--format", "json").stdout)["runs"]["path"]["drawings"]["means"]["direction"]
         self.assertAlmostEqual(alone["mean"] % 360, statistics.mean(turned), 3)
         self.assertAlmostEqual(alone["se"], statistics.stdev(turned) / 2, 3)
+        self.assertRegex(self.ok("analyze", "study").stdout, r"path by group: distance, p [^;]*; frechet, .*; direction, p < 0\.001; ")
         self.assertRegex(self.ok("analyze", "study", "--format", "tables").stdout, r"(?s)distance by group:\n    with the group as a factor between participants:\n    near   [^\n]*\n    turned ")
 
     def test_a_picture_has_methods_in_the_plane_and_names_of_all_pairs(self):

@@ -7,7 +7,7 @@
 
 namespace tactor::cli {
 
-/// Prints the main figure of each result, in ten lines or less.
+/// Prints the main figure of each result and the p of each comparison, in ten lines or less.
 void print_summary(const study::analysis& a);
 
 /// Prints the summary, and then the tables of all results.
