@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: MIT
+"""Linux's own drivers of sound cards, with cards that are emulated: by usb_card.py, and by QEMU (tests/lanes/cards).
+
+What a card received is compared with `tactor render`, byte by byte, and the times that `play` reports with the card's own.
+Prints a table at its end.
+"""
+import json
+import pathlib
+import re
+import signal
+import statistics
+import subprocess
+import unittest
+
+from rig import BUILD, RATE, GpioSim, RigTest, wait_for, wav_data
+from test_service import Client
+from usb_card import UsbCard
+
+ALSA = pathlib.Path("/proc/asound")
+PERIOD, PERIODS = 480, 100  # a second: the emulated machine may stand still
+ROUNDS, PAUSE = 6, RATE // 5
+STROKE = ("--shape", "circle", "--duration", "1")
+SHORT_STROKE, LONG_STROKE = (("--path", "M 0 10 H 60", "--duration", duration) for duration in ("1", "60"))
+ERROR_MS = 6  # the driver sends up to 6 ms at once, and its position moves by these
+GRIDS = {24: (4, 6), 8: (2, 4), 2: (1, 2)}
+FORMATS = {16: "s16", 24: "s24", 32: "s32"}
+LINE = 2
+FRAMES, KEPT = 48, 16  # frames in a packet of QEMU's card, and how many of them QEMU records
+ROWS = {}
+
+
+def add_row(name, report, equal, late_ms=(), still="not known"):
+    device = report["device"]
+    times = f"{statistics.median(late_ms):+.2f} (worst {max(late_ms, key=abs):+.2f})" if late_ms else "not known"
+    ROWS[name] = (name, str(device["channels"]), device["format"], equal, str(report["counters"]["xruns"]),
+                  "periods" if device["batch"] else "finer", times, still)
+
+
+def load(*modules):
+    kernel = re.search(r"kernel_root=(\S+)", pathlib.Path("/proc/cmdline").read_text(encoding="ascii"))[1]
+    for module in modules:
+        r = subprocess.run(["modprobe", "-d", kernel, module], capture_output=True, text=True, check=False)
+        if r.returncode != 0:
+            raise unittest.SkipTest(f"the kernel has no module {module}: {r.stderr.strip()}")
+
+
+def setUpModule():
+    # The driver asks for the bus's frame number, vhci-hcd prints that it has none, and a serial line is slow.
+    pathlib.Path("/proc/sys/kernel/printk").write_text("1", encoding="ascii")
+
+
+def tearDownModule():
+    head = ("card", "channels", "format", "equal frames", "xruns", "position", "predicted - played, ms", "stood still, ms")
+    rows = [head, *ROWS.values()]
+    widths = [max(len(r[i]) for r in rows) for i in range(len(head))]
+    for row in rows:
+        print("  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip())
+
+
+def usb_packets(pcap):
+    """Returns the bytes of each isochronous packet to the card in a file of libpcap with headers of usbmon."""
+    at, packets = 24, []
+    while at + 16 <= len(pcap):
+        length = int.from_bytes(pcap[at + 8:at + 12], "little")
+        header, data = pcap[at + 16:at + 80], pcap[at + 80:at + 16 + length]
+        if header[9] == 0 and header[10] < 0x80 and data:
+            packets.append(data)
+        at += 16 + length
+    return packets
+
+
+def first_sound(data):
+    """Returns the place of the first byte that is not 0."""
+    found = re.search(rb"[^\0]", data)
+    if not found:
+        raise AssertionError(f"{len(data)} bytes of silence")
+    return found.start()
+
+
+def repeat(rendered, frame):
+    """Returns the rounds of a stroke, with the pauses between them."""
+    return bytes(PAUSE * frame).join([rendered] * ROUNDS)
+
+
+def count_equal(got, wanted, frame):
+    if got == wanted:
+        return len(got) // frame
+    return sum(got[i:i + frame] == wanted[i:i + frame] for i in range(0, len(got), frame))
+
+
+class CardTest(RigTest):
+    def array(self, card, channels, extra=""):
+        rows, columns = GRIDS[channels]
+        return self.write("array.toml", f"""
+[array]
+name = "card"
+grid = {{ rows = {rows}, columns = {columns}, pitch_mm = 20.0 }}
+[output]
+pcm = "hw:CARD={card}"
+period_frames = {PERIOD}
+periods = {PERIODS}
+{extra}""")
+
+    def render(self, array, sample_format, *stroke):
+        r = self.tool("render", *stroke, "--array", array, "--sample-format", sample_format, "-o", "o.wav")
+        self.assertEqual(r.returncode, 0, r.stderr)
+        return wav_data(self.dir / "o.wav")
+
+    def play(self, array, *stroke):
+        """Plays the rounds; returns the report, and when each began: CLOCK_MONOTONIC, in s."""
+        r = self.tool("play", *stroke, "--array", array, "--repeat", ROUNDS, "--pause", PAUSE / RATE, "--verbose", "--format", "json")
+        self.assertEqual(r.returncode, 0, r.stderr)
+        report = json.loads(r.stdout)
+        self.assertEqual(report["counters"]["xruns"], 0, r.stderr)
+        began = [float(t) for t in re.findall(r"\((\d+\.\d+) s by CLOCK_MONOTONIC\), finished", r.stderr)]
+        self.assertEqual(len(began), ROUNDS, r.stderr)
+        return report, began
+
+    def find(self, pcm, array, channels, sample_format):
+        """Checks what `tactor devices` and `tactor check` find."""
+        r = self.tool("devices", "--array", array, "--format", "json")
+        card = next(p for p in json.loads(r.stdout)["pcms"] if p["name"] == f"{pcm},DEV=0")
+        self.assertEqual((card["hardware"], card["configured"], card["fits"], card["holders"]), (True, True, True, []), card)
+        self.assertIn(channels, [c["max"] for c in card["can"]["channels"]])
+        self.assertIn(sample_format, card["can"]["formats"])
+        r = self.tool("check", "--array", array, "--format", "json")
+        self.assertEqual(r.returncode, 0, r.stdout + r.stderr)
+        found = {f["check"]: f for f in json.loads(r.stdout)["findings"]}
+        self.assertEqual(found["device"]["level"], "ok", found)
+        self.assertIn(f"{channels} channels, {RATE} Hz", found["device"]["found"])
+
+
+class UsbTest(CardTest):
+    """Cards in software, by the driver snd-usb-audio."""
+
+    def setUp(self):
+        super().setUp()
+        load("vhci-hcd", "snd-usb-audio")
+
+    def plug_in(self, *shape, **clock):
+        card = UsbCard(*shape, **clock)
+        card.plug_in()
+        self.addCleanup(self.pull_out, card)
+        wait_for(lambda: (ALSA / card.name).exists(), "the card")
+        return card
+
+    def pull_out(self, card):
+        card.pull_out()
+        wait_for(lambda: not (ALSA / card.name).exists(), "no card")
+
+
+class UsbCards(UsbTest):
+    def compare(self, card, bits, name=None):
+        """Plays rounds; checks each byte, and the times."""
+        array = self.array(card.name, {32: 24}.get(bits, 8))
+        rendered = self.render(array, FORMATS[bits], *STROKE)
+        report, began = self.play(array, *STROKE)
+        data, frame = bytes(card.data), card.frame
+        start = first_sound(data) // frame - first_sound(rendered) // frame
+        strokes = bytes(start * frame) + repeat(rendered, frame)
+        step = len(rendered) // frame + PAUSE
+        played = [card.find_time(start + i * step) for i in range(ROUNDS)]
+        late_ms = [1e3 * (t - p) for t, p in zip(began, played)]
+        still_ms = 1e3 * (played[-1] - played[0] - (ROUNDS - 1) * step * card.frame_s)
+        equal = count_equal(data, strokes.ljust(len(data), b"\0"), frame)
+        add_row(name or card.name, report, f"{equal} of {len(data) // frame}", late_ms, f"{still_ms:.0f}")
+        self.assertEqual(report["device"]["format"], FORMATS[bits])
+        self.assertGreaterEqual(len(data), len(strokes))
+        self.assertEqual(equal, len(data) // frame)
+        # No clock predicts when the emulated machine stands still.
+        self.assertLess(statistics.median(map(abs, late_ms)), ERROR_MS + still_ms)
+
+    def test_each_format_arrives_byte_by_byte(self):
+        for channels, bits in ((24, 32), (8, 16), (8, 24)):
+            with self.subTest(channels=channels, bits=bits):
+                card = self.plug_in(channels, bits)
+                self.find(f"hw:CARD={card.name}", self.array(card.name, channels), channels, FORMATS[bits])
+                self.compare(card, bits)
+
+    def test_a_clock_that_is_off(self):
+        for ppm in (50, -500, 2000):
+            with self.subTest(ppm=ppm):
+                card = self.plug_in(8, 16, ppm=ppm)
+                self.compare(card, 16, f"{card.name}, {ppm:+} ppm")
+                self.pull_out(card)
+
+    def test_a_card_that_stands_still_for_a_moment(self):
+        card = self.plug_in(8, 16, pause=(2 * RATE, 0.03))
+        self.compare(card, 16, f"{card.name}, stands still for 30 ms")
+        self.assertIsNone(card.pause)
+
+
+class PulledOut(UsbTest):
+    """Pulls the card out of its port in mid-stroke."""
+
+    def setUp(self):
+        super().setUp()
+        self.gpio = GpioSim()
+        self.addCleanup(self.gpio.close)
+        self.card = self.plug_in(8, 16)
+        self.wired = self.array(self.card.name, 8, f'[amplifier]\nline = {{ chip = "{self.gpio.label}", offset = {LINE} }}\n')
+
+    def is_on(self):
+        return self.gpio.value(LINE) == 1
+
+    def pull_out_in_mid_stroke(self):
+        # The amplifier goes off for the time in which the emulated machine stands still.
+        wait_for(lambda: self.card.heard() > RATE // 2 and self.is_on(), "half a second of sound", 60)
+        self.pull_out(self.card)
+        wait_for(lambda: not self.is_on(), "the amplifier is off", 5)
+
+    def test_play_says_so_and_ends(self):
+        p = self.start("play", *LONG_STROKE, "--array", self.wired, "--format", "json")
+        self.pull_out_in_mid_stroke()
+        out, err = p.communicate(timeout=60)
+        self.assertEqual(p.returncode, 1, err)
+        self.assertRegex(err, r"(?m)^tactor: --path: interrupted after \d+\.\d{3} s: the device is gone$")
+        stroke, = json.loads(out)["strokes"]
+        self.assertEqual((stroke["state"], stroke["reason"]), ("interrupted", "the device is gone"))
+        print(f"{stroke['frames']} frames of the stroke reported, {self.card.heard()} frames received")
+        self.assertAlmostEqual(stroke["frames"], self.card.heard(), delta=RATE // 10)
+
+    def test_serve_waits_and_plays_again(self):
+        rendered = self.render(self.wired, "s16", *SHORT_STROKE)
+        path = self.dir / "tactor.sock"
+        p = self.start("serve", "--socket", path, "--array", self.wired, "--format", "json")
+        self.assertIn("listening", p.stdout.readline())
+        c = Client(path)
+        self.addCleanup(c.close)
+        c.call("subscribe", events=["stream"])
+        number = c.call("play", path=LONG_STROKE[1], options={"duration": 60})["stroke"]
+        self.pull_out_in_mid_stroke()
+        self.assertEqual(c.await_end(number), "interrupted")
+        self.assertTrue(c.hear("stream", state="lost"))
+        c.told.clear()
+        again = self.plug_in(8, 16)
+        self.assertTrue(c.hear("stream", state="running"))
+        number = c.call("play", path=SHORT_STROKE[1], options={"duration": 1})["stroke"]
+        self.assertEqual(c.await_end(number), "finished")
+        p.send_signal(signal.SIGTERM)
+        self.assertEqual(p.wait(60), 0)
+        data = bytes(again.data)
+        start = first_sound(data) - first_sound(rendered)
+        self.assertEqual(start % again.frame, 0)
+        self.assertTrue(data[start:].startswith(rendered))
+
+
+class QemuCards(CardTest):
+    """QEMU's own cards, which tests/lanes/cards adds to the machine."""
+
+    def find_controller(self, pci_class, *modules):
+        if not any(f.read_text(encoding="ascii").startswith(pci_class) for f in pathlib.Path("/sys/bus/pci/devices").glob("*/class")):
+            self.skipTest("tests/lanes/cards adds this card to the machine")
+        load(*modules)
+
+    @staticmethod
+    def recorded():
+        # The file has grown since the guest looked at it.
+        pathlib.Path("/proc/sys/vm/drop_caches").write_text("3", encoding="ascii")
+        return usb_packets((BUILD / "cards/usb.pcap").read_bytes())
+
+    def test_eight_channels_by_usb_arrive_byte_by_byte(self):
+        self.find_controller("0x0c0330", "xhci-pci", "snd-usb-audio")
+        wait_for(lambda: (ALSA / "Audio").exists(), "the card")
+        array = self.array("Audio", 8)
+        self.find("hw:CARD=Audio", array, 8, "s16")
+        frame, whole = 16, FRAMES * 16
+        sound = self.render(array, "s16", *STROKE)
+        sound = repeat(sound, frame)[first_sound(sound) // frame * frame:]
+        before = len(self.recorded())
+        report, _ = self.play(array, *STROKE)
+        packets = self.recorded()[before:]
+        first = next(i for i, p in enumerate(packets) if any(p))
+
+        def count_packets(start, packets):
+            wanted = (bytes(start * frame) + sound).ljust(len(packets) * whole, b"\0")
+            return sum(p == wanted[i * whole:i * whole + len(p)] for i, p in enumerate(packets))
+        # The sound may begin in frames that are not recorded.
+        starts = range(FRAMES * first - FRAMES + KEPT, FRAMES * first + KEPT)
+        start = max(starts, key=lambda s: count_packets(s, packets[:first + 20]))
+        equal = count_packets(start, packets)
+        add_row("QEMU's usb-audio", report, f"{KEPT * equal} of {KEPT * len(packets)}")
+        self.assertEqual({len(p) for p in packets}, {KEPT * frame})
+        self.assertEqual(equal, len(packets))
+
+    def test_a_stereo_card_by_hda(self):
+        self.find_controller("0x040300", "snd-hda-codec-generic", "snd-hda-intel")
+        wait_for(lambda: (ALSA / "Intel").exists(), "the card")
+        array = self.array("Intel", 2)
+        report, _ = self.play(array, "--path", "M 0 0 H 20", "--duration", "1")
+        add_row("QEMU's hda-output", report, "not recorded")
