@@ -38,7 +38,7 @@ class Load(AmplifierTest):
         self.assertLess(len(cut), strokes, err)
         # Each xrun is reported with its length, and ends its stroke; nothing else ends one.
         for s in cut:
-            self.assertEqual((s["state"], s["reason"]), ("interrupted", "device: xrun: the device ran dry"), s)
+            self.assertEqual((s["state"], s["reason"]), ("interrupted", "xrun: the device ran dry"), s)
         self.assertLessEqual(len(cut), counters["xruns"], err)
         self.assertEqual(len(counters["xrun_s"]), counters["xruns"])
         # The amplifier goes off where the stream stands still for long, and at the end.
