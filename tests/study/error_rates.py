@@ -42,8 +42,9 @@ RUNS = {
     "trace": 'trials = 24\n',
     "same-different": 'trials = 40\n',
     "oddity": 'trials = 36\n',
+    "adjust": 'question = "?"\nvary = "speed_mm_s"\nrange = [20, 100]\nstandard = 60\ntrials = 48\n',
 }
-USUAL = "sigma=20,pse=60,jnd=10,pse_sd=5,jnd_sd=5,dprime=1.5,dprime_sd=0.5,exponent_sd=0.2,method_sd=10"
+USUAL = "sigma=20,pse=60,jnd=10,pse_sd=5,jnd_sd=5,dprime=1.5,dprime_sd=0.5,exponent_sd=0.2,correlation=0.5,method_sd=10"
 OTHERS = {"identify": "sigma=60", "estimate": "sigma=0.3,exponent_sd=0.2", "same-different": "dprime=0", "oddity": "dprime=0"}
 
 
