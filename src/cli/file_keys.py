@@ -35,6 +35,13 @@ def macro(line):
             flag = token == "Fl"
         elif token == "Ns":
             glue = True
+        elif token == "Qo":
+            out.append('"')
+            glue = True
+        elif token == "Qc":
+            out[-1] += '"'
+        elif token in ("Po", "Pc"):
+            out.append("(" if token == "Po" else ")")
         elif token in ("Pq", "Dq"):
             wrap = "()" if token == "Pq" else '""'
             out.append(wrap[0])

@@ -49,6 +49,8 @@ class Help(ErrorsTest):
         self.assertTrue(self.ok("help", "soa").stdout.startswith("--soa S\n"))
         for key, table in (("max_dbfs", "[array]"), ("max_dbfs", "[[tactor]]"), ("max-level-dbfs", "[serve]")):
             self.assertIn(f"  In files:         {table}, see tactor.toml(5)\n", self.ok("help", key).stdout)
+        self.assertIn('(default: "The same" and "As different as can be")', " ".join(self.ok("help", "task").stdout.split()))
+        self.assertIn("equally often (default: random values", " ".join(self.ok("help", "start").stdout.split()))
         for key, name in (("max_drive_s", "max_drive_s"), ("window_s", "window_s"), ("power_dbfs", "power_dbfs")):
             self.assertIn(f"  [limits]:         {name}\n", self.ok("help", key).stdout)
 
