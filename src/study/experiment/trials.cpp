@@ -160,22 +160,6 @@ stroke find_target(const motion_definition& motion, const method_definition& met
 
 } // namespace
 
-std::vector<std::size_t> planned_trial::list_methods() const
-{
-    std::vector<std::size_t> all{method_1};
-    for (const auto& more : {method_2, method_3})
-        if (more)
-            all.push_back(*more);
-    return all;
-}
-
-std::optional<unsigned> find_odd(const planned_trial& t)
-{
-    if (!t.method_3)
-        return {};
-    return t.method_1 == *t.method_2 ? 3U : t.method_1 == *t.method_3 ? 2U : 1U;
-}
-
 std::uint64_t default_seed(std::string_view code)
 {
     const detail::sha256_digest d = detail::sha256(code);

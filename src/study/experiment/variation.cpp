@@ -161,6 +161,22 @@ void vary_strokes(std::vector<stroke>& all, const method_definition& m)
     }
 }
 
+std::vector<std::size_t> planned_trial::list_methods() const
+{
+    std::vector<std::size_t> all{method_1};
+    for (const auto& more : {method_2, method_3})
+        if (more)
+            all.push_back(*more);
+    return all;
+}
+
+std::optional<unsigned> find_odd(const planned_trial& t)
+{
+    if (!t.method_3)
+        return {};
+    return t.method_1 == *t.method_2 ? 3U : t.method_1 == *t.method_3 ? 2U : 1U;
+}
+
 void set_value(planned_trial& t, const run_definition& r, std::size_t place)
 {
     const auto set = [&](std::size_t& played) {
