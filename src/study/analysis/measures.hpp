@@ -5,9 +5,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -99,6 +102,32 @@ Values measure_people(Values v, const condition_trials& c, const run_people& peo
         const std::optional<double> its = k == 0 ? against : std::nullopt;
         v.figures.push_back({names[k].name.front(), test_mean(there, its.value_or(0.0)), its});
     }
+    return v;
+}
+
+/// Lists `get` of each element for which `get` returns a value.
+template <class All, class Get>
+auto list_there(const All& all, const Get& get)
+{
+    using found = std::remove_cvref_t<std::invoke_result_t<Get, decltype(*std::begin(all))>>;
+    std::vector<typename found::value_type> there;
+    for (const auto& one : all)
+        if (auto value = get(one))
+            there.push_back(*std::move(value));
+    return there;
+}
+
+/// Measures d' of each participant as measure_people() does, and tests d' = 0 with `test(counts, seed)`
+/// instead of by its mean. `measure(trials)` returns d' with its counts.
+template <class Values, class Measure, class Figures, class Test>
+Values measure_by_ratio(Values v, const run_outline& run, const condition_trials& c, const run_people& people,
+                        const Measure& measure, const Figures& list, const Test& test)
+{
+    const auto fit = [&](const std::vector<trial>& trials, const std::string&) { return measure(trials); };
+    v = measure_people(std::move(v), c, people, 0.0, fit, list);
+    const auto counts = [](const auto& one) { return one ? std::optional(one->counts) : std::nullopt; };
+    v.ratio = test(list_there(v.people, counts), run.name + '/' + c.name);
+    v.figures.front().test = without_test(v.figures.front().test);
     return v;
 }
 

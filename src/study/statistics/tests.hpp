@@ -41,6 +41,12 @@ struct t_test {
     std::optional<interval> d_ci = {};      ///< from the noncentral t distribution
 };
 
+/// Returns the mean with n, standard error and interval, without the test.
+inline t_test without_test(const t_test& t) noexcept
+{
+    return {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
+}
+
 /// Largest rounding error in a sum that should be 0, relative to the largest number in it.
 inline constexpr double few_digits = 1e-12;
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -212,18 +213,7 @@ public:
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const auto measure = [&](const condition_trials& c) {
-            const auto count = [](const std::vector<trial>& trials, const std::string&) {
-                return measure_oddity(trials);
-            };
-            auto d = measure_people(oddities{}, c, people, 0.0, count, list_oddity);
-            std::vector<right_count> answers;
-            for (const std::optional<odd_answers>& one : d.people)
-                if (one)
-                    answers.push_back(one->counts);
-            d.ratio = test_oddity(answers, fmt::format("{}/{}", o.name, c.name));
-            t_test& t = d.figures.front().test;
-            t = {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
-            return d;
+            return measure_by_ratio(oddities{}, o, c, people, measure_oddity, list_oddity, test_oddity);
         };
         return analyse_conditions(o, people, list_timed_methods(o), 0.0, "dprime", "Sensitivity", measure,
                                   o.values);
@@ -249,11 +239,7 @@ public:
     compared test(const run_outline&, std::span<const compared_person> people,
                   std::string_view seed) const override
     {
-        std::vector<right_count> counts;
-        for (const compared_person& p : people)
-            if (p.right)
-                counts.push_back(*p.right);
-        const auto difference = test_oddity(counts, seed);
+        const auto difference = test_oddity(list_there(people, std::mem_fn(&compared_person::right)), seed);
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 

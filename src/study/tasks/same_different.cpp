@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -98,18 +99,10 @@ public:
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const auto measure = [&](const condition_trials& c) {
-            const auto fit = [](const std::vector<trial>& trials, const std::string&) {
+            const auto detect = [](const std::vector<trial>& trials) {
                 return measure_detection(trials, same_different);
             };
-            auto d = measure_people(sensitivities{}, c, people, 0.0, fit, list_sensitivity);
-            std::vector<difference_counts> answers;
-            for (const std::optional<detection>& one : d.people)
-                if (one)
-                    answers.push_back(one->counts);
-            d.ratio = test_difference(answers, fmt::format("{}/{}", o.name, c.name));
-            t_test& t = d.figures.front().test;
-            t = {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
-            return d;
+            return measure_by_ratio(sensitivities{}, o, c, people, detect, list_sensitivity, test_difference);
         };
         return analyse_conditions(o, people, {}, 0.0, "dprime", "Sensitivity", measure);
     }
@@ -130,11 +123,8 @@ public:
     compared test(const run_outline&, std::span<const compared_person> people,
                   std::string_view seed) const override
     {
-        std::vector<difference_counts> counts;
-        for (const compared_person& p : people)
-            if (p.counts)
-                counts.push_back(*p.counts);
-        const auto difference = test_difference(counts, seed);
+        const auto difference =
+            test_difference(list_there(people, std::mem_fn(&compared_person::counts)), seed);
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 
