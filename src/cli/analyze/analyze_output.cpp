@@ -274,9 +274,9 @@ public:
             fmt::print("{}", wrapped(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
         if (v.groups && has_table(*v.groups)) {
             fmt::print("    with the group as a factor between participants:\n");
-            const std::size_t wide = widest(v.group_names);
-            for (std::size_t i = 0; i < v.group_names.size(); ++i)
-                say(stdout, "    {:<{}} {}\n", v.group_names[i], wide, mean_text(v.group_means[i], decimals));
+            const std::size_t wide = widest(list_groups(v));
+            for (const study::level_means& m : v.by_group)
+                say(stdout, "    {:<{}} {}\n", m.group, wide, mean_text(m.overall, decimals));
             (*this)(*v.groups);
         }
     }

@@ -79,44 +79,28 @@ void join_all_angles(std::vector<std::vector<double>>& rows)
             value = *next++;
 }
 
-// Adds the mean of each group, in the order of their participants.
-void add_group_means(figure_comparison& c, const level_values& v)
-{
-    for (const std::string& group : v.groups)
-        if (std::ranges::count(c.group_names, group) == 0)
-            c.group_names.push_back(group);
-    for (const std::string& group : c.group_names) {
-        std::vector<double> own;
-        for (std::size_t i = 0; i < v.rows.size(); ++i)
-            if (v.groups[i] == group)
-                own.push_back(mean(v.rows[i]));
-        const t_test t = test_mean(own, 0.0);
-        c.group_means.push_back({.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci});
-    }
-}
-
 // Returns the means of a group, or of all participants if `group` is empty.
 level_means average_levels(const level_values& v, std::size_t levels, const std::string& group)
 {
     level_means m{group};
     m.values.resize(levels);
     std::vector<std::vector<double>> rows;
+    std::vector<double> overall;
     for (std::size_t i = 0; i < v.rows.size(); ++i) {
         if (!group.empty() && v.groups[i] != group)
             continue;
         rows.push_back(v.rows[i]);
+        overall.push_back(mean(v.rows[i]));
         for (std::size_t k = 0; k < levels; ++k)
             m.values[k].push_back(v.rows[i][k]);
     }
     const auto within = within_intervals(rows);
     for (std::size_t k = 0; k < levels; ++k) {
-        const t_test t = test_mean(m.values[k], 0.0);
-        m.means.push_back({.n = t.n,
-                           .mean = t.mean,
-                           .se = t.se,
-                           .ci = t.ci,
-                           .ci_within = rows.empty() ? std::nullopt : within[k]});
+        m.means.push_back(without_test(test_mean(m.values[k], 0.0)));
+        if (!rows.empty())
+            m.means.back().ci_within = within[k];
     }
+    m.overall = without_test(test_mean(overall, 0.0));
     return m;
 }
 
@@ -133,7 +117,6 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
         c.anova = repeated_measures({v.rows, levels.size(), 1}).first;
     if (groups) {
         c.groups = compare_with_groups(factor, levels.size(), v);
-        add_group_means(c, v);
         for (const std::string& g : std::set(v.groups.begin(), v.groups.end()))
             c.by_group.push_back(average_levels(v, levels.size(), g));
     }

@@ -225,6 +225,14 @@ cell_means outline_cells(bool tested)
     return {.against = tested ? std::optional(0.0) : std::nullopt, .means = {{"all"}}};
 }
 
+std::vector<std::string> list_groups(const figure_comparison& c)
+{
+    std::vector<std::string> names;
+    for (const level_means& m : c.by_group)
+        names.push_back(m.group);
+    return names;
+}
+
 effect_list outline_effects(const std::vector<std::string>& names)
 {
     effect_list all;

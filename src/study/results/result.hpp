@@ -95,6 +95,7 @@ struct paired_list {
 /// Means of a figure by level, of all participants or of a group.
 struct level_means {
     std::string group = {};                       ///< empty: all
+    t_test overall = {};                          ///< of each participant's mean over the levels, not tested
     std::vector<t_test> means = {};               ///< by level, not tested
     std::vector<std::vector<double>> values = {}; ///< by level, of each participant
 };
@@ -110,9 +111,10 @@ struct figure_comparison {
     std::optional<effect> anova = {};          ///< with three levels or more
     /// Effects of the groups, the factor and both; missing if groups are not compared.
     std::optional<effect_list> groups = {};
-    std::vector<std::string> group_names = {};
-    std::vector<t_test> group_means = {}; ///< of each participant's mean over the levels, not tested
 };
+
+/// Returns the names of the compared groups, in alphabetical order.
+std::vector<std::string> list_groups(const figure_comparison& c);
 
 /// Worths from the trials of all participants.
 struct worth_list {

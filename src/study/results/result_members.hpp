@@ -204,9 +204,10 @@ void row_member(Io& io, const char* name, const figure_comparison& v)
         inner.object_or_null("group_anova", v.groups,
                              {"effects of groups, levels and both; null if groups are not compared"},
                              [&v](auto& one, const effect_list&) { effects_members(one, *v.groups); });
-        inner.named_objects("group_means", v.group_names, v.group_means,
+        inner.named_objects("group_means", list_groups(v), v.by_group,
                             {"means over the levels, by group; empty if groups are not compared"},
-                            [](auto& one, const t_test& t) {
+                            [](auto& one, const level_means& m) {
+                                const t_test& t = m.overall;
                                 one("n", t.n, {"participants of the group with the figure"});
                                 one.or_null("mean", t.mean, {"mean over participants"});
                                 one.or_null("se", t.se, {"standard error", detail::from_0});
