@@ -189,7 +189,7 @@ detail::owned_fd lock_folder(const fs::path& folder)
     return fd;
 }
 
-lock_file::lock_file(fs::path file, const error& taken) : file_(std::move(file))
+held_file::held_file(fs::path file, const error& taken) : file_(std::move(file))
 {
     struct stat now {};
     // After 0, the process that had the file has removed it. A file that is open to be written would keep the
@@ -198,14 +198,14 @@ lock_file::lock_file(fs::path file, const error& taken) : file_(std::move(file))
         fd_ = detail::owned_fd(::open(file_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
         if (!fd_)
             refuse_place(file_, errno);
-        if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
+        if (!detail::lock_file(fd_, 0))
             throw taken;
         if (::fstat(fd_.get(), &now) != 0)
             refuse_place(file_, errno);
     }
 }
 
-lock_file::~lock_file()
+held_file::~held_file()
 {
     ::unlink(file_.c_str());
 }

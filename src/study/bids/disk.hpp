@@ -56,14 +56,14 @@ void remove_leftovers(const std::filesystem::path& folder) noexcept;
 detail::owned_fd lock_folder(const std::filesystem::path& folder);
 
 /// A file that only one process has at a time. The destructor removes it.
-class lock_file {
+class held_file {
 public:
     /// Does not wait. \throws error: bad_input with `taken` if another process has the file, else as
     ///         try_to_write().
-    lock_file(std::filesystem::path file, const error& taken);
-    ~lock_file();
-    lock_file(const lock_file&) = delete;
-    lock_file& operator=(const lock_file&) = delete;
+    held_file(std::filesystem::path file, const error& taken);
+    ~held_file();
+    held_file(const held_file&) = delete;
+    held_file& operator=(const held_file&) = delete;
 
 private:
     std::filesystem::path file_;

@@ -102,7 +102,7 @@ private:
     const experiment_definition& definition_;
     std::string code_;
     bool simulated_;
-    std::optional<lock_file> own_ = {}; ///< keeps out another session of the participant
+    std::optional<held_file> own_ = {}; ///< keeps out another session of the participant
 };
 
 /// Returns dataset_description.json, which says so if the study is simulated.
