@@ -4,6 +4,7 @@
 //   build-tests/tests/study/test-study -tc="*hold the truth*"
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "rounds.hpp"
+#include "study/analysis/measures.hpp"
 #include "study/random/random.hpp"
 #include "study/results/result.hpp"
 #include "study/statistics/psychometric_fit.hpp"
@@ -36,6 +38,11 @@ std::vector<double> steps(double from, double step, int count)
     for (int i = 0; i < count; ++i)
         all.push_back(from + i * step);
     return all;
+}
+
+double phi(double z)
+{
+    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
 void check(const psychometric_fit& fit, double threshold, double slope, double deviance)
@@ -263,6 +270,97 @@ TEST_CASE("sensitivities")
           doctest::Approx(1.118728530988).epsilon(1e-11)); // R's lm
     CHECK(!stevens_exponent(values, std::vector<double>{2, 3, 0, 10, 20}));
     CHECK(!stevens_exponent(std::vector<double>{3, 3}, std::vector<double>{1, 2}));
+}
+
+TEST_CASE("two answers of equal standing have lapses at both ends")
+{
+    const psychometric_family f = two_answers(sigmoid::normal);
+    std::vector<answer_block> blocks;
+    for (const double x : {-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0}) {
+        const double share = 0.08 / 2.0 + (1.0 - 0.08) * phi((x - 0.4) / 1.7);
+        CHECK(chance(x, {0.4, 1.7, 0.08}, f) == doctest::Approx(share).epsilon(1e-12));
+        blocks.push_back({x, 100000000, static_cast<std::size_t>(std::lround(share * 1e8))});
+    }
+    const auto fit = *fit_psychometric(blocks, f);
+    CHECK(fit.parameters.threshold == doctest::Approx(0.4).epsilon(1e-5));
+    CHECK(fit.parameters.slope == doctest::Approx(1.7).epsilon(1e-5));
+    CHECK(fit.parameters.lapse == doctest::Approx(0.08).epsilon(1e-4));
+    CHECK(fit.deviance < 1e-3);
+
+    std::vector<trial> trials;
+    for (const answer_block& b : blocks)
+        for (std::size_t i = 0; i < 1000; ++i)
+            trials.push_back({.value = b.x, .positive = i < (b.k + 50000) / 100000});
+    const fitted_function m = fit_comparisons(trials, sigmoid::normal, "");
+    CHECK(*m.pse == doctest::Approx(0.4).epsilon(0.01));
+    CHECK(*m.jnd == doctest::Approx(0.6744897501960817 * 1.7).epsilon(0.01));
+}
+
+TEST_CASE("the interval of a jnd is that of the slope in the unit of the jnd")
+{
+    const std::vector<std::size_t> answers{1, 2, 4, 10, 16, 18, 19}; // of 20 to the values -3 to 3
+    std::vector<trial> trials;
+    for (std::size_t k = 0; k < answers.size(); ++k)
+        for (std::size_t i = 0; i < 20; ++i)
+            trials.push_back({.value = static_cast<double>(k) - 3.0, .positive = i < answers[k]});
+    // The distance from a half to three quarters, of the normal and of the logistic function.
+    for (const auto& [kind, quartile] :
+         {std::pair(sigmoid::normal, 0.6744897501960817), {sigmoid::logistic, 1.0986122886681098}}) {
+        const fitted_function m = fit_comparisons(trials, kind, "jnd");
+        REQUIRE(m.jnd_ci);
+        CHECK(m.jnd_ci->first < *m.jnd);
+        CHECK(m.jnd_ci->second > *m.jnd);
+        CHECK(m.jnd_ci->first == doctest::Approx(quartile * m.bootstrap.slope->first).epsilon(1e-12));
+        CHECK(m.jnd_ci->second == doctest::Approx(quartile * m.bootstrap.slope->second).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("the likelihood ratio of same-different answers is that of the counts")
+{
+    // G of a table of two rows: 2 sum of observed ln (observed / expected).
+    const difference_counts one{30, 40, 18, 40};
+    const double expected = 2.0 * (30 * std::log(30 / 24.0) + 10 * std::log(10 / 16.0) +
+                                   18 * std::log(18 / 24.0) + 22 * std::log(22 / 16.0));
+    const auto found = *test_difference(std::vector{one}, "a");
+    CHECK(found.likelihood_ratio == doctest::Approx(expected).epsilon(1e-12));
+    // Fisher's exact p of 30 hits or more among 48 answers: 0.00582 (by hand, from binomial coefficients).
+    double tail = 0.0;
+    double all = 0.0;
+    for (int hits = 8; hits <= 40; ++hits) {
+        const double chance = std::exp(-std::lgamma(hits + 1) - std::lgamma(41 - hits) -
+                                       std::lgamma(49 - hits) - std::lgamma(hits - 7));
+        all += chance;
+        tail += hits >= 30 ? chance : 0.0;
+    }
+    CHECK(std::abs(found.p - tail / all) < 4.0 * std::sqrt(tail / all / 2000.0) + 1.0 / 2001.0);
+    CHECK(found.studies == 2000);
+    CHECK(found.p == test_difference(std::vector{one}, "a")->p);
+    CHECK(found.p != test_difference(std::vector{one}, "b")->p);
+    // Fewer hits than false alarms say nothing against d' = 0.
+    CHECK(test_difference(std::vector<difference_counts>{{10, 40, 18, 40}}, "a")->likelihood_ratio == 0.0);
+    CHECK(test_difference(std::vector<difference_counts>{{10, 40, 18, 40}}, "a")->p == 1.0);
+    for (const difference_counts& edge : {difference_counts{0, 40, 0, 40}, {40, 40, 40, 40}, {5, 5, 0, 30}}) {
+        const auto t = *test_difference(std::vector{edge}, "a");
+        CHECK(t.p == doctest::Approx(edge.different == 5 ? 1.0 / 2001.0 : 1.0).epsilon(0.01));
+    }
+    CHECK(!test_difference({}, "a"));
+}
+
+TEST_CASE("the likelihood ratio of answers to three stimuli is that of the counts")
+{
+    const auto found = *test_oddity(std::vector<right_count>{{20, 36}, {10, 36}}, "a");
+    // G of 20 right and 16 wrong answers where 12 and 24 are expected. 10 of 36 say nothing against d' = 0.
+    CHECK(found.likelihood_ratio ==
+          doctest::Approx(2.0 * (20 * std::log(20 / 12.0) + 16 * std::log(16 / 24.0))).epsilon(1e-12));
+    // Exact p of one participant: 20 right answers or more of 36, binomial.
+    double tail = 0.0;
+    for (int k = 20; k <= 36; ++k)
+        tail += std::exp(std::lgamma(37) - std::lgamma(k + 1) - std::lgamma(37 - k) - 36 * std::log(3.0) +
+                         (36 - k) * std::log(2.0));
+    const double p = test_oddity(std::vector<right_count>{{20, 36}}, "a")->p;
+    CHECK(std::abs(p - tail) < 4.0 * std::sqrt(tail / 2000.0) + 1.0 / 2001.0);
+    CHECK(test_oddity(std::vector<right_count>{{10, 36}}, "a")->p == 1.0);
+    CHECK(!test_oddity({}, "a"));
 }
 
 } // namespace
