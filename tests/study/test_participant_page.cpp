@@ -61,6 +61,17 @@ TEST_CASE("a new page gets the facts and the present state")
           json{{"screen", "rest"}, {"ask", 0}, {"lasts_s", 60.0}, {"passed_s", 3.0}});
 }
 
+TEST_CASE("a page is told if a run may have fewer trials")
+{
+    page_dialogue d(json::object());
+    static_cast<void>(d.hear(1, hello, 0));
+    page_screen s = question();
+    s.where = {.run = 1, .runs = 2, .trial = 3, .trials = 60};
+    CHECK_FALSE(only(d.show(s, 0), 1)["progress"].contains("at_most"));
+    s.where->may_end_early = true;
+    CHECK(only(d.show(s, 0), 1)["progress"]["at_most"] == true);
+}
+
 TEST_CASE("a page gets pictures of motions, and which stimulus plays")
 {
     page_dialogue d(json::object());

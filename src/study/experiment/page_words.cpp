@@ -28,6 +28,7 @@ constexpr std::array english{
     page_word{"begin", "Begin"},
     page_word{"practice", "Practice"},
     page_word{"part", "Part"},
+    page_word{"at_most", "at most"},
     page_word{"target", "Watch how it moves."},
     page_word{"stimulus", "Attend to your hand."},
     page_word{"rest", "A break"},

@@ -124,12 +124,15 @@ std::string page_dialogue::state(std::int64_t now_ns) const
                       {"most", most_drawn_points}};
     if (screen_.back)
         j["back"] = true;
-    if (screen_.where)
+    if (screen_.where) {
         j["progress"] = {{"run", screen_.where->run},
                          {"runs", screen_.where->runs},
                          {"practice", screen_.where->practice},
                          {"trial", screen_.where->trial},
                          {"trials", screen_.where->trials}};
+        if (screen_.where->may_end_early)
+            j["progress"]["at_most"] = true;
+    }
     for (const auto& motion : screen_.pictures)
         j["pictures"].push_back(paths_list(motion));
     if (screen_.stimuli > 0) {

@@ -47,6 +47,7 @@ struct page_progress {
     bool practice = false;
     unsigned trial = 0; ///< number of the trial, from 1; 0 before the first
     std::size_t trials = 0;
+    bool may_end_early = false; ///< true if it may have fewer trials
 };
 
 /// Content of the participant's screen. It does not reveal the method that renders a motion.

@@ -462,8 +462,9 @@ void person_session::trial(const session_step& s)
     const planned_trial planned = held_->find_trial(s);
     planned_trial t = planned;
     const page_words& w = p_.definition.page;
-    session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
-                              s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
+    const page_progress where = find_progress(p_, s);
+    session::show(fmt::format("\n{} {}/{}{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
+                              where.may_end_early ? w["at_most"] + " " : "", where.trials,
                               s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
     given_stimulus g = give(s, t, false);
     question q;

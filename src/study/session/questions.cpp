@@ -130,8 +130,12 @@ trial_answers find_answers(const experiment_definition& d, const run_definition&
 page_progress find_progress(const prepared_experiment& p, const session_step& s)
 {
     const run_sequence& run = p.runs[s.run];
-    return {s.run + 1, p.runs.size(), s.practice, s.what == step_kind::trial ? s.which.trial : 0,
-            s.practice ? run.practice.size() : run.trials.size()};
+    return {s.run + 1,
+            p.runs.size(),
+            s.practice,
+            s.what == step_kind::trial ? s.which.trial : 0,
+            s.practice ? run.practice.size() : run.trials.size(),
+            !s.practice && p.run_at(s.run).outline.adaptive.may_end_early()};
 }
 
 std::optional<point> find_place(const stroke& s, const stroke_span& when, const layout& faces, double t_s)

@@ -65,7 +65,7 @@ function show_progress(p, part_is_over) {
   show_only_if(bar, p);
   if (p?.runs > 1 || p && !p.trial) parts.push(`${words.part} ${p.run} / ${p.runs}`);
   if (p?.practice) parts.push(words.practice);
-  if (p?.trial) parts.push(`${p.trial} / ${p.trials}`);
+  if (p?.trial) parts.push(`${p.trial} / ${p.at_most ? words.at_most + " " : ""}${p.trials}`);
   by_id("where").textContent = parts.join(" · ");
   if (!p) return;
   const done = part_is_over ? p.trials : Math.max(0, p.trial - 1);
