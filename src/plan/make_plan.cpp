@@ -253,7 +253,7 @@ double burst_duration_s(const timing_profile& p, double soa_s)
             "soa_s",
             fmt::format("{} s is out of range: the SOA must be above {} s and at most {} s", soa_s,
                         p.intercept_s, p.max_soa_s),
-            fmt::format("use {}", p.max_soa_s));
+            fmt::format("use {}, or set {{burst_s}} for others", p.max_soa_s));
     return detail::law_duration_s(p, soa_s);
 }
 

@@ -438,7 +438,7 @@ class Tasks(ExperimentTest):
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.2], standard=0.07, **soa), "values", "soa_s = 0.2 of motion"),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.06], standard=0.2, **soa), "standard", "soa_s = 0.2 of motion"),
                 (toml("method", "a", burst=0.1) + toml("run", "r", task="constant", values=[0.05, 0.12], standard=0.12, **soa), "values",
-                 'soa_s = 0.05 of motion "across" with method "a": burst_s: 0.1 s is longer than the SOA of 0.05 s'),
+                 'soa_s = 0.05 of motion "across" with method "a": burst (line 11): 0.1 s is longer than the SOA of 0.05 s'),
                 (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" with method "a": soa: 0.01 s is out of range'),
                 (toml("method", "a", soa_s=0.01) + plain, "soa_s", 'motion "across" with method "a": soa_s: 0.01 s is out of range')):
             self.write("tasks.toml", head + text)

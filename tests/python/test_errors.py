@@ -20,7 +20,7 @@ def test_they_have_families():
 
 def test_they_have_parts(palm, stroke):
     e = refused(lambda: tactor.plan(palm, stroke, soa=0.5), tactor.Error)
-    assert (e.what, e.hint) == ("soa", "use 0.07") and e.why.startswith("0.5 s is out of range")
+    assert (e.what, e.hint) == ("soa", "use 0.07, or set burst for others") and e.why.startswith("0.5 s is out of range")
     assert str(e) == f"{e.what}: {e.why} ({e.hint})"
     assert (e.file, e.line, e.column) == (None, None, None)
     assert (e.field, e.errno) == ("soa", 0)

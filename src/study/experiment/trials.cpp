@@ -452,6 +452,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         if (e.kind() != error_kind::bad_input)
             throw;
         const options::option* const option = options::find(e.field());
+        const auto key = option != nullptr ? method.keys.find(options::index(*option)) : method.keys.end();
         const std::string hint = spell_for_definition(e.hint(), method.has_level());
         if (method.value) {
             try { // fails in the same words if the value is not the cause
@@ -460,21 +461,23 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
                 if (without_value.why().ends_with(e.why()))
                     throw;
             }
+            const std::string cause =
+                key == method.keys.end() || option == options::find(vary)
+                    ? detail::plain(e.subject())
+                    : fmt::format("{} (line {})", key->second.key, key->second.where.line);
             throw error(e.kind(), method.where,
                         fmt::format("{} = {} of motion \"{}\" with method \"{}\": {}: {}", vary,
-                                    *method.value, motion.name, d.methods[*method.made_of].name,
-                                    detail::plain(e.subject()), e.why()),
+                                    *method.value, motion.name, d.methods[*method.made_of].name, cause,
+                                    e.why()),
                         hint);
         }
         const std::string of = fmt::format("motion \"{}\" with method \"{}\"", motion.name, method.name);
-        if (option != nullptr)
-            if (const auto at = method.keys.find(options::index(*option)); at != method.keys.end())
-                throw error(
-                    e.kind(), at->second.where,
-                    fmt::format("{}: {}: {}", of,
-                                e.subject() == e.field() ? at->second.key : detail::plain(e.subject()),
-                                e.why()),
-                    hint);
+        if (key != method.keys.end())
+            throw error(e.kind(), key->second.where,
+                        fmt::format("{}: {}: {}", of,
+                                    e.subject() == e.field() ? key->second.key : detail::plain(e.subject()),
+                                    e.why()),
+                        hint);
         throw error(
             e.kind(), motion.where,
             fmt::format("{} (line {}): {}: {}", of, method.where.line, detail::plain(e.subject()), e.why()),

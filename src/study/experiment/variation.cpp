@@ -12,6 +12,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/marks.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
@@ -110,8 +111,12 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
                 options::give(m.options, *option, options::read_value(*option, value));
                 options::resolve(m.options);
             } catch (const error& e) {
-                t.fail(key, fmt::format("{} = {} of method \"{}\": {}", o.vary, value, base.name, e.why()),
-                       spell_for_definition(e.hint()));
+                const std::string cause =
+                    options::find(e.field()) == option ? "" : detail::plain(e.subject()) + ": ";
+                t.fail(
+                    key,
+                    fmt::format("{} = {} of method \"{}\": {}{}", o.vary, value, base.name, cause, e.why()),
+                    spell_for_definition(e.hint()));
             }
         } else {
             m.vary = o.vary;
