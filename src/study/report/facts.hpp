@@ -3,7 +3,6 @@
 /// Parts of the report's facts that several files use. stimuli.cpp defines the parts about stimuli.
 #pragma once
 
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +40,8 @@ nlohmann::ordered_json list_methods(const study_facts& f);
 /// a few values, its plans share one row of ranges.
 nlohmann::ordered_json list_stimuli(const study_facts& f);
 
-/// Lists the notes on motions and the warnings of the planner.
-std::set<std::string> list_notes(const study_facts& f);
+/// Lists the notes on motions and the warnings of the planner. Those of a stimulus that differ only in
+/// numbers, such as those of several values, are one.
+std::vector<std::string> list_notes(const study_facts& f);
 
 } // namespace tactor::study

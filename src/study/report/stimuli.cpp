@@ -215,22 +215,34 @@ nlohmann::ordered_json list_stimuli(const study_facts& f)
     return all;
 }
 
-std::set<std::string> list_notes(const study_facts& f)
+std::vector<std::string> list_notes(const study_facts& f)
 {
-    std::set<std::string> notes;
+    std::map<std::pair<std::string, std::string>, std::set<std::string>>
+        notes; // by stimulus, without numbers
+    const auto add = [&notes](const std::string& about, const std::string& note) {
+        std::string kind = note;
+        std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+        notes[{about, kind}].insert(note);
+    };
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
             for (const json_value& plan : p.plans()) {
+                const std::string of = fmt::format("{} with {}", p.motion, p.method);
                 if (const std::string note = plan["stroke"]["note"].words(); !note.empty())
-                    notes.insert(fmt::format("{}: {}", p.motion, note));
+                    add(p.motion, note);
                 if (const auto db = plan["weakened_db"].number(); db && *db < 0.0)
-                    notes.insert(fmt::format(
-                        "{} with {}: {:.2f} dB weaker than the level, so that no tactor exceeds it", p.motion,
-                        p.method, -*db));
+                    add(of,
+                        fmt::format("{:.2f} dB weaker than the level, so that no tactor exceeds it", -*db));
                 for (const json_value& w : plan["warnings"].list())
-                    notes.insert(fmt::format("{} with {}: {}", p.motion, p.method, w.need_text()));
+                    add(of, w.need_text());
             }
-    return notes;
+    std::vector<std::string> all;
+    for (const auto& [key, texts] : notes) {
+        const std::size_t more = texts.size() - 1;
+        all.push_back(fmt::format("{}: {}{}", key.first, *texts.begin(),
+                                  more == 0 ? "" : fmt::format(" (and {} more, with other numbers)", more)));
+    }
+    return all;
 }
 
 } // namespace tactor::study
