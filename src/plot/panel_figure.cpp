@@ -283,14 +283,21 @@ std::pair<scale, scale> make_scales(const curve_panel& p, box inside)
             {y - half_height, y + half_height, inside.y, inside.bottom()}};
 }
 
-void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across, box where)
+// Draws the names of the curves in rows up to `width`. Returns their height, also without a canvas.
+double draw_curve_names(canvas* c, const curve_panel& p, double x, double y, double width)
 {
     std::vector<series> named;
     for (const curve& one : p.curves)
         if (!one.name.empty())
             named.push_back({clean(one.name), {}, {.stroke = stroke_colour(one.colour), .width = 1.6}});
-    const double legend = draw_line_legend(nullptr, named, 0.0, 0.0, where.width - 30.0);
-    const double top = 14.0 + legend;
+    return draw_line_legend(c, named, x, y, width);
+}
+
+// `names_height`: space for the names of the curves, the same in all panels, so that scales are equal.
+void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across, double names_height,
+                      box where)
+{
+    const double top = 14.0 + names_height;
     const box inside{where.x + 28.0, where.y + top, where.width - 30.0,
                      where.height - top - axis_height - 2.0};
     const auto [x, y] = make_scales(p, inside);
@@ -304,7 +311,7 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
     c.text({where.right(), where.y + cap_height(title_text)}, p.key,
            {.size = small_text, .anchor = align::end, .ink = dark_grey}, {.kind = "key"});
     draw_panel_title(c, p.title, {where.x, where.y, where.width - key - 6.0, where.height});
-    draw_line_legend(&c, named, inside.x, where.y + 11.0, inside.width);
+    draw_curve_names(&c, p, inside.x, where.y + 11.0, inside.width);
     draw_vertical_axis(c, y, p.y.logs ? log_ticks(y.from, y.to, 7) : nice_ticks(y.from, y.to, 7), inside,
                        shorten(clean(p.y.title), label_text, inside.height),
                        inside.x - 24.0 + cap_height(label_text));
@@ -399,6 +406,9 @@ canvas draw_panels(const panel_figure& f)
     double height = panel_height; // more if a legend has several rows
     for (const bar_panel& p : f.bars)
         height = std::max(height, panel_height + draw_legend(nullptr, p, 0.0, 0.0, width - sides_width));
+    double names_height = 0.0;
+    for (const curve_panel& p : f.curves)
+        names_height = std::max(names_height, draw_curve_names(nullptr, p, 0.0, 0.0, width - 30.0));
     std::size_t count = 0;
     const auto draw_each = [&](const auto& panels, const auto& draw) {
         for (const auto& p : panels) {
@@ -410,7 +420,9 @@ canvas draw_panels(const panel_figure& f)
         }
     };
     draw_each(f.bars, draw_bar_panel);
-    draw_each(f.curves, draw_curve_panel);
+    draw_each(f.curves, [&](canvas& on, const curve_panel& p, const std::string& text, box where) {
+        draw_curve_panel(on, p, text, names_height, where);
+    });
     draw_each(f.matrices, draw_matrix_panel);
     y += count > 0 ? height + 8.0 : 0.0;
     y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 6, "note");

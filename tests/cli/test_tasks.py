@@ -179,6 +179,36 @@ class EveryTask(ExperimentTest):
         texts = [box(e) for e in legend + [e for e in panel.iter() if e.get("class") == "group"]]
         self.assertFalse([(a, b) for i, a in enumerate(texts) for b in texts[:i] if overlap(a, b)])
 
+    def test_methods_at_one_place_of_the_plane_share_a_point(self):
+        self.write("desk.toml", DESK)
+        self.write("t.toml", define("dissimilar").replace("[[run]]", toml("method", "soft too", burst=0.05) + "[[run]]"))
+        self.simulate("1", definition="t.toml", folder="study", spec="seed=1,sigma=0")
+        self.ok("analyze", "study", "-o", "a.svg")
+        panel, = Svg(self.dir / "a.svg").all("curves")
+        names = [e for e in panel.iter() if e.get("class") == "name"]
+        self.assertEqual([e.text for e in names], ["park", "soft, soft too", "hard", "wide"])
+        self.assertEqual(len([e for e in panel.iter() if e.get("class") == "dot"]), 4)
+        self.assertFalse([(a.text, b.text) for i, a in enumerate(names) for b in names[:i] if overlap(box(a), box(b))])
+
+    def test_drawings_have_one_scale_and_points_where_they_start(self):
+        self.write("desk.toml", DESK)
+        self.write("t.toml", define("trace").replace("M20 0H0", "M20 0H8"))
+        for code in "12":
+            self.simulate(code, definition="t.toml", folder="study", spec=f"seed={code},sigma=2")
+        self.ok("analyze", "study", "-o", "a.svg")
+        panels = Svg(self.dir / "a.svg").all("curves")
+        self.assertEqual(len(panels), 4)
+        self.assertEqual(len({(p.get("data-x-scale"), p.get("data-y-scale")) for p in panels}), 1)
+        ticks = [[e.text for e in p.iter() if e.get("class") == "tick-label"] for p in panels]
+        self.assertTrue(ticks[0])
+        self.assertEqual([t for t in ticks if t != ticks[0]], [])
+        for p in panels:
+            dots = [e for e in p.iter() if e.get("class") == "dot"]
+            self.assertEqual(len(dots), len([e for e in p.iter() if e.get("class") in ("curve", "mean-curve")]))
+            x0, kx, y0, ky = (number(p, f"data-{k}") for k in ("x0", "x-scale", "y0", "y-scale"))
+            at = (number(dots[0], "cx") - x0) / kx, (number(dots[0], "cy") - y0) / ky  # the target comes first
+            self.assertLess(math.dist(at, (20, 0) if ":west" in p.get("data-title") else (0, 0)), 0.1, p.get("data-title"))
+
     def test_means_of_cells_are_compared_between_methods_and_sessions(self):
         self.write("desk.toml", DESK)
         text = measures("desk.toml", toml("method", "hard", burst=0.02),

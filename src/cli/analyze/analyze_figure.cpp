@@ -351,31 +351,52 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
     f.curves.insert(f.curves.end(), panels.begin(), panels.end());
 }
 
-// Draws the places or paths of each condition to scale: the target under the participants' drawings, and
-// their mean over them.
-void add_drawings(plot::panel_figure& f, const study::run_analysis& r)
+// Returns the axes of all drawings of a study, which have room for each of them.
+std::pair<plot::curve_axis, plot::curve_axis> find_drawn_axes(const study::analysis& a)
 {
-    const auto to_line = [](const std::vector<point>& points) {
-        std::vector<plot::spot> line;
+    constexpr double edge_mm = 3.0;
+    constexpr double far = std::numeric_limits<double>::infinity();
+    std::pair<plot::curve_axis, plot::curve_axis> axes{{"x (mm)", far, -far}, {"y (mm)", far, -far}};
+    const auto make_room = [&axes](const std::vector<point>& points) {
         for (const point& p : points)
-            line.push_back({p.x_mm, p.y_mm});
-        return line;
+            for (const auto& [axis, at] : {std::pair(&axes.first, p.x_mm), {&axes.second, p.y_mm}}) {
+                axis->from = std::min(axis->from, at - edge_mm);
+                axis->to = std::max(axis->to, at + edge_mm);
+            }
     };
+    for (const study::run_analysis& r : a.runs)
+        for (const study::drawn_answers* v : study::list_values<study::drawn_answers>(r.results)) {
+            if (v->target.empty())
+                continue;
+            make_room(v->target);
+            make_room(v->mean);
+            for (const study::drawn_by_person& person : v->people)
+                std::ranges::for_each(person.drawings, make_room);
+            for (const study::predicted_drawing& p : v->predicted)
+                make_room(p.points);
+        }
+    return axes;
+}
+
+// Draws the places or paths of each condition to scale: the target under the participants' drawings, and
+// their mean over them. A point marks the start of a path.
+void add_drawings(plot::panel_figure& f, const study::run_analysis& r,
+                  const std::pair<plot::curve_axis, plot::curve_axis>& axes)
+{
     for (const study::drawn_answers* v : study::list_values<study::drawn_answers>(r.results)) {
         if (v->target.empty())
             continue;
-        const bool is_place = v->kind == study::drawing_kind::place;
         plot::curve_panel p{
             fmt::format("{} ({}, n = {})", v->condition.empty() ? r.run.name : v->condition, r.run.name, r.n),
-            {"x (mm)"},
-            {"y (mm)"}};
+            axes.first, axes.second};
         p.to_scale = true;
         const auto add = [&](const std::vector<point>& points, const std::string& name, std::size_t colour) {
             constexpr double large = 6.0; // so that curves with a name stand out
-            const bool thick = !name.empty();
-            plot::curve& one = p.curves.emplace_back(plot::curve{name, colour, thick, to_line(points)});
-            if (is_place)
-                one.dots = {{one.line.front(), thick ? large : 1.0}};
+            plot::curve& one = p.curves.emplace_back(plot::curve{name, colour, !name.empty()});
+            for (const point& at : points)
+                one.line.push_back({at.x_mm, at.y_mm});
+            if (!points.empty())
+                one.dots = {{one.line.front(), one.thick ? large : 1.0}};
         };
         add(v->target, "target", 1);
         for (const study::drawn_by_person& person : v->people)
@@ -384,18 +405,6 @@ void add_drawings(plot::panel_figure& f, const study::run_analysis& r)
         for (std::size_t i = 0; i < v->predicted.size(); ++i)
             add(v->predicted[i].points, v->predicted[i].observer + " observer", 2 + i);
         add(v->mean, "mean", 0);
-        for (const auto& [axis, of] : {std::pair(&p.x, &plot::spot::x), {&p.y, &plot::spot::y}}) {
-            axis->from = std::numeric_limits<double>::infinity();
-            axis->to = -axis->from;
-            for (const plot::curve& one : p.curves)
-                for (const plot::spot& at : one.line) {
-                    axis->from = std::min(axis->from, at.*of);
-                    axis->to = std::max(axis->to, at.*of);
-                }
-            constexpr double edge_mm = 3.0;
-            axis->from -= edge_mm;
-            axis->to += edge_mm;
-        }
         f.curves.push_back(std::move(p));
     }
 }
@@ -411,10 +420,17 @@ void add_maps(plot::panel_figure& f, const study::run_analysis& r)
         p.to_scale = true;
         double farthest = 1.0;
         plot::curve& all = p.curves.emplace_back();
+        for (const auto& [x, y] : v->all.scaled.places)
+            farthest = std::max({farthest, std::abs(x), std::abs(y)});
         for (std::size_t m = 0; m < v->methods.size(); ++m) {
             const auto& [x, y] = v->all.scaled.places[m];
-            all.dots.push_back({{x, y}, 1.0, v->methods[m]});
-            farthest = std::max({farthest, std::abs(x), std::abs(y)});
+            const auto same = std::ranges::find_if(all.dots, [&](const plot::weighted_dot& d) {
+                return std::hypot(d.at.x - x, d.at.y - y) < 0.02 * farthest;
+            });
+            if (same == all.dots.end())
+                all.dots.push_back({{x, y}, 1.0, v->methods[m]});
+            else // one point for both
+                same->name += ", " + v->methods[m];
         }
         constexpr double space = 1.2; // for the names
         for (plot::curve_axis* axis : {&p.x, &p.y}) {
@@ -456,8 +472,9 @@ std::string describe_panels(const plot::panel_figure& f, const study::analysis& 
         notes.push_back(fmt::format("By method or session: {}.",
                                     all_error_bars[static_cast<std::size_t>(error_bars::within)].second));
     if (drawings)
-        notes.emplace_back(
-            "To scale: each drawing of each participant, their mean, the target, and predictions.");
+        notes.emplace_back("To scale: each drawing of each participant, their mean, the target, and "
+                           "predictions; a point marks "
+                           "a place, or the start of a path.");
     if (maps)
         notes.emplace_back("Methods in the plane: the more they differ, the farther apart they are.");
     if (!std::ranges::all_of(f.curves, &plot::curve_panel::to_scale))
@@ -483,12 +500,13 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
     f.heading = o.has_title();
     f.width_mm = o.width_mm;
     f.across = a.simulated ? "simulated" : "";
+    const auto drawn_axes = find_drawn_axes(a);
     for (const study::run_analysis& r : a.runs) {
         if (r.n == 0)
             continue;
         add_curves<study::psychometric_functions>(f, r);
         add_curves<study::exponents>(f, r);
-        add_drawings(f, r);
+        add_drawings(f, r, drawn_axes);
         add_maps(f, r);
         std::optional<plot::bar_panel> p = make_panel(r, kind);
         if (!p && r.run.vary.empty())
