@@ -385,6 +385,34 @@ class Tasks(ExperimentTest):
         self.assertIn("the group as a factor between participants:\n    group: F(1, 3)", self.ok("analyze", "study", "--format", "tables").stdout)
         self.assertIn("Analysis of variance with the group as a factor", self.ok("report", "study").stdout)
 
+    def answer(self, run, code, shares):
+        """Rewrites a table: of each cell (method_1, method_2, value) as many trials in ten as shares(cell) are positive."""
+        file = self.dir / f"study/sub-{code}/beh/sub-{code}_task-{run}_beh.tsv"
+        rows, seen = list(csv.DictReader(file.read_text().splitlines(), delimiter="\t")), {}
+        for r in rows:
+            cell = (r["method_1"], r["method_2"], r["value"] if r["value"] == "n/a" else float(r["value"]))
+            n = seen[cell] = seen.get(cell, 0) + 1
+            positive = (7 * n) % 10 < shares(cell)
+            second = positive == (r["method_1"] in ("standard", "none")) if r["method_2"] != "n/a" else positive
+            r["response"] = "2" if second else "1"
+        file.write_text("\n".join("\t".join(line) for line in [list(rows[0]), *([*r.values()] for r in rows)]) + "\n")
+
+    def test_fits_at_their_limits_and_large_jnds_are_doubted(self):
+        text = tasks("values", "felt")
+        for code in ("01", "02", "03"):
+            self.hold(text, code)
+        self.answer("values", "01", lambda cell: 2 if cell[2] < -24 else 8 if cell[2] > -24 else 5)
+        self.answer("values", "02", lambda cell: 4 if cell[2] < -30 else 6 if cell[2] > -18 else 5)
+        self.answer("values", "03", lambda cell: 0 if cell[2] < -24 else 10 if cell[2] > -24 else 5)
+        self.answer("felt", "02", lambda cell: 0)  # 1 is yes
+        said = [line.removeprefix("tactor: warning: ") for line in self.ok("analyze", "study").stderr.splitlines()]
+        expected = ["values: lapse: it is at its limit of 0.12, so the slope may be wrong: sub-01 (see whether they mixed up the keys; add training, or easier values)",
+                    "values: jnd: it is larger than the range of the values: sub-02 (test values that are farther apart)",
+                    "felt: guess: it is at its limit of 0.9: they felt something in most trials without a stimulus: sub-02 (see whether they mixed up the keys; add training)"]
+        self.assertEqual([w for w in said if "(see " in w or "(test " in w], expected)
+        self.assertEqual([w for w in self.analysis()["warnings"] if "(see " in w or "(test " in w], expected)
+        self.assertIn("- Warning: " + expected[1].replace("_", "\\_"), self.ok("report", "study").stdout)
+
     def test_a_catch_trial_is_of_no_method(self):
         self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))
         notes, rows = self.trials()

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -109,8 +110,9 @@ void add_results(analysis& a, const dataset& d, const std::string& group, sigmoi
         if (!group.empty())
             r.run.name = name_result(r.whole, group);
         warn_of_people(a, r, d, i);
-        for (std::string& why : explain_missing(r))
-            a.no_figures.push_back(std::move(why));
+        explained_figures weak = explain_figures(r);
+        std::ranges::move(weak.missing, std::back_inserter(a.no_figures));
+        std::ranges::move(weak.doubtful, std::back_inserter(a.warnings));
     }
 }
 

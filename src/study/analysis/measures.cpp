@@ -59,7 +59,6 @@ std::vector<value_estimate> normalise_estimates(const std::vector<trial>& trials
 fitted_function fit_answers(const std::vector<trial>& trials, psychometric_family family,
                             std::string_view seed)
 {
-    constexpr double most_guess = 0.9; // more leaves no room for a function
     fitted_function f{.guess = family.guess};
     f.blocks = make_blocks(trials);
     if (const difference_counts n = count_positive(trials); n.same > 0)

@@ -14,10 +14,10 @@
 namespace tactor::study {
 namespace {
 
-// Collector of the reasons why figures in a run's rows are missing.
-class missing_figures {
+// Collector of the reasons why figures in a run's rows are missing or doubtful.
+class weak_figures {
 public:
-    explicit missing_figures(const run_analysis& r) : run_(r)
+    explicit weak_figures(const run_analysis& r) : run_(r)
     {
         for (const bool of_pairs : {false, true}) // pairs come last
             for (const result& row : r.results)
@@ -26,22 +26,23 @@ public:
                     std::visit(*this, row.value);
     }
 
-    std::vector<std::string> finish()
+    explained_figures finish()
     {
-        for (const undetermined& u : undetermined_) {
+        for (const noted& n : noted_) {
             std::vector<std::string> whose;
-            for (const auto& [code, conditions] : u.whose)
+            for (const auto& [code, conditions] : n.whose)
                 if (!conditions.empty())
                     whose.push_back("sub-" + code +
-                                    (conditions.size() < u.conditions
+                                    (conditions.size() < n.conditions
                                          ? fmt::format(" ({})", fmt::join(conditions, ", "))
                                          : ""));
             if (!whose.empty())
-                add(u.figure, fmt::format("the answers do not determine it: {}", fmt::join(whose, ", ")));
+                add(n.figure, fmt::format("{}: {}{}", n.why, fmt::join(whose, ", "), n.hint),
+                    n.hint.empty() ? all_.missing : all_.doubtful);
         }
         if (run_.n == 1)
-            texts_.push_back(run_.run.name + ": one participant: tests need two");
-        return std::move(texts_);
+            all_.missing.push_back(run_.run.name + ": one participant: tests need two");
+        return std::move(all_);
     }
 
     template <class T>
@@ -108,25 +109,46 @@ public:
         explain_pairs(v.figure, v.levels, v.pairs);
     }
 
-    void operator()(const psychometric_functions& v) { note(v); }
-    void operator()(const sensitivities& v) { note(v); }
-    void operator()(const oddities& v) { note(v); }
-    void operator()(const exponents& v) { note(v); }
-    void operator()(const adjustments& v) { note(v); }
-    void operator()(const drawn_answers& v) { note(v); }
+    void operator()(const psychometric_functions& v)
+    {
+        note_missing(v);
+        note(v, "lapse",
+             fmt::format("it is at its limit of {}, so the slope may be wrong", v.family.most_lapse),
+             " (see whether they mixed up the keys; add training, or easier values)", [&](std::size_t i) {
+                 return v.people[i].fit && v.people[i].fit->parameters.lapse >= v.family.most_lapse;
+             });
+        note(v, "guess",
+             fmt::format("it is at its limit of {}: they felt something in most trials without a stimulus",
+                         most_guess),
+             " (see whether they mixed up the keys; add training)",
+             [&](std::size_t i) { return v.people[i].guess >= most_guess; });
+        note(v, "jnd", "it is larger than the range of the values", " (test values that are farther apart)",
+             [&](std::size_t i) {
+                 const fitted_function& f = v.people[i];
+                 return f.jnd && *f.jnd > f.blocks.back().x - f.blocks.front().x;
+             });
+    }
+    void operator()(const sensitivities& v) { note_missing(v); }
+    void operator()(const oddities& v) { note_missing(v); }
+    void operator()(const exponents& v) { note_missing(v); }
+    void operator()(const adjustments& v) { note_missing(v); }
+    void operator()(const drawn_answers& v) { note_missing(v); }
 
 private:
-    // A figure that some answers do not determine, with the conditions that lack it for each participant.
-    struct undetermined {
+    // A figure that is missing or doubtful, with the conditions in which it is for each participant.
+    struct noted {
         std::string figure;
+        std::string why;
+        std::string hint;           // empty: the figure is missing
         std::size_t conditions = 0; // number of all conditions
         std::vector<std::pair<std::string, std::vector<std::string>>> whose = {};
     };
 
-    void add(std::string_view figure, std::string_view why)
+    void add(std::string_view figure, std::string_view why, std::vector<std::string>& to)
     {
-        texts_.push_back(fmt::format("{}: {}: {}", run_.run.name, figure, why));
+        to.push_back(fmt::format("{}: {}: {}", run_.run.name, figure, why));
     }
+    void add(std::string_view figure, std::string_view why) { add(figure, why, all_.missing); }
 
     void explain(std::string_view figure, const t_test& t)
     {
@@ -149,27 +171,35 @@ private:
                     "no variance over participants, so no t test");
     }
 
-    // Notes the participants who lack a figure, so that one text covers all conditions.
-    template <class Person>
-    void note(const measured<Person>& v)
+    // Notes the participants for whom `is_weak(index)`, so that one text covers all conditions.
+    template <class Person, class IsWeak>
+    void note(const measured<Person>& v, std::string_view figure, std::string_view why, std::string_view hint,
+              const IsWeak& is_weak)
     {
-        for (std::size_t k = 0; k < v.figures.size(); ++k) {
-            auto at = std::ranges::find(undetermined_, v.figures[k].name, &undetermined::figure);
-            if (at == undetermined_.end())
-                at = undetermined_.insert(at, {v.figures[k].name});
-            ++at->conditions;
-            at->whose.resize(v.codes.size());
-            for (std::size_t i = 0; i < v.codes.size(); ++i) {
-                at->whose[i].first = v.codes[i];
-                if (!v.values[i][k])
-                    at->whose[i].second.push_back(v.condition.empty() ? "all trials" : v.condition);
-            }
+        auto at =
+            std::ranges::find_if(noted_, [&](const noted& n) { return n.figure == figure && n.why == why; });
+        if (at == noted_.end())
+            at = noted_.insert(at, {std::string(figure), std::string(why), std::string(hint)});
+        ++at->conditions;
+        at->whose.resize(v.codes.size());
+        for (std::size_t i = 0; i < v.codes.size(); ++i) {
+            at->whose[i].first = v.codes[i];
+            if (is_weak(i))
+                at->whose[i].second.push_back(v.condition.empty() ? "all trials" : v.condition);
         }
     }
 
+    template <class Person>
+    void note_missing(const measured<Person>& v)
+    {
+        for (std::size_t k = 0; k < v.figures.size(); ++k)
+            note(v, v.figures[k].name, "the answers do not determine it", "",
+                 [&](std::size_t i) { return !v.values[i][k]; });
+    }
+
     const run_analysis& run_;
-    std::vector<std::string> texts_ = {};
-    std::vector<undetermined> undetermined_ = {};
+    explained_figures all_ = {};
+    std::vector<noted> noted_ = {};
 };
 
 } // namespace
@@ -210,9 +240,9 @@ bool has_table(const result_value& v)
     return v.index() > 2; // not null, a text or a number
 }
 
-std::vector<std::string> explain_missing(const run_analysis& r)
+explained_figures explain_figures(const run_analysis& r)
 {
-    return missing_figures(r).finish();
+    return weak_figures(r).finish();
 }
 
 interval cut_to(const interval& i, const interval& possible)

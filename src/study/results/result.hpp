@@ -150,6 +150,9 @@ struct measured_figure {
     std::optional<double> against = {}; ///< if missing, not tested
 };
 
+/// Greatest guess rate of a fit: a greater one leaves no room for a function.
+inline constexpr double most_guess = 0.9;
+
 /// A participant's psychometric function.
 struct fitted_function {
     std::vector<answer_block> blocks = {}; ///< answers by value, ascending
@@ -353,8 +356,12 @@ bool has_table(const result_value& v);
 /// Describes how the tracks of a run ended, and how many trials they had. \pre There are tracks.
 std::string describe_tracks(const run_analysis& r);
 
-/// Lists the reasons why figures of a run are missing, each as "RUN: FIGURE: WHY".
-std::vector<std::string> explain_missing(const run_analysis& r);
+/// Reasons why figures of a run are missing, or may be wrong, each as "RUN: FIGURE: WHY".
+struct explained_figures {
+    std::vector<std::string> missing = {};
+    std::vector<std::string> doubtful = {}; ///< each with a hint
+};
+explained_figures explain_figures(const run_analysis& r);
 
 /// Range of a mean in per cent.
 inline constexpr interval per_cents{0.0, 100.0};
