@@ -127,7 +127,7 @@ class Adaptive(ExperimentTest):
         self.assertIn(f"{count} trials in 1 run", told.stdout)
         text = self.ok("analyze", "study", "--format", "tables")
         self.assertIn(f"2 of 2 tracks ended by stop_sd = 2; trials of a track: {min(map(len, tracks.values()))} to "
-                      f"{max(map(len, tracks.values()))}, mean {count / 2:.1f}", text.stdout)
+                      f"{max(map(len, tracks.values()))}, mean {count / 2:.4g}; posterior sd: ", " ".join(text.stdout.split()))
         self.assertNotIn("of at most", text.stderr)
         # Trials are missing only after the end of their track.
         ends = {n: max(i for i, r in enumerate(self.rows("01", "bayes")) if r["track"] == str(n)) for n in tracks}
@@ -149,6 +149,16 @@ class Adaptive(ExperimentTest):
         felt = self.tracks("felt")
         self.assertLess(self.check_quest(felt[1], False, 3.5, 2), 3.5)
         values, turned = walk([positive for _, positive in felt[2]], 3, False, (4, 2), RANGE[1])
+        ends = self.analysis()["runs"]["felt"]["tracks"]
+        self.assertEqual([(t["motion"], t["method"], t["procedure"], t["reversals"], t["sd"] is None) for t in ends],
+                         [("east", "park", "quest", None, False), ("east", "park", "1up3down", turned[-1], True)])
+        self.assertAlmostEqual(ends[0]["sd"], self.check_quest(felt[1], False, 3.5, 2), 6)
+        text = " ".join(self.ok("analyze", "study", "--format", "tables").stdout.split())
+        self.assertIn(f"park, quest: 1 of 1 track ended by stop_sd = 3.5, reversals = 5; trials of a track: {len(felt[1])} to ", text)
+        self.assertIn("park, 1up3down: 1 of 1 track ended by stop_sd = 3.5, reversals = 5; trials of a track: ", text)
+        self.assertIn("; reversals: 5 to 5, mean 5 ", text)
+        rows = [r for r in self.trials()[1] if r["run"] == "felt"]
+        self.assertEqual({n: [float(r["value"]) for r in rows if r["track"] == str(n)] for n in felt}, {n: [v for v, _ in own] for n, own in felt.items()})
         self.assertEqual((values, turned[-1], turned[-2]), ([value for value, _ in felt[2]], 5, 4))
         # Every second staircase is mirrored, and begins at the other end.
         mixed = self.tracks("mixed")

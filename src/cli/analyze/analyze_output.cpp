@@ -430,7 +430,8 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
     if (r.n == 0)
         return;
     if (!r.tracks.empty())
-        say(stdout, "{}", wrapped("  ", describe_tracks(r)));
+        for (const std::string& text : describe_tracks(r))
+            say(stdout, "{}", wrapped("  ", text));
     print_times(r.times);
     for (const study::result& row : r.results) {
         if (!has_table(row.value))

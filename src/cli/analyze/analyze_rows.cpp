@@ -46,6 +46,8 @@ constexpr trial_column trial_columns[] = {
     {"chosen"},
     {"rating"},
     {"correct"},
+    {"track", [](const auto& t, const auto&) { return t.track != 0 ? fmt::format("{}", t.track) : "n/a"; },
+     false},
     {"value", nullptr, false},
     {"signal", nullptr, false},
     {"positive", nullptr, false},

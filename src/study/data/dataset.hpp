@@ -264,9 +264,14 @@ struct trial {
 /// A track of an adaptive run in a session.
 struct played_track {
     session_number session = {};
-    unsigned track = 0;     ///< from 1
-    std::size_t trials = 0; ///< number of trials that count
-    bool ended = false;     ///< true if stop_sd or reversals ended it
+    unsigned track = 0; ///< from 1
+    std::string motion = {};
+    std::string method = {};
+    std::string procedure = {};
+    std::size_t trials = 0;                    ///< number of trials that count
+    bool ended = false;                        ///< true if stop_sd or reversals ended it
+    std::optional<std::size_t> reversals = {}; ///< of a staircase
+    std::optional<double> sd = {};             ///< QUEST+: posterior sd of the threshold
 };
 
 /// A participant's trials of one run in all sessions.

@@ -2,6 +2,7 @@
 #include "study/results/result.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -202,6 +203,13 @@ private:
     std::vector<noted> noted_ = {};
 };
 
+std::string describe_range(const std::vector<double>& values)
+{
+    const auto [least, most] = std::ranges::minmax(values);
+    return fmt::format("{} to {}, mean {}", plain_number(least, 4), plain_number(most, 4),
+                       plain_number(mean(values), 4));
+}
+
 } // namespace
 
 const result* find_main(const std::vector<result>& results) noexcept
@@ -210,19 +218,41 @@ const result* find_main(const std::vector<result>& results) noexcept
     return at != results.end() ? &*at : nullptr;
 }
 
-std::string describe_tracks(const run_analysis& r)
+std::vector<std::string> describe_tracks(const run_analysis& r)
 {
-    const auto trials = [](const person_track& t) { return t.track.trials; };
-    const auto [least, most] = std::ranges::minmax(r.tracks, {}, trials);
-    std::size_t all = 0;
-    std::size_t ended = 0;
+    std::vector<std::string> kinds{""}; // all tracks, and then those of each method and procedure
+    std::map<std::string, std::vector<const played_track*>> tracks;
     for (const person_track& t : r.tracks) {
-        all += t.track.trials;
-        ended += t.track.ended ? 1 : 0;
+        const std::string kind = fmt::format("{}, {}", t.track.method, t.track.procedure);
+        if (!tracks.contains(kind))
+            kinds.push_back(kind);
+        for (const std::string& of : {kinds.front(), kind})
+            tracks[of].push_back(&t.track);
     }
-    return fmt::format("{} of {} ended by {}; trials of a track: {} to {}, mean {:.1f}", ended,
-                       counted(r.tracks.size(), "track"), r.track_rule, trials(least), trials(most),
-                       static_cast<double>(all) / static_cast<double>(r.tracks.size()));
+    std::vector<std::string> texts;
+    for (const std::string& kind : kinds) {
+        const std::vector<const played_track*>& own = tracks.at(kind);
+        if (!kind.empty() && own.size() == r.tracks.size())
+            break;
+        std::vector<double> trials;
+        std::vector<double> reversals;
+        std::vector<double> sds;
+        for (const played_track* t : own) {
+            trials.push_back(static_cast<double>(t->trials));
+            if (t->reversals)
+                reversals.push_back(static_cast<double>(*t->reversals));
+            if (t->sd)
+                sds.push_back(*t->sd);
+        }
+        texts.push_back(fmt::format("{}{} of {} ended by {}; trials of a track: {}",
+                                    kind.empty() ? "" : kind + ": ",
+                                    std::ranges::count(own, true, &played_track::ended),
+                                    counted(own.size(), "track"), r.track_rule, describe_range(trials)));
+        for (const auto& [name, all] : {std::pair("reversals", &reversals), {"posterior sd", &sds}})
+            if (!all->empty() && (!kind.empty() || kinds.size() == 2))
+                texts.back() += fmt::format("; {}: {}", name, describe_range(*all));
+    }
+    return texts;
 }
 
 bool has_table(const result_value& v)

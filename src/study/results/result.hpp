@@ -353,8 +353,9 @@ const result* find_main(const std::vector<result>& results) noexcept;
 /// Returns true if a value has figures to show in a table.
 bool has_table(const result_value& v);
 
-/// Describes how the tracks of a run ended, and how many trials they had. \pre There are tracks.
-std::string describe_tracks(const run_analysis& r);
+/// Describes how the tracks of a run ended, and how many trials they had: all tracks, and if they differ
+/// those of each method and procedure. \pre There are tracks.
+std::vector<std::string> describe_tracks(const run_analysis& r);
 
 /// Reasons why figures of a run are missing, or may be wrong, each as "RUN: FIGURE: WHY".
 struct explained_figures {

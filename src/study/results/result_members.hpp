@@ -466,8 +466,14 @@ void members(Io& io, Track& v)
     io.or_null("session", v.track.session,
                {"number of the session; null if there is only one", detail::above_0});
     io("track", v.track.track, {"number of the track, as in the tables", detail::above_0});
+    constexpr about condition{"what it measures, and how"};
+    io("motion", v.track.motion, condition);
+    io("method", v.track.method, condition);
+    io("procedure", v.track.procedure, condition);
     io("trials", v.track.trials, {"its trials that count, with those left out by drop_rule", detail::from_0});
     io("ended", v.track.ended, {"whether track_rule ended it"});
+    io.or_null("reversals", v.track.reversals, {"reversals of a staircase", detail::from_0});
+    io.or_null("sd", v.track.sd, {"quest: posterior standard deviation of the threshold", detail::from_0});
 }
 
 template <class Io, detail::either<excluded_person> Person>

@@ -365,6 +365,16 @@ bool adaptive_tracks::has_ended(unsigned track) const
     return a.stop_sd && std::get<quest>(p).threshold_sd() < *a.stop_sd;
 }
 
+void adaptive_tracks::describe(played_track& t) const
+{
+    t.ended = has_ended(t.track);
+    const procedure& p = tracks_.at(t.track);
+    if (const auto* staircase = std::get_if<value_staircase>(&p))
+        t.reversals = staircase->reversals();
+    else
+        t.sd = std::get<quest>(p).threshold_sd();
+}
+
 unsigned count_tracks(const run_outline& o)
 {
     return static_cast<unsigned>(o.motions.size() * o.methods.size() * o.adaptive.tracks.size());
@@ -375,15 +385,21 @@ std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<
     if (!o.adaptive.may_end_early() || std::ranges::count(trials, 0U, &trial::track) != 0)
         return {};
     std::vector<played_track> all;
-    for (unsigned track = 1; track <= count_tracks(o); ++track)
-        all.push_back({.track = track});
+    for (const std::string& motion : o.motions)
+        for (const std::string& method : o.methods)
+            for (const adaptive_track& one : o.adaptive.tracks)
+                all.push_back({.track = static_cast<unsigned>(all.size() + 1),
+                               .motion = motion,
+                               .method = method,
+                               .procedure = std::string(procedures.at(one.down))});
     adaptive_tracks tracks(o);
     for (const trial& t : trials) {
         tracks.answer(t.track, t.positive);
         ++all[t.track - 1].trials;
     }
     for (played_track& t : all)
-        t.ended = t.trials > 0 && tracks.has_ended(t.track);
+        if (t.trials > 0)
+            tracks.describe(t);
     return all;
 }
 

@@ -82,6 +82,8 @@ public:
     void answer(unsigned track, bool positive);
     /// Returns true if the answers so far have ended a track. \pre it has an answer.
     bool has_ended(unsigned track) const;
+    /// Sets how a track stands after the answers so far. \pre it has an answer.
+    void describe(played_track& t) const;
 
 private:
     using procedure = std::variant<value_staircase, quest>;

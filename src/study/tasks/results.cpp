@@ -49,8 +49,12 @@ std::vector<std::string_view> task::list_columns(const run_outline& o) const
 {
     if (plan_cells(o))
         return {};
-    return o.vary.empty() ? std::vector<std::string_view>{"signal", "positive"}
-                          : std::vector<std::string_view>{"value", "signal", "positive"};
+    std::vector<std::string_view> all{"signal", "positive"};
+    if (!o.vary.empty())
+        all.emplace_back("value");
+    if (o.is_adaptive())
+        all.emplace_back("track");
+    return all;
 }
 
 named_texts task::describe_trial(const trial& t, const run_outline& own, const run_outline&) const
