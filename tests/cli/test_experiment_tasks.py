@@ -413,6 +413,19 @@ class Tasks(ExperimentTest):
         self.assertEqual([w for w in self.analysis()["warnings"] if "(see " in w or "(test " in w], expected)
         self.assertIn("- Warning: " + expected[1].replace("_", "\\_"), self.ok("report", "study").stdout)
 
+    def test_a_wide_table_has_the_figures_of_each_method(self):
+        for code in ("01", "02"):
+            self.hold(tasks("stairs", "there"), code)
+        wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
+        told = self.analysis()["runs"]
+        self.assertEqual([c for c in wide[0] if c.startswith("stairs")], ["stairs.pse", "stairs.jnd", *(
+            f"stairs.{m}.{f}" for m in ("park", "soft") for f in ("pse", "jnd"))])
+        self.assertEqual([c for c in wide[0] if c.startswith("there")], ["there.dprime", "there.c"])  # one method
+        for row in wide:
+            for m in ("park", "soft"):
+                own = told["stairs"]["by"][f"{m}:east"]["psychometric"]["participants"][row["participant_id"].removeprefix("sub-")]
+                self.assertEqual(float(row[f"stairs.{m}.pse"]), own["pse"])
+
     def test_a_catch_trial_is_of_no_method(self):
         self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))
         notes, rows = self.trials()

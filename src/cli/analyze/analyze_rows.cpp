@@ -20,6 +20,7 @@
 #include "cli/say.hpp"
 #include "core/words.hpp"
 #include "study/analysis/analysis.hpp"
+#include "study/analysis/levels.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::cli {
@@ -102,12 +103,35 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
     return unique;
 }
 
-// Columns of --format wide for the trials of a run.
+// Columns of --format wide for some trials of a run.
 struct wide_block {
     std::size_t run = 0;
+    std::string method = {};            // empty: the trials of all methods
     study::session_number session = {}; // missing: the trials of all sessions
     std::vector<study::named_value> columns = {};
 };
+
+// Returns the methods whose trials have columns of their own, if the run measures figures.
+std::vector<study::level> list_methods(const study::run_outline& r, study::sigmoid kind)
+{
+    const auto factors = study::list_factors(r, {}, kind);
+    return !task_in(r).plan_cells(r) && task_in(r).has_one_method(r) ? factors.front().levels
+                                                                     : std::vector<study::level>();
+}
+
+// Returns the values of a participant's trials in a block. `own`: the run as the participant does it.
+std::vector<study::named_value> measure_block(const wide_block& block, const study::run_outline& own,
+                                              std::vector<study::trial> trials, study::sigmoid kind)
+{
+    if (block.session)
+        std::erase_if(trials, [&](const study::trial& t) { return t.session != block.session; });
+    if (!block.method.empty()) {
+        const std::vector<study::level> methods = list_methods(own, kind);
+        const auto at = std::ranges::find(methods, block.method, &study::level::name);
+        std::erase_if(trials, [&](const study::trial& t) { return at == methods.end() || !at->has(t); });
+    }
+    return task_in(own).measure(own, trials, kind);
+}
 
 } // namespace
 
@@ -169,16 +193,23 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
     std::set<std::string> taken;
     std::vector<wide_block> blocks;
     for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
-        blocks.push_back({.run = k});
-        if (const auto sessions = list_played_sessions(d, k); sessions.size() > 1)
+        std::vector<std::string> methods{""};
+        if (const auto all = list_methods(d.experiment.runs[k], kind); all.size() > 1)
+            std::ranges::transform(all, std::back_inserter(methods), &study::level::name);
+        std::set<study::session_number> sessions{std::nullopt};
+        if (const auto all = list_played_sessions(d, k); all.size() > 1)
+            sessions.insert(all.begin(), all.end());
+        for (const std::string& method : methods)
             for (const study::session_number n : sessions)
-                blocks.push_back({.run = k, .session = n});
+                blocks.push_back({k, method, n});
     }
     for (wide_block& block : blocks) {
         const study::run_outline& r = d.experiment.runs[block.run];
-        block.columns = task_in(r).measure(r, {}, kind);
+        block.columns = measure_block(block, r, {}, kind);
         for (const study::named_value& v : block.columns) {
             std::vector<std::string> parts{r.name};
+            if (!block.method.empty())
+                parts.push_back(block.method);
             parts.insert(parts.end(), v.name.begin(), v.name.end());
             if (block.session)
                 parts.push_back(fmt::format("ses-{}", *block.session));
@@ -192,12 +223,8 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
         for (const wide_block& block : blocks) {
             const study::run_outline& own = find_run(d, i, block.run);
             std::vector<study::named_value> values;
-            if (!own.motions.empty()) { // else the group lacks the run
-                std::vector<study::trial> trials = d.data[i][block.run].trials;
-                if (block.session)
-                    std::erase_if(trials, [&](const study::trial& t) { return t.session != block.session; });
-                values = task_in(own).measure(own, trials, kind);
-            }
+            if (!own.motions.empty()) // else the group lacks the run
+                values = measure_block(block, own, d.data[i][block.run].trials, kind);
             for (const study::named_value& column : block.columns) {
                 const auto at = std::ranges::find(values, column.name, &study::named_value::name);
                 text += at != values.end() && at->value ? fmt::format(",{}", *at->value) : ",";
