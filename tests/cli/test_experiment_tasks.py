@@ -397,6 +397,43 @@ class Tasks(ExperimentTest):
             r["response"] = "2" if second else "1"
         file.write_text("\n".join("\t".join(line) for line in [list(rows[0]), *([*r.values()] for r in rows)]) + "\n")
 
+    def test_the_time_order_error_is_the_difference_between_the_orders(self):
+        run = toml("run", "two", task="interval", methods=["park"], vary="level_dbfs", values=[-40, -30, -20], trials=60)
+        text = measures("desk.toml", RUNS["values"], run, keys="gap_s = 0.1\n")
+        steps = [0, 1, 3, 7, 9, 10]  # of ten; about the place between the third value and the fourth
+        shown = lambda value, place: ([0] * 9 + steps + [10] * 9)[9 + round((value - place) / 4 + 2.5)]
+        for code, off in (("01", 2), ("02", -2), ("03", 6), ("04", 2)):
+            self.hold(text, code)
+            self.answer("values", code, lambda cell, off=off: shown(cell[2], -24 + (off if cell[1] == "standard" else -off)))
+        told = self.analysis()["runs"]
+        people = told["values"]["time_order"]["participants"]
+        for code, off in (("01", 2), ("02", -2), ("03", 6), ("04", 2)):
+            self.assertLess(abs(people[code]["first"] - (-24 - off)), 0.5, code)
+            self.assertAlmostEqual(people[code]["first"] + people[code]["second"], -48, 4)  # one is the other in reverse
+            self.assertAlmostEqual(people[code]["difference"], people[code]["second"] - people[code]["first"], 9)
+        found = [p["difference"] for p in people.values()]
+        test = told["values"]["time_order"]["difference"]
+        t = statistics.mean(found) / (statistics.stdev(found) / 2)
+        self.assertAlmostEqual(test["t"], t, 9)
+        self.assertEqual((told["values"]["time_order"]["figure"], test["df"], list(told["values"]["time_order"]["means"])), ("pse", 3, ["first", "second"]))
+        for code, own in told["two"]["time_order"]["participants"].items():
+            right = {first: [(r["response"] == "1") == first for r in self.rows("two", code) if (r["method_1"] == "park") == first] for first in (True, False)}
+            shares = {first: 100 * sum(all_) / len(all_) for first, all_ in right.items()}
+            self.assertEqual((own["first"], own["second"], own["difference"]), (shares[True], shares[False], shares[False] - shares[True]))
+        text = self.ok("analyze", "study", "--format", "tables").stdout
+        self.assertRegex(text, rf"Time-order error: pse by the interval that held the standard, second minus\n +first:\n    difference against 0 +{test['mean']:.2f} \(se [^\n]*t\(3\) = {t:.2f}, ")
+        self.assertIn(f"    sub-03     difference {people['03']['difference']:.2f}  first {people['03']['first']:.2f}", text)
+        self.assertIn(f"| difference | {test['mean']:.4g} | ", self.ok("report", "study").stdout)
+        wide = {r["participant_id"]: r for r in csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout))}
+        self.assertEqual([float(wide[f"sub-{c}"]["values.time_order"]) for c in people], found)
+        # Answers to words have no standard, and those of one order no difference.
+        self.hold(tasks("words"), folder="words")
+        self.assertNotIn("time_order", json.loads(self.ok("analyze", "words", "--format", "json").stdout)["runs"]["words"])
+        self.answer("values", "01", lambda cell: 5 if cell[1] == "standard" else shown(cell[2], -24))
+        told = self.analysis()
+        self.assertIsNone(told["runs"]["values"]["time_order"]["participants"]["01"]["difference"])
+        self.assertIn("values: time order: the answers of one order do not determine it: sub-01", told["warnings"])
+
     def test_fits_at_their_limits_and_large_jnds_are_doubted(self):
         text = tasks("values", "felt")
         for code in ("01", "02", "03"):
@@ -418,7 +455,7 @@ class Tasks(ExperimentTest):
             self.hold(tasks("stairs", "there"), code)
         wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
         told = self.analysis()["runs"]
-        self.assertEqual([c for c in wide[0] if c.startswith("stairs")], ["stairs.pse", "stairs.jnd", *(
+        self.assertEqual([c for c in wide[0] if c.startswith("stairs")], ["stairs.pse", "stairs.jnd", "stairs.time_order", *(
             f"stairs.{m}.{f}" for m in ("park", "soft") for f in ("pse", "jnd"))])
         self.assertEqual([c for c in wide[0] if c.startswith("there")], ["there.dprime", "there.c"])  # one method
         for row in wide:

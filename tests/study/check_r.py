@@ -424,6 +424,46 @@ def check_adjustments(tool, folder):
     return [f"{m}, R: {r}" for m, r in zip(mine, said, strict=True) if not abs(m - r) <= 1e-7 * max(1, abs(r))]
 
 
+ORDERS = studies.measures(
+    "palm-3x3", studies.run("values", "constant", 200, question="Which was stronger?", vary="level_dbfs", values=[-32, -28, -24, -20, -16], standard=-24,
+                            methods=["park"]),
+    studies.run("intervals", "interval", 100, vary="level_dbfs", values=[-36, -30, -24, -18], methods=["park"]))
+# The pse by maximum likelihood of the trials whose standard was in one interval; the per cent of right answers of two intervals.
+ORDER = COMMANDS + """
+for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
+pse <- function(q) {
+  loss <- function(x) -sum(dbinom(q$positive, 1, x[3] / 2 + (1 - x[3]) * pnorm((q$value - x[1]) / exp(x[2])), log = TRUE))
+  fits <- lapply(c(0.001, 0.06, 0.119), function(lapse) optim(c(-24, log(6), lapse), loss, method = "L-BFGS-B", lower = c(-60, -2, 0), upper = c(20, 5, 0.12),
+                                                              control = list(factr = 10, maxit = 1000)))
+  fits[[which.min(sapply(fits, function(f) f$value))]]$par[1]
+}
+differences <- function(run, first, figure) sapply(split(d[d$run == run, ], d$participant[d$run == run]), function(own) {
+  is_first <- (own$positive == 1) == (own$response == first)
+  figure(own[!is_first, ]) - figure(own[is_first, ])
+})
+for (x in list(differences("values", 2, pse), differences("intervals", 1, function(q) 100 * mean(q$positive)))) {
+  test <- t.test(x)
+  cat(format(c(x, test$statistic, test$p.value, test$conf.int), digits = 15), "\n")
+}
+"""
+
+
+def check_orders(tool, folder):
+    """Returns where time-order errors differ from those of R, whose search for a pse ends within 0.005 of it."""
+    (folder / "orders.toml").write_text(ORDERS)
+    codes = ("01", "02", "03", "04")
+    for code in codes:
+        run(tool, "experiment", folder / "orders.toml", "--participant", code, "-o", folder / "orders", "--simulate", "seed=1,jnd=4")
+    told = json.loads(run(tool, "analyze", folder / "orders", "--format", "json"))["runs"]
+    said = [list(map(float, line.split())) for line in fit(tool, folder / "orders", ORDER).splitlines()]
+    bad = []
+    for name, r, near in zip(("values", "intervals"), said, (0.005, 1e-8), strict=True):
+        own, test = told[name]["time_order"]["participants"], told[name]["time_order"]["difference"]
+        mine = [*(own[code]["difference"] for code in codes), test["t"], test["p"], *test["ci"]]
+        bad += [f"{name}: {m}, R: {v}" for m, v in zip(mine, r, strict=True) if not abs(m - v) <= near * max(1, abs(v))]
+    return bad
+
+
 SESSIONS = studies.measures(
     "palm-3x3", studies.toml("method", "hard", burst=0.02), studies.run("marks", "rate", 24, attribute="similarity"),
     studies.run("level", "constant", 120, question="Which was stronger?", vary="level_dbfs", values=[-32, -28, -24, -20, -16], standard=-24),
@@ -487,6 +527,7 @@ def main():
                     cases["sessions, models"] = lambda: check_sessions(tool, folder)
                     cases["drawings"] = lambda: check_drawings(tool, folder)
                     cases["adjustments"] = lambda: check_adjustments(tool, folder)
+                    cases["time order"] = lambda: check_orders(tool, folder)
                     cases["scaling"] = lambda: check_scaling(tool, folder)
                     cases["measures, comparisons"] = lambda: check_comparisons(tool, folder)
             else:

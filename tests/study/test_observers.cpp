@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -222,6 +223,7 @@ std::vector<trial> hold_constant(second_observer& who, const std::vector<double>
         trial& t = all[order[i]];
         t.positive = who.chooses_comparison((t.value - pse) / deviation, first[order[i]],
                                             static_cast<double>(i) / static_cast<double>(order.size() - 1));
+        t.response = t.positive == first[order[i]] ? 2 : 1;
     }
     return all;
 }
@@ -390,7 +392,8 @@ trial hold_intervals(second_observer& who, double db, double part)
     constexpr double at_75_percent = 0.6744897501960817;
     const double felt = at_75_percent * std::pow(10.0, db / 10.0); // d' over the root of 2
     const bool second = who.unit() < 0.5;
-    return {.value = db, .positive = who.presses_second(second ? felt : -felt, part, 0.0) == second};
+    const bool pressed_second = who.presses_second(second ? felt : -felt, part, 0.0);
+    return {.response = pressed_second ? 2U : 1U, .value = db, .positive = pressed_second == second};
 }
 
 // Returns a participant's trials at seven levels.
@@ -420,6 +423,39 @@ std::optional<double> track_intervals(second_observer& who, unsigned down)
     }
     const auto fit = fit_answers(all, {.kind = sigmoid::normal, .guess = 0.5}, "").fit;
     return fit ? std::optional(fit->parameters.threshold) : std::nullopt;
+}
+
+TEST_CASE("the time-order error is the bias to an interval: observers of a second kind")
+{
+    const run_outline constant = make_run(&find_task("constant"));
+    const run_outline intervals = make_run(&find_task("interval"));
+    const int people = test::rounds(60, 1000);
+    for (const double bias : {0.0, 0.5, -0.3}) {
+        // Right answers at each level to a stimulus that is second, minus those to one that is first.
+        double right = 0.0;
+        for (const double db : {-9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0}) {
+            const double felt = 0.6744897501960817 * std::pow(10.0, db / 10.0);
+            right += 100.0 * (phi(felt + bias) - phi(felt - bias)) / 7.0;
+        }
+        std::vector<double> pses;
+        std::vector<double> rights;
+        for (int i = 0; i < people; ++i) {
+            second_observer who({.bias = bias}, static_cast<std::uint64_t>(i));
+            const auto compare = [](const run_outline& r, const std::vector<trial>& trials) {
+                return *compare_intervals(*r.task->plan_intervals(r, sigmoid::normal), trials).front().value;
+            };
+            pses.push_back(compare(constant, hold_constant(who, about_the_pse)));
+            rights.push_back(compare(intervals, hold_intervals(who)));
+        }
+        // The pse of each order moves by the bias.
+        for (const auto& [name, found, truth] :
+             {std::tuple("pse", &pses, 2.0 * bias * deviation), {"right", &rights, right}}) {
+            const t_test t = quick_test_mean(*found, truth);
+            fmt::print("time-order error of {}: {:.2f} (se {:.2f}) with a bias of {}, true {:.2f}\n", name,
+                       *t.mean, *t.se, bias, truth);
+            CHECK_FIGURE(std::abs(*t.t) < 4.0);
+        }
+    }
 }
 
 TEST_CASE("adaptive tracks of two intervals find the level of 75 %: observers of a second kind")

@@ -337,6 +337,11 @@ public:
         print_figures(v, count_decimals(run_));
         print_people(v, count_decimals(run_), [](const auto&) { return std::string(); });
     }
+    void operator()(const study::interval_effects& v) const
+    {
+        print_figures(v, count_decimals(run_));
+        print_people(v, count_decimals(run_), [](const auto&) { return std::string(); });
+    }
     void operator()(const study::drawn_answers& v) const
     {
         print_figures(v, usual_decimals);

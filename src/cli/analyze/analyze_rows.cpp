@@ -21,6 +21,7 @@
 #include "core/words.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/analysis/levels.hpp"
+#include "study/analysis/measures.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::cli {
@@ -130,7 +131,10 @@ std::vector<study::named_value> measure_block(const wide_block& block, const stu
         const auto at = std::ranges::find(methods, block.method, &study::level::name);
         std::erase_if(trials, [&](const study::trial& t) { return at == methods.end() || !at->has(t); });
     }
-    return task_in(own).measure(own, trials, kind);
+    std::vector<study::named_value> all = task_in(own).measure(own, trials, kind);
+    if (const auto p = task_in(own).plan_intervals(own, kind); p && block.method.empty())
+        all.push_back({{"time_order"}, compare_intervals(*p, trials).front().value});
+    return all;
 }
 
 } // namespace

@@ -12,6 +12,7 @@
 
 #include "core/words.hpp"
 #include "study/analysis/levels.hpp"
+#include "study/analysis/measures.hpp"
 #include "study/tasks/adaptive.hpp"
 #include "study/tasks/task.hpp"
 
@@ -74,6 +75,9 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     r.n = people.all.size();
     r.times = summarise_times(r.run, people.all);
     r.results = task_in(r.run).analyse(r.run, people, kind);
+    if (const auto p = task_in(r.run).plan_intervals(r.run, kind))
+        if (auto row = analyse_intervals(*p, r.run, people))
+            r.results.push_back(*std::move(row));
     add_comparisons(r.results, r.run, people, kind);
     return r;
 }

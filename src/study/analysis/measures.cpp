@@ -132,6 +132,31 @@ adjustment average_adjustments(const run_outline& run, const std::vector<trial>&
     return a;
 }
 
+std::vector<named_value> compare_intervals(const interval_plan& p, const std::vector<trial>& trials)
+{
+    std::vector<trial> first;
+    std::vector<trial> second;
+    std::ranges::partition_copy(trials, std::back_inserter(first), std::back_inserter(second), p.is_first);
+    const std::optional<double> a = p.measure(first);
+    const std::optional<double> b = p.measure(second);
+    return {
+        {{"difference"}, a && b ? std::optional(*b - *a) : std::nullopt}, {{"first"}, a}, {{"second"}, b}};
+}
+
+std::optional<result> analyse_intervals(const interval_plan& p, const run_outline& run,
+                                        const run_people& people)
+{
+    const auto compare = [&p](const std::vector<trial>& trials, const std::string&) {
+        return compare_intervals(p, trials);
+    };
+    interval_effects v = measure_people(
+        interval_effects{{}, p.figure}, split_conditions(run, people, {}).front(), people, 0.0, compare,
+        [&p](const std::vector<named_value>& own) { return own.empty() ? compare_intervals(p, {}) : own; });
+    if (v.figures.front().test.n == 0)
+        return {};
+    return result{{"time_order"}, p.heading, std::move(v)};
+}
+
 double size_ratio(const run_outline& run, double value, double to) noexcept
 {
     constexpr double db_per_tenfold = 20.0;

@@ -41,6 +41,21 @@ fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& t
 /// Returns mean and standard deviation of the trials' values.
 adjustment average_adjustments(const run_outline& run, const std::vector<trial>& trials);
 
+/// A figure that may depend on the interval that held the standard or the stimulus.
+struct interval_plan {
+    std::string figure;             ///< as in interval_effects
+    std::string heading;            ///< heading of the row
+    bool (*is_first)(const trial&); ///< true if the first interval held it
+    std::function<std::optional<double>(const std::vector<trial>&)> measure;
+};
+
+/// Returns the figures of interval_effects.
+std::vector<named_value> compare_intervals(const interval_plan& p, const std::vector<trial>& trials);
+
+/// Returns the row of a plan; nothing if no participant has both orders.
+std::optional<result> analyse_intervals(const interval_plan& p, const run_outline& run,
+                                        const run_people& people);
+
 /// Returns the ratio of two values; for levels in dB, the ratio of their amplitudes.
 double size_ratio(const run_outline& run, double value, double to) noexcept;
 

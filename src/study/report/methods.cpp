@@ -245,6 +245,7 @@ public:
     void operator()(const oddities&) { kind_ = "oddity"; }
     void operator()(const exponents&) { kind_ = "exponent"; }
     void operator()(const adjustments&) { kind_ = "adjustment"; }
+    void operator()(const interval_effects&) { kind_ = "intervals"; }
     void operator()(const drawn_answers&) { kind_ = "drawings"; }
 
 private:

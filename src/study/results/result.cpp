@@ -133,6 +133,12 @@ public:
     void operator()(const oddities& v) { note_missing(v); }
     void operator()(const exponents& v) { note_missing(v); }
     void operator()(const adjustments& v) { note_missing(v); }
+    void operator()(const interval_effects& v)
+    {
+        explain("time order", v.figures.front().test);
+        note(v, "time order", "the answers of one order do not determine it", "",
+             [&](std::size_t i) { return !v.values[i].front(); });
+    }
     void operator()(const drawn_answers& v) { note_missing(v); }
 
 private:
@@ -301,13 +307,15 @@ effect_list outline_effects(const std::vector<std::string>& names)
     return all;
 }
 
-std::vector<result_outline> outline_measured(const std::vector<result_outline>& named)
+std::vector<result_outline> outline_measured(const std::vector<result_outline>& named, bool intervals)
 {
     std::vector<result_outline> all{{{"vary"}, std::string(), true}, {{"against"}, 0.0, true}};
     for (const result_outline& row : named) {
         all.push_back(row);
         all.push_back({{"by", "*", row.at.front()}, row.value, row.or_null, true});
     }
+    if (intervals)
+        all.push_back({{"time_order"}, outline_figures<interval_effects>(), false, true});
     all.push_back({{"group_anova"}, outline_effects({"group"}), false, true});
     for (const char* factor : {"method", "session"})
         all.push_back(outline_comparison(factor));

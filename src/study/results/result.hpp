@@ -226,6 +226,12 @@ struct adjustment {
 
 struct adjustments : measured<adjustment> {};
 
+/// A figure of all trials by the interval that held the standard or the stimulus. The figures are the
+/// "difference" (the time-order error: of the second interval minus the first), "first" and "second".
+struct interval_effects : measured<std::vector<named_value>> {
+    std::string figure = {}; ///< "pse" or "right"
+};
+
 /// Number of equal parts of their lengths at which drawn paths are compared.
 inline constexpr std::size_t drawn_parts = 50;
 
@@ -251,10 +257,11 @@ struct drawn_answers : measured<drawn_by_person> {
     std::vector<predicted_drawing> predicted = {}; ///< with one motion and one method, if recorded
 };
 
-using result_value = std::variant<std::monostate, std::string, double, cell_means, interval_share,
-                                  method_difference, effect_list, tukey_list, paired_list, figure_comparison,
-                                  worth_list, method_map, answer_counts, psychometric_functions,
-                                  sensitivities, oddities, exponents, adjustments, drawn_answers>;
+using result_value =
+    std::variant<std::monostate, std::string, double, cell_means, interval_share, method_difference,
+                 effect_list, tukey_list, paired_list, figure_comparison, worth_list, method_map,
+                 answer_counts, psychometric_functions, sensitivities, oddities, exponents, adjustments,
+                 interval_effects, drawn_answers>;
 
 /// A row of a run's results.
 struct result {
@@ -285,8 +292,9 @@ Measured outline_figures()
 /// Returns a value of effects with these names.
 effect_list outline_effects(const std::vector<std::string>& names);
 /// Returns the rows of a run that measures figures: for all trials, and for each condition. `named`: rows by
-/// their names.
-std::vector<result_outline> outline_measured(const std::vector<result_outline>& named);
+/// their names. `intervals`: the two intervals of a trial may be compared.
+std::vector<result_outline> outline_measured(const std::vector<result_outline>& named,
+                                             bool intervals = false);
 /// Returns the row that compares figures between methods or sessions. `factor`: "method" or "session".
 result_outline outline_comparison(const std::string& factor);
 /// Returns the row that compares groups. `methods`: it has the effects of methods.

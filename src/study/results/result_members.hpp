@@ -419,8 +419,9 @@ inline std::optional<std::vector<std::array<double, 2>>> list_points(const std::
     return listed;
 }
 
-template <class Io>
-void row_member(Io& io, const char* name, const drawn_answers& v)
+/// Lists the participants' figures by code and name.
+template <class Person>
+by_name<by_name<nullable<double>>> list_values_by_code(const measured<Person>& v)
 {
     by_name<by_name<nullable<double>>> people;
     for (std::size_t i = 0; i < v.codes.size(); ++i) {
@@ -429,8 +430,28 @@ void row_member(Io& io, const char* name, const drawn_answers& v)
         for (std::size_t k = 0; k < v.figures.size(); ++k)
             own.all.push_back({v.figures[k].name, {v.values[i][k]}});
     }
+    return people;
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const interval_effects& v)
+{
+    io.object(name, {"a figure by the interval that held the standard or the stimulus"}, [&](auto& inner) {
+        inner("figure", v.figure, {"pse, or right: per cent of right answers"});
+        inner("participants", list_values_by_code(v), {"difference, second minus first, and both, by code"});
+        inner.object("difference", {"mean difference, tested against 0"},
+                     [&](auto& one) { test_members(one, v.figures.front().test); });
+        inner.named_objects("means", std::vector(v.figures.begin() + 1, v.figures.end()),
+                            {"means of both over participants"},
+                            [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
+    });
+}
+
+template <class Io>
+void row_member(Io& io, const char* name, const drawn_answers& v)
+{
     io.object(name, {"figures of drawings"}, [&](auto& inner) {
-        inner("participants", people, {"figures by code"});
+        inner("participants", list_values_by_code(v), {"figures by code"});
         inner.named_objects("means", v.figures, {"means of the figures over participants"},
                             [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
         constexpr about points{"points at equal parts of the length, mm; null with several motions"};

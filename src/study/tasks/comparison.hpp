@@ -55,9 +55,19 @@ public:
         return list_pse(fit_comparisons(trials, kind, ""));
     }
 
+    std::optional<interval_plan> plan_intervals(const run_outline& o, sigmoid kind) const override
+    {
+        if (!o.standard)
+            return {};
+        return interval_plan{
+            "pse", "Time-order error: pse by the interval that held the standard, second minus first",
+            [](const trial& t) { return t.positive == (t.response == 2); },
+            [kind](const std::vector<trial>& trials) { return fit_comparisons(trials, kind, "").pse; }};
+    }
+
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"psychometric"}, psychometric_functions{}}})};
+        return {outline_measured({{{"psychometric"}, psychometric_functions{}}}, true)};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -17,6 +18,15 @@ namespace {
 bool is_right(const run_outline&, std::string_view method_1, unsigned response)
 {
     return (response == 2) == (method_1 == catch_name);
+}
+
+// Returns the per cent of right answers.
+std::optional<double> count_right(const std::vector<trial>& trials)
+{
+    if (trials.empty())
+        return {};
+    return 100.0 * static_cast<double>(std::ranges::count(trials, true, &trial::positive)) /
+           static_cast<double>(trials.size());
 }
 
 // Reads the values of a run without a procedure. Refuses keys that only a procedure has.
@@ -102,9 +112,17 @@ public:
         return list_threshold(fit_answers(trials, right_answers(kind), ""));
     }
 
+    std::optional<interval_plan> plan_intervals(const run_outline&, sigmoid) const override
+    {
+        return interval_plan{
+            "right",
+            "Time-order error: right answers (%) by the interval that held the stimulus, second minus first",
+            [](const trial& t) { return t.positive == (t.response == 1); }, count_right};
+    }
+
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"psychometric"}, psychometric_functions{}}})};
+        return {outline_measured({{{"psychometric"}, psychometric_functions{}}}, true)};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override

@@ -22,6 +22,7 @@
 
 #include "files/toml_reader.hpp"
 #include "study/analysis/cells.hpp"
+#include "study/analysis/measures.hpp"
 #include "study/data/dataset.hpp"
 #include "study/data/drawing.hpp"
 #include "study/experiment/definition.hpp"
@@ -222,6 +223,8 @@ public:
     /// Without trials lists only the names.
     virtual std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
                                              sigmoid kind) const;
+    /// Returns the figure that is compared between the two intervals of a trial; usually nothing.
+    virtual std::optional<interval_plan> plan_intervals(const run_outline&, sigmoid) const { return {}; }
     /// Returns the rows of a run that follow the rows which all runs have. `people`: participants with a
     /// trial in each cell.
     virtual std::vector<result> analyse(const run_outline& o, const run_people& people,
