@@ -8,6 +8,7 @@ import random
 import re
 import statistics
 
+import error_rates
 from experiments import DESK, ExperimentTest, contents
 from harness import ROOT, main
 from pictures import Svg
@@ -462,6 +463,31 @@ class Tasks(ExperimentTest):
             for m in ("park", "soft"):
                 own = told["stairs"]["by"][f"{m}:east"]["psychometric"]["participants"][row["participant_id"].removeprefix("sub-")]
                 self.assertEqual(float(row[f"stairs.{m}.pse"]), own["pse"])
+
+    def test_power_between_groups_is_that_of_the_noncentral_t_distribution(self):
+        text = tasks("level", "there") + toml("group", "a") + toml("group", "b")
+        self.write("tasks.toml", text)
+
+        def power(spec, group="a"):
+            told = self.ok("experiment", "tasks.toml", "--power", "8,12", "--studies", "300", "--format", "json", "--group", group, "--simulate", spec)
+            return {r["name"]: {(c["factor"], c["figure"]): c for c in r["comparisons"]} for r in json.loads(told.stdout)["runs"]}
+        found = power("seed=1,jnd=0.001,pse_sd=6,group_d=1,dprime=1")
+        self.assertEqual(list(found["level"]), [(factor, figure) for factor in ("method", "group", "group:method") for figure in ("constant_error", "sd")])
+        self.assertEqual(list(found["there"]), [("group", "dprime"), ("group", "c")])
+        self.assertEqual(found["level"]["group", "constant_error"]["comparison"], "constant_error by group (a, b), participants in each, analysis of variance")
+        for at in found["level"]["group", "constant_error"]["power"]:
+            # Values are 1 apart, which adds the variance 1/12 to that of people.
+            expected = error_rates.find_power(6 / math.hypot(6, math.sqrt(1 / 12)), at["participants"])
+            self.assertLess(abs(at["power"] - expected), 3.3 * math.sqrt(expected * (1 - expected) / 300))
+            self.assertEqual(at["for_last"], at["significant"])
+        at = power("seed=1,jnd=0.001,pse_sd=6,group_d=1,dprime=1", "b")["level"]["group", "constant_error"]["power"][1]
+        self.assertEqual(at["for_last"], at["significant"])
+        none = power("seed=1,jnd=2,pse_sd=6,jnd_sd=1,correlation=0.5,dprime=1,dprime_sd=0.5")
+        for run, tests in none.items():
+            for (factor, figure), c in tests.items():
+                if factor.startswith("group"):
+                    for at in c["power"]:
+                        self.assertLess(at["power"], 0.1, (run, factor, figure))  # 5 % and four standard errors
 
     def test_a_catch_trial_is_of_no_method(self):
         self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))

@@ -6,6 +6,7 @@ with. Of 1,000 studies 4 to 6 % should be significant: a share outside the 99.9 
 """
 import concurrent.futures
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -48,34 +49,67 @@ USUAL = "sigma=20,pse=60,jnd=10,pse_sd=5,jnd_sd=5,dprime=1.5,dprime_sd=0.5,expon
 OTHERS = {"identify": "sigma=60", "estimate": "sigma=0.3,exponent_sd=0.2", "same-different": "dprime=0", "oddity": "dprime=0"}
 
 
-def define(task, methods, sessions):
+def define(task, methods, sessions, groups):
     return (START + f"sessions = {sessions}\n" + MOTIONS + "".join(f'[[method]]\nname = "{m}"\n' for m in methods)
-            + f'[[run]]\nname = "{task}"\ntask = "{task}"\n' + RUNS[task])
+            + f'[[run]]\nname = "{task}"\ntask = "{task}"\n' + RUNS[task] + "".join(f'[[group]]\nname = "{g}"\n' for g in groups))
 
 
-def simulate(tool, folder, task, methods, sessions):
-    file = folder / f"{task}-{len(methods)}.toml"
-    file.write_text(define(task, methods, sessions), encoding="utf-8")
-    done = subprocess.run([tool, "experiment", file, "--power", str(PEOPLE), "--studies", str(STUDIES), "--simulate",
-                           OTHERS.get(task, USUAL), "--format", "json"],
+def count(tool, folder, text, who, *more):
+    """Returns what --power finds of the only run of a definition."""
+    file = folder / f"{abs(hash(text))}.toml"
+    file.write_text(text, encoding="utf-8")
+    done = subprocess.run([tool, "experiment", file, "--power", str(PEOPLE), "--studies", str(STUDIES), "--simulate", who, "--format", "json", *more],
                           capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr[-2000:])
-    run = json.loads(done.stdout)["runs"][0]
+    return json.loads(done.stdout)["runs"][0]
+
+
+def simulate(tool, folder, task, methods, sessions, groups):
+    run = count(tool, folder, define(task, methods, sessions, groups), OTHERS.get(task, USUAL), *(["--group", groups[0]] if groups else []))
     tests = [(f"{c['figure']} by {c['factor']}", c["power"]) for c in run["comparisons"]]
     # A simulated drawing is moved as a whole, so its length and direction do not vary.
     tests = [t for t in tests if t[0].partition(" ")[0] not in ("length", "direction")]
     # Leaves out tests against chance and against 0: these people are above both.
-    if task not in ("identify", "detect"):
+    if groups:
+        tests = [t for t in tests if " by group" in t[0]]
+    elif task not in ("identify", "detect"):
         tests = [("main: " + run["comparison"], p) for p in [run["power"]] if p] + tests
     return [(task, len(methods), name, p[0]) for name, p in tests]
 
 
+def find_power(d, n):
+    """Returns the power of the t test of two groups of n people whose means are d standard deviations apart."""
+    df = 2 * n - 2
+    spread = [(i + 0.5) / 2000 * 3 for i in range(2000)]  # of the estimated standard deviation, about the true one
+    density = [math.exp((df - 1) * math.log(s) - df * s * s / 2) for s in spread]
+
+    def beyond(t, off):
+        return sum(p * (math.erfc((t * s - off) / math.sqrt(2)) + math.erfc((t * s + off) / math.sqrt(2))) / 2
+                   for s, p in zip(spread, density)) / sum(density)
+    low, high = 0, 100
+    while high - low > 1e-9:
+        low, high = ((low + high) / 2, high) if beyond((low + high) / 2, 0) > 0.05 else (low, (low + high) / 2)
+    return beyond(low, d * math.sqrt(n / 2))
+
+
+def check_groups(tool, folder):
+    """Compares the power between groups with that of the noncentral t distribution. Of people without noise; values are 2 apart."""
+    text = START + MOTIONS + '[[method]]\nname = "a"\n[[run]]\nname = "r"\ntask = "adjust"\n' + RUNS["adjust"] + "".join(
+        f'[[group]]\nname = "{g}"\n' for g in "ab")
+    power = count(tool, folder, text, "pse=60,jnd=0.001,pse_sd=5,group_d=1", "--group", "b")["comparisons"]
+    at = next(c["power"][0] for c in power if (c["factor"], c["figure"]) == ("group", "constant_error"))
+    expected = find_power(5 / math.hypot(5, 2 / math.sqrt(12)), PEOPLE)
+    right = abs(at["power"] - expected) < 3.3 * math.sqrt(expected * (1 - expected) / STUDIES) and at["for_last"] == at["significant"]
+    print(f"{'' if right else 'FAILED: '}power between groups {at['power']:.3f}, by the noncentral t distribution {expected:.3f}")
+    return right
+
+
 def main():
-    passed = failed = 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
-        designs = [(task, methods, sessions) for task in RUNS for methods, sessions in (("ab", 2), ("abc", 1))
+        designs = [(task, methods, sessions, groups) for task in RUNS for methods, sessions, groups in (("ab", 2, ""), ("abc", 1, ""), ("ab", 1, "xy"))
                    if task not in ("same-different", "oddity") or methods == "ab"]
+        passed, failed = (1, 0) if check_groups(sys.argv[1], pathlib.Path(folder)) else (0, 1)
         for rows in pool.map(lambda d: simulate(sys.argv[1], pathlib.Path(folder), *d), designs):
             for task, methods, name, at in rows:
                 share = at["significant"] / STUDIES

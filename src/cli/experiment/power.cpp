@@ -17,6 +17,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <tactor/version.hpp>
@@ -68,6 +69,9 @@ std::string comparison_text(const study::run_outline& r)
 // Names a test of a figure between the levels of a factor.
 std::string comparison_text(const study::tested_power& t)
 {
+    if (t.factor.starts_with("group"))
+        return fmt::format("{} by {} ({}), participants in each, analysis of variance", t.figure, t.factor,
+                           fmt::join(t.levels, ", "));
     return t.levels.size() == 2 ? fmt::format("{} by {}, {} - {}, paired t against 0", t.figure, t.factor,
                                               t.levels.front(), t.levels.back())
                                 : fmt::format("{} by {}, analysis of variance (p_gg)", t.figure, t.factor);
@@ -150,7 +154,8 @@ struct listed_test {
 template <class Io, detail::either<listed_test> Test>
 void members(Io& io, Test& v)
 {
-    io("factor", v.factor, {"what the levels are: method or session"});
+    io("factor", v.factor,
+       {"what the levels are: method, session or group; group:method is how groups differ in methods"});
     io("figure", v.figure, {"the figure, such as jnd"});
     io("comparison", v.comparison, {"the test, in words"});
     io("power", v.power, {"by the requested numbers of participants"});
@@ -173,7 +178,7 @@ void members(Io& io, Run& v)
     io("comparison", v.comparison, {"the comparison, in words"});
     io("power", v.power, {"by the requested numbers of participants; empty if there is nothing to compare"});
     io("comparisons", v.comparisons,
-       {"each figure between methods and between sessions, as analyze tests it"});
+       {"each figure between methods, sessions and groups, as analyze tests it"});
 }
 
 struct listed_powers {

@@ -41,31 +41,6 @@ std::vector<level> split_by_session(const run_people& people)
     return all;
 }
 
-// The figure of the participants who have it at each level.
-struct level_values {
-    std::vector<std::vector<double>> rows = {}; // of all levels, by participant
-    std::vector<std::string> groups = {};       // by participant
-};
-
-// Compares the groups and the levels.
-effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v)
-{
-    std::vector<cell_values> cells;
-    for (const std::vector<double>& own : v.rows) {
-        cells.emplace_back();
-        for (const double value : own)
-            cells.back().push_back({value});
-    }
-    const mixed_anova m = compare_groups(cells, v.groups);
-    const auto if_several = [levels](const effect& e) {
-        return levels > 1 ? std::optional(e) : std::nullopt;
-    };
-    return {{{"group", m.group},
-             {factor, if_several(m.within.first)},
-             {"group:" + factor, if_several(m.by_group.first)}},
-            true};
-}
-
 // Joins the angles of all participants at all levels.
 void join_all_angles(std::vector<std::vector<double>>& rows)
 {
@@ -189,6 +164,24 @@ void add_factor(std::vector<result>& results, const run_people& people, const co
 
 } // namespace
 
+effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v)
+{
+    std::vector<cell_values> cells;
+    for (const std::vector<double>& own : v.rows) {
+        cells.emplace_back();
+        for (const double value : own)
+            cells.back().push_back({value});
+    }
+    const mixed_anova m = compare_groups(cells, v.groups);
+    const auto if_several = [levels](const effect& e) {
+        return levels > 1 ? std::optional(e) : std::nullopt;
+    };
+    return {{{"group", m.group},
+             {factor, if_several(m.within.first)},
+             {"group:" + factor, if_several(m.by_group.first)}},
+            true};
+}
+
 std::vector<compared_factor> list_factors(const run_outline& run, const run_people& people, sigmoid kind)
 {
     const task& own = task_in(run);
@@ -213,6 +206,24 @@ std::vector<compared_factor> list_factors(const run_outline& run, const run_peop
         all.push_back({"method", split_by_method(run), figures, measure});
     all.push_back({"session", split_by_session(people), figures, measure});
     return all;
+}
+
+std::optional<compared_factor> find_group_factor(const run_outline& run, sigmoid kind)
+{
+    const task& own = task_in(run);
+    if (own.has_one_method(run) && !own.plan_cells(run))
+        return list_factors(run, {}, kind).front();
+    const std::vector<level> all{{"", [](const trial&) { return true; }}};
+    if (const auto plan = own.plan_cells(run)) {
+        if (plan->figure.empty() && plan->methods.size() > 1)
+            return {}; // each choice of one method is a loss for another
+        return compared_factor{
+            "", all, {{{plan->figure.empty() ? "chosen" : plan->figure}}}, measure_cells(run, *plan)};
+    }
+    const auto measure = [&run, &own, kind](const std::vector<trial>& trials) {
+        return std::vector{own.measure(run, trials, kind).front()};
+    };
+    return compared_factor{"", all, measure({}), measure};
 }
 
 std::vector<std::optional<std::vector<double>>> measure_levels(const compared_factor& f,

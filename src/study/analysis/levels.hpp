@@ -32,6 +32,19 @@ struct compared_factor {
 /// trials. The figure of cells is their mean. The lists refer to `run`.
 std::vector<compared_factor> list_factors(const run_outline& run, const run_people& people, sigmoid kind);
 
+/// Returns the factor whose levels are compared between groups, too: the methods if a trial has one, else a
+/// level with all trials, with the main figure. Returns nothing if groups are not compared.
+std::optional<compared_factor> find_group_factor(const run_outline& run, sigmoid kind);
+
+/// The figure of the participants who have it at each level.
+struct level_values {
+    std::vector<std::vector<double>> rows = {}; ///< of all levels, by participant
+    std::vector<std::string> groups = {};       ///< by participant
+};
+
+/// Compares the groups, and the levels if there are several: group, the factor, and both together.
+effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v);
+
 /// Returns a participant's values of each figure at all levels; nothing if one is missing.
 std::vector<std::optional<std::vector<double>>> measure_levels(const compared_factor& f,
                                                                const std::vector<trial>& trials);

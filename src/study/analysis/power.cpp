@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -30,14 +31,14 @@ std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
     return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
 }
 
-// Prepares a run for n participants, without their answers.
+// Prepares a run for n participants, without their answers. `prefix`: start of their codes.
 std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
-                                       const std::optional<std::uint64_t>& seed)
+                                       const std::optional<std::uint64_t>& seed, const std::string& prefix)
 {
     const run_definition& r = d.runs[run];
     std::vector<person_run> all;
     for (std::size_t i = 1; i <= n; ++i) {
-        person_run p{fmt::format("{:02}", i)};
+        person_run p{fmt::format("{}{:02}", prefix, i)};
         p.planned = make_run(d, run, p.code, seed.value_or(d.seed.value_or(default_seed(p.code)))).trials;
         for (const planned_trial& t : p.planned) {
             trial one;
@@ -99,8 +100,11 @@ void count(power_at& at, const compared& found)
     }
 }
 
+// A figure at all levels, by participant; missing if one is missing.
+using level_rows = std::span<const std::optional<std::vector<double>>>;
+
 // Tests a figure between the levels of a factor with some participants. Leaves out those without a value.
-compared compare_levels(std::span<const std::optional<std::vector<double>>> people, std::size_t levels)
+compared compare_levels(level_rows people)
 {
     std::vector<std::vector<double>> rows;
     for (const auto& row : people)
@@ -111,85 +115,170 @@ compared compare_levels(std::span<const std::optional<std::vector<double>>> peop
         differences.push_back(row.back() - row.front());
     const t_test pair = quick_test_mean(differences, 0.0);
     const bool is_above = pair.mean.value_or(0.0) > 0.0;
-    if (levels == 2)
+    if (rows.empty() || rows.front().size() == 2)
         return {pair.p, is_above};
-    const effect e = repeated_measures({rows, levels, 1}).first;
+    const effect e = repeated_measures({rows, rows.front().size(), 1}).first;
     return {e.p_gg ? e.p_gg : e.p, is_above};
 }
+
+// Tests the groups by the means over the levels, or by the differences of the levels if `by_level`. `people`
+// has `most` participants of each group, of whom the first n count.
+compared compare_groups(level_rows people, std::size_t most, std::size_t n, bool by_level)
+{
+    level_values v;
+    std::vector<double> means; // by group
+    for (std::size_t first = 0; first < people.size(); first += most) {
+        std::vector<double> own;
+        for (const auto& row : people.subspan(first, n))
+            if (row) {
+                v.rows.push_back(*row);
+                v.groups.push_back(fmt::format("{:04}", first / most));
+                own.push_back(by_level ? row->back() - row->front() : mean(*row));
+            }
+        if (own.size() < 2)
+            return {};
+        means.push_back(mean(own));
+    }
+    const effect_list all = compare_with_groups("level", v.rows.front().size(), v);
+    const effect& e = *all.effects[by_level ? 2 : 0].second;
+    return {e.p_gg ? e.p_gg : e.p, means.back() > means.front()};
+}
+
+// Lists the groups that are compared in a run of the definition's group. Lists only that group, or "", if
+// there is nothing to compare.
+std::vector<std::string> list_alike_groups(const experiment_definition& d, const run_outline& run)
+{
+    std::vector<std::string> all;
+    if (std::ranges::count(d.outline.runs, run) != 0) // else analyze compares no groups in it
+        for (const group_outline& g : d.outline.groups)
+            if (std::ranges::count(g.runs, run) != 0)
+                all.push_back(g.name);
+    return all.empty() ? std::vector{d.group} : all;
+}
+
+// Source of a test. Without a figure it is the main comparison of a run.
+struct planned_test {
+    std::optional<std::size_t> figure = {}; // index
+    bool between_groups = false;
+    bool by_level = false; // true for the interaction of groups and levels
+};
 
 // A run with its participants in all sessions.
 struct simulated_study {
     simulated_study(const std::vector<experiment_definition>& sessions, std::size_t r,
-                    const power_request& asked, std::size_t most)
-        : run(sessions.front().runs[r]), outcome{r, {}}
+                    const power_request& asked, std::size_t n)
+        : run(sessions.front().runs[r]),
+          groups(list_alike_groups(sessions.front(), run.outline)),
+          most(n),
+          own_from(most * static_cast<std::size_t>(std::ranges::find(groups, sessions.front().group) -
+                                                   groups.begin())),
+          trials(most * groups.size()),
+          outcome{r, {}}
     {
-        for (const experiment_definition& held : sessions)
-            people.push_back(
-                prepare_people(held, r, run.outline.is_in(held.session.value_or(1)) ? most : 0, asked.seed));
+        for (const std::string& group : groups) {
+            people.emplace_back();
+            held.push_back(sessions);
+            for (experiment_definition& one : held.back()) {
+                one.group = group;
+                const std::size_t has_run = run.outline.is_in(one.session.value_or(1)) ? most : 0;
+                people.back().push_back(prepare_people(
+                    one, r, has_run, asked.seed,
+                    group != sessions.front().group ? fmt::format("group{}x", held.size()) : ""));
+            }
+        }
+        run_people all;
         for (std::size_t i = 0; i < most; ++i) {
-            trials.emplace_back();
-            for (const auto& session : people)
+            for (const auto& session : people.front())
                 if (!session.empty())
                     trials[i].insert(trials[i].end(), session[i].trials.begin(), session[i].trials.end());
+            all.all.push_back({"", &trials[i]});
         }
-        for (const std::vector<trial>& own : trials)
-            all.all.push_back({"", &own});
-        factors = list_factors(run.outline, all, sigmoid::normal);
-        std::erase_if(factors, [](const compared_factor& f) { return f.levels.size() < 2; });
         if (task_in(run.outline).name_comparison(run.outline).against)
-            outcome.tests.emplace_back();
-        for (const compared_factor& f : factors)
-            for (const named_value& figure : f.figures) {
-                outcome.tests.push_back({f.name, figure.name.front()});
-                for (const level& l : f.levels)
-                    outcome.tests.back().levels.push_back(l.name);
-            }
-        for (tested_power& t : outcome.tests)
-            for (const std::size_t n : asked.participants)
-                t.at.push_back({n});
+            add_test({}, {}, asked);
+        std::size_t figures = 0;
+        const auto add = [&](const compared_factor& f, const planned_test& p, const tested_power& t) {
+            for (std::size_t k = 0; k < f.figures.size(); ++k)
+                add_test({p.figure.value_or(0) + k, p.between_groups, p.by_level},
+                         {t.factor, f.figures[k].name.front(), t.levels}, asked);
+        };
+        for (compared_factor& f : list_factors(run.outline, all, sigmoid::normal)) {
+            if (f.levels.size() < 2)
+                continue;
+            std::vector<std::string> names;
+            std::ranges::transform(f.levels, std::back_inserter(names), &level::name);
+            add(f, {figures}, {f.name, {}, std::move(names)});
+            figures += f.figures.size();
+            factors.push_back(std::move(f));
+        }
+        const auto between =
+            groups.size() > 1 ? find_group_factor(run.outline, sigmoid::normal) : std::nullopt;
+        if (!between)
+            return;
+        const bool by_level = between->levels.size() > 1; // then it is the first of the factors
+        add(*between, {by_level ? 0 : figures, true}, {"group", {}, groups});
+        if (by_level)
+            add(*between, {0, true, true}, {"group:" + between->name, {}, groups});
+        else
+            factors.push_back(*between);
+    }
+
+    void add_test(const planned_test& p, tested_power t, const power_request& asked)
+    {
+        for (const std::size_t n : asked.participants)
+            t.at.push_back({n});
+        plans.push_back(p);
+        outcome.tests.push_back(std::move(t));
     }
 
     // Simulates a study, and tests each number of participants.
-    void simulate(const std::vector<experiment_definition>& sessions, const stimulus_set& stimuli,
-                  const simulation& s)
+    void simulate(const stimulus_set& stimuli, const simulation& s)
     {
-        if (outcome.tests.empty())
+        if (plans.empty())
             return;
         const task& own = task_in(run.outline);
         std::vector<compared_person> main;
-        std::vector<std::vector<std::optional<std::vector<double>>>> figures(outcome.tests.size()); // by test
+        std::vector<std::vector<std::optional<std::vector<double>>>> figures; // by factor and figure
         for (std::size_t i = 0; i < trials.size(); ++i) {
             trials[i].clear();
-            for (std::size_t n = 0; n < sessions.size(); ++n) {
-                if (people[n].empty())
+            for (std::size_t n = 0; n < held.front().size(); ++n) {
+                std::vector<person_run>& session = people[i / most][n];
+                if (session.empty())
                     continue;
-                person_run& who = people[n][i];
-                answer_all(who, {s, sessions[n], run, stimuli, who.code}, sessions[n], run, trials[i]);
+                const experiment_definition& d = held[i / most][n];
+                person_run& who = session[i % most];
+                answer_all(who, {s, d, run, stimuli, who.code}, d, run, trials[i]);
             }
-            std::size_t test = 0;
-            if (outcome.tests.front().factor.empty()) {
+            if (!plans.front().figure && i >= own_from && i < own_from + most)
                 main.push_back(own.compare(run.outline, trials[i]));
-                ++test;
-            }
+            std::size_t k = 0;
             for (const compared_factor& f : factors)
-                for (auto& row : measure_levels(f, trials[i]))
-                    figures[test++].push_back(std::move(row));
+                for (auto& row : measure_levels(f, trials[i])) {
+                    figures.resize(std::max(figures.size(), k + 1));
+                    figures[k++].push_back(std::move(row));
+                }
         }
-        for (std::size_t test = 0; test < outcome.tests.size(); ++test) {
-            tested_power& t = outcome.tests[test];
-            for (power_at& at : t.at)
-                count(at, t.factor.empty() ? own.test(run.outline, std::span(main).first(at.participants),
-                                                      fmt::format("{}/{}", s.seed, run.outline.name))
-                                           : compare_levels(std::span(figures[test]).first(at.participants),
-                                                            t.levels.size()));
-        }
+        const auto test = [&](const planned_test& p, std::size_t n) {
+            if (!p.figure)
+                return own.test(run.outline, std::span(main).first(n),
+                                fmt::format("{}/{}", s.seed, run.outline.name));
+            const level_rows rows(figures[*p.figure]);
+            return p.between_groups ? compare_groups(rows, most, n, p.by_level)
+                                    : compare_levels(rows.subspan(own_from, n));
+        };
+        for (std::size_t k = 0; k < plans.size(); ++k)
+            for (power_at& at : outcome.tests[k].at)
+                count(at, test(plans[k], at.participants));
     }
 
     const run_definition& run;
-    std::vector<std::vector<person_run>> people = {}; // by session
-    std::vector<std::vector<trial>> trials = {};      // by participant
-    run_people all = {};
+    std::vector<std::string> groups; // that are compared, or one
+    std::size_t most;                // participants of each group
+    std::size_t own_from;            // first participant of the group that is asked for
+    std::vector<std::vector<experiment_definition>> held = {};     // by group and session
+    std::vector<std::vector<std::vector<person_run>>> people = {}; // by group and session
+    std::vector<std::vector<trial>> trials;                        // by participant, a group after the other
     std::vector<compared_factor> factors = {};
+    std::vector<planned_test> plans = {}; // of the outcome's tests
     run_power outcome;
 };
 
@@ -212,7 +301,7 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
         simulation s = r.observer;
         s.seed += k;
         for (simulated_study& one : runs)
-            one.simulate(sessions, stimuli, s);
+            one.simulate(stimuli, s);
     }
     std::vector<run_power> all;
     for (simulated_study& one : runs)

@@ -36,7 +36,7 @@ struct power_at {
 
 /// A test that analyze prints: the main comparison of a run, or of a figure between the levels of a factor.
 struct tested_power {
-    std::string factor = {};              ///< method or session; empty for the main comparison
+    std::string factor = {};              ///< method, session, group or group:method; empty: main comparison
     std::string figure = {};              ///< "jnd"; empty for the main comparison
     std::vector<std::string> levels = {}; ///< names of the factor's levels
     std::vector<power_at> at = {};        ///< outcomes by sample size
@@ -48,11 +48,12 @@ struct run_power {
     std::vector<tested_power> tests = {};
 };
 
-/// Simulates and tests each study of the part: two levels by a paired t test, more by the analysis of
-/// variance with the correction of Greenhouse and Geisser. Study k (from 0) has the participants 01, 02, ...,
-/// each with all sessions and an observer whose seed is that of `observer` plus k. A study of n consists of
-/// the first n participants of a larger one. Void trials come again. Calls `go_on` before each study, and
-/// returns nothing if `go_on` returns false. \throws error (bad_input) as simulated_observer does.
+/// Simulates and tests each study of the part: two levels by a paired t test, more levels and groups by the
+/// analysis of variance with the correction of Greenhouse and Geisser. Other groups that do a run as the
+/// group of `d` does have as many participants, and the same stimuli. Study k (from 0) has the participants
+/// 01, 02, ..., each with all sessions and an observer whose seed is that of `observer` plus k. A study of n
+/// consists of the first n participants of a larger one. Void trials come again. Calls `go_on` before each
+/// study, and returns nothing if `go_on` returns false. \throws error (bad_input) as simulated_observer does.
 std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
                                                      const stimulus_set& stimuli, const power_request& r,
                                                      const std::function<bool()>& go_on);

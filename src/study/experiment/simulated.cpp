@@ -67,6 +67,7 @@ simulation parse_simulation(std::string_view text)
         {"dprime_sd", 0.0, 10.0, into(s.dprime_sd)},
         {"exponent_sd", 0.0, 10.0, into(s.exponent_sd)},
         {"correlation", 0.0, 1.0, into(s.correlation)},
+        {"group_d", -10.0, 10.0, into(s.group_d)},
         {"method_sd", 0.0, 1e6, into(s.method_sd)}};
     read_observer(text, keys, "seed=1,sigma=1");
     return s;
@@ -95,6 +96,7 @@ std::string to_text(const simulation& s)
     add("dprime_sd", s.dprime_sd, usual.dprime_sd);
     add("exponent_sd", s.exponent_sd, usual.exponent_sd);
     add("correlation", s.correlation, usual.correlation);
+    add("group_d", s.group_d, usual.group_d);
     add("method_sd", s.method_sd, usual.method_sd);
     return text;
 }
@@ -129,6 +131,11 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
         return one;
     };
     run_.person.figures = draw();
+    if (const auto& groups = d.outline.groups; groups.size() > 1)
+        run_.person.group =
+            s.group_d *
+            static_cast<double>(std::ranges::find(groups, d.group, &group_outline::name) - groups.begin()) /
+            static_cast<double>(groups.size() - 1);
     for (std::size_t m = 0; m < d.methods.size(); ++m)
         run_.person.methods.push_back(numbers.normal());
     for (std::size_t m = 0; m < d.methods.size(); ++m)

@@ -35,6 +35,8 @@ struct simulation {
     double dprime_sd = 0.0;
     double exponent_sd = 0.0;
     double correlation = 1.0; ///< between methods, of the four deviations above
+    double group_d = 0.0;     ///< difference of the last group from the first, in these deviations; groups
+                              ///< between them are evenly apart
     double method_sd = 0.0;   ///< of the worth of each method, in the unit of sigma (choose, rate)
 
     friend bool operator==(const simulation&, const simulation&) = default;

@@ -71,7 +71,8 @@ struct simulated_figures {
 
 /// Deviations of a simulated person from the mean of all, in standard deviations.
 struct simulated_person {
-    simulated_figures figures = {};                        ///< common to all methods
+    simulated_figures figures = {}; ///< common to all methods
+    double group = 0.0;             ///< deviation of the person's group, of all figures
     std::vector<simulated_figures> figures_by_method = {}; ///< of each method of the definition alone
     std::vector<double> methods = {};                      ///< of the worth of each method
 };

@@ -248,7 +248,8 @@ double find_deviation(const simulated_run& who, const planned_trial& t, double s
     const double common =
         task_in(who.run.outline).has_one_method(who.run.outline) ? who.truth.correlation : 1.0;
     const double own = who.person.figures_by_method[find_base(who, t)].*figure;
-    return std::sqrt(common) * (who.person.figures.*figure) + std::sqrt(1.0 - common) * own;
+    return std::sqrt(common) * (who.person.figures.*figure) + std::sqrt(1.0 - common) * own +
+           who.person.group;
 }
 
 // Returns the true value for the method of a trial.
