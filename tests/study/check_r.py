@@ -432,7 +432,8 @@ ORDERS = studies.measures(
 ORDER = COMMANDS + """
 for (line in said[1:3]) suppressMessages(eval(parse(text = line)))
 pse <- function(q) {
-  loss <- function(x) -sum(dbinom(q$positive, 1, x[3] / 2 + (1 - x[3]) * pnorm((q$value - x[1]) / exp(x[2])), log = TRUE))
+  share <- function(x) pmin(pmax(x[3] / 2 + (1 - x[3]) * pnorm((q$value - x[1]) / exp(x[2])), 1e-12), 1 - 1e-12)
+  loss <- function(x) -sum(dbinom(q$positive, 1, share(x), log = TRUE))
   fits <- lapply(c(0.001, 0.06, 0.119), function(lapse) optim(c(-24, log(6), lapse), loss, method = "L-BFGS-B", lower = c(-60, -2, 0), upper = c(20, 5, 0.12),
                                                               control = list(factr = 10, maxit = 1000)))
   fits[[which.min(sapply(fits, function(f) f$value))]]$par[1]
