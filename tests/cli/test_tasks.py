@@ -181,7 +181,7 @@ class EveryTask(ExperimentTest):
 
     def test_methods_at_one_place_of_the_plane_share_a_point(self):
         self.write("desk.toml", DESK)
-        self.write("t.toml", define("dissimilar").replace("[[run]]", toml("method", "soft too", burst=0.05) + "[[run]]"))
+        self.write("t.toml", define("dissimilar").replace("[[run]]", toml("method", "soft too", burst=0.05) + "[[run]]").replace("trials = 12", "trials = 40"))
         self.simulate("1", definition="t.toml", folder="study", spec="seed=1,sigma=0")
         self.ok("analyze", "study", "-o", "a.svg")
         panel, = Svg(self.dir / "a.svg").all("curves")
