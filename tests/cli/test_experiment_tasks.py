@@ -451,6 +451,13 @@ class Tasks(ExperimentTest):
         self.assertEqual([w for w in self.analysis()["warnings"] if "(see " in w or "(test " in w], expected)
         self.assertIn("- Warning: " + expected[1].replace("_", "\\_"), self.ok("report", "study").stdout)
 
+    def test_the_report_joins_notes_that_differ_in_numbers(self):
+        self.hold(measures("desk.toml", toml("run", "soa", task="constant", question="?", methods=["soft"], vary="soa_s", values=[0.06, 0.062, 0.064], standard=0.063,
+                                             trials=12), keys="gap_s = 0.1\n"))
+        notes = [line for line in self.ok("report", "study").stdout.splitlines() if "break the timing law" in line]
+        self.assertEqual([line.partition(":")[0] for line in notes], ["- east with soft", "- east with standard"])
+        self.assertTrue(notes[0].endswith("; and 2 more like it"), notes)
+
     def test_a_wide_table_has_the_figures_of_each_method(self):
         for code in ("01", "02"):
             self.hold(tasks("stairs", "there"), code)

@@ -240,7 +240,7 @@ std::vector<std::string> list_notes(const study_facts& f)
     for (const auto& [key, texts] : notes) {
         const std::size_t more = texts.size() - 1;
         all.push_back(fmt::format("{}: {}{}", key.first, *texts.begin(),
-                                  more == 0 ? "" : fmt::format(" (and {} more, with other numbers)", more)));
+                                  more == 0 ? "" : fmt::format("; and {} more like it", more)));
     }
     return all;
 }
