@@ -22,7 +22,6 @@ ROUNDS, PAUSE = 6, RATE // 5
 STROKE = ("--shape", "circle", "--duration", "1")
 SHORT_STROKE, LONG_STROKE = (("--path", "M 0 10 H 60", "--duration", duration) for duration in ("1", "60"))
 ERROR_MS = 6  # the driver sends up to 6 ms at once, and its position moves by these
-GRIDS = {24: (4, 6), 8: (2, 4), 2: (1, 2)}
 FORMATS = {16: "s16", 24: "s24", 32: "s32"}
 LINE = 2
 FRAMES, KEPT = 48, 16  # frames in a packet of QEMU's card, and how many of them QEMU records
@@ -90,16 +89,7 @@ def count_equal(got, wanted, frame):
 
 class CardTest(RigTest):
     def array(self, card, channels, extra=""):
-        rows, columns = GRIDS[channels]
-        return self.write("array.toml", f"""
-[array]
-name = "card"
-grid = {{ rows = {rows}, columns = {columns}, pitch_mm = 20.0 }}
-[output]
-pcm = "hw:CARD={card}"
-period_frames = {PERIOD}
-periods = {PERIODS}
-{extra}""")
+        return self.grid(channels, extra, f"hw:CARD={card}", PERIOD, PERIODS)
 
     def render(self, array, sample_format, *stroke):
         r = self.tool("render", *stroke, "--array", array, "--sample-format", sample_format, "-o", "o.wav")

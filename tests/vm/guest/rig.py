@@ -161,17 +161,17 @@ class RigTest(unittest.TestCase):
         self.addCleanup(lambda: p.poll() is None and p.kill())
         return p
 
-    def grid(self, channels=9, extra=""):
-        """An array file for the loopback card."""
-        rows, columns = {9: (3, 3), 16: (4, 4)}[channels]
+    def grid(self, channels=9, extra="", pcm=OUT.format(0), period=PERIOD, periods=PERIODS):
+        """Writes an array file; the loopback card plays it unless `pcm` names another one."""
+        rows, columns = {2: (1, 2), 8: (2, 4), 9: (3, 3), 16: (4, 4), 24: (4, 6)}[channels]
         return self.write("array.toml", f"""
 [array]
 name = "vm"
 grid = {{ rows = {rows}, columns = {columns}, pitch_mm = 20.0 }}
 [output]
-pcm = "{OUT.format(0)}"
-period_frames = {PERIOD}
-periods = {PERIODS}
+pcm = "{pcm}"
+period_frames = {period}
+periods = {periods}
 {extra}""")
 
 
