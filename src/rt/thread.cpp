@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <latch>
@@ -27,11 +28,16 @@
 namespace tactor::rt {
 namespace {
 
+std::atomic<realtime_helper> helper = nullptr;
+
 struct launch {
     const thread_options& options;
     std::function<void()> body;
+    std::latch tried{1};
+    std::latch helped{1};
     std::latch started{1};
     int fifo_error = -1;
+    pid_t thread = 0;
 };
 
 int become_fifo(int priority) noexcept
@@ -76,6 +82,9 @@ void* enter(void* argument) noexcept
     pthread_setname_np(pthread_self(), name.c_str());
     if (l.options.fifo)
         l.fifo_error = become_fifo(l.options.priority);
+    l.thread = ::gettid();
+    l.tried.count_down();
+    l.helped.wait();
     if (l.options.audio) {
         prctl(PR_SET_TIMERSLACK, 1UL);
         flush_denormals();
@@ -101,6 +110,11 @@ bool is_realtime() noexcept
 
 } // namespace
 
+void set_realtime_helper(realtime_helper h) noexcept
+{
+    helper = h;
+}
+
 thread::thread(const thread_options& o, std::function<void()> body)
 {
     launch l{.options = o, .body = std::move(body)};
@@ -118,6 +132,11 @@ thread::thread(const thread_options& o, std::function<void()> body)
         throw std::system_error(code, std::generic_category(), "thread " + o.name);
 
     joinable_ = true;
+    l.tried.wait();
+    const realtime_helper help = helper;
+    if (l.fifo_error == EPERM && help != nullptr && help(l.thread, o.priority))
+        l.fifo_error = 0;
+    l.helped.count_down();
     l.started.wait();
     fifo_error_ = l.fifo_error;
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include <pthread.h>
+#include <sys/types.h>
 
 #include <tactor/version.hpp>
 
@@ -23,6 +24,13 @@ struct thread_options {
     /// Sets denormals to zero and uses the finest timer slack.
     bool audio = false;
 };
+
+/// Function that asks another program to give a thread of this process SCHED_FIFO, and returns true if it
+/// did. May block for a short time.
+using realtime_helper = bool (*)(pid_t thread, int priority) noexcept;
+/// Sets the function that starts of threads call, in the starting thread, when the system refuses SCHED_FIFO.
+/// Null: none, as at first. It holds for the whole process. Any thread.
+void set_realtime_helper(realtime_helper h) noexcept;
 
 /// A joined thread that blocks every signal, so that the host's own threads get them.
 class thread {

@@ -10,8 +10,11 @@
 #include <limits>
 #include <string>
 
+#include <linux/capability.h>
 #include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <doctest/doctest.h>
@@ -57,6 +60,77 @@ TEST_CASE("the starting thread keeps its own signals")
     pthread_sigmask(SIG_SETMASK, nullptr, &after);
     for (int s = 1; s < 32; ++s)
         CHECK(sigismember(&before, s) == sigismember(&after, s));
+}
+
+namespace helping {
+
+std::atomic<bool> helps = false;
+std::atomic<pid_t> thread = 0;
+std::atomic<int> priority = 0;
+std::atomic<bool> body_ran = false;
+bool ran_before = false;
+
+bool help(pid_t t, int p) noexcept
+{
+    thread = t;
+    priority = p;
+    ran_before = body_ran;
+    return helps;
+}
+
+/// Takes the right to SCHED_FIFO from this thread and those that it starts, and gives it back.
+class without_right {
+public:
+    without_right()
+    {
+        ::syscall(SYS_capget, &version_, before_.data());
+        auto none = before_;
+        none[0].effective &= ~(1U << CAP_SYS_NICE);
+        ::syscall(SYS_capset, &version_, none.data());
+        ::getrlimit(RLIMIT_RTPRIO, &limit_);
+        const rlimit zero{.rlim_cur = 0, .rlim_max = limit_.rlim_max};
+        ::setrlimit(RLIMIT_RTPRIO, &zero);
+    }
+    ~without_right()
+    {
+        ::syscall(SYS_capset, &version_, before_.data());
+        ::setrlimit(RLIMIT_RTPRIO, &limit_);
+    }
+    without_right(const without_right&) = delete;
+    without_right& operator=(const without_right&) = delete;
+
+private:
+    __user_cap_header_struct version_{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
+    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> before_{};
+    rlimit limit_{};
+};
+
+} // namespace helping
+
+TEST_CASE("a helper gets a thread to which SCHED_FIFO is refused, before the thread works")
+{
+    const helping::without_right none;
+    for (const bool helps : {true, false}) {
+        helping::helps = helps;
+        helping::thread = helping::priority = 0;
+        helping::body_ran = false;
+        rt::set_realtime_helper(helping::help);
+        pid_t id = 0;
+        thread t({.name = "t", .fifo = true, .priority = 65}, [&id] {
+            helping::body_ran = true;
+            id = ::gettid();
+        });
+        rt::set_realtime_helper(nullptr);
+        t.join();
+        CHECK(helping::thread == id);
+        CHECK(helping::priority == 65);
+        CHECK_FALSE(helping::ran_before);
+        CHECK(t.fifo_error() == (helps ? 0 : EPERM));
+        helping::thread = 0;
+        thread without({.name = "t", .fifo = true}, [] {});
+        thread ordinary({.name = "t"}, [] {});
+        CHECK(helping::thread == 0);
+    }
 }
 
 TEST_CASE("SCHED_FIFO is either granted with the reset flag, or refused with a reason")
