@@ -23,8 +23,9 @@ MAY_INCLUDE = {
     "sink/alsa": {"core", "rt", "sink"},
     "sink/wav": {"core", "files", "plan", "synth", "sink"},
     "amplifier": {"core", "rt"},
+    "desktop": {"rt"},
     "engine": {"core", "plan", "synth", "rt", "sink", "amplifier"},
-    "session": {"core", "files", "files/json", "files/plan", "options", "rt"},
+    "session": {"core", "desktop", "files", "files/json", "files/plan", "options", "rt"},
     "plot": set(),
     "net": {"core"},
     "study": {"files/json", "files/plan", "options", "session", "net"},
@@ -63,6 +64,7 @@ ONLY_IN = {
     "CLI/": ["src/cli/"],
     "pybind11/": ["src/python/"],
     "lo/": ["src/net/osc.cpp"],
+    "systemd/": ["src/desktop/"],
     "kainjow/": ["src/study/"],
     "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/python/", "src/server/", "src/session/", "src/study/"],
 }

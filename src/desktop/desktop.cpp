@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "desktop/desktop.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <dlfcn.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <systemd/sd-bus.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "rt/event_fd.hpp"
+#include "rt/thread.hpp"
+
+namespace tactor::desktop {
+namespace {
+
+/// A function of a library, of any type.
+struct symbol {
+    void* address;
+    template <class F>
+    operator F*() const noexcept // NOLINT(google-explicit-constructor)
+    {
+        return reinterpret_cast<F*>(address);
+    }
+};
+
+/// Functions of libsystemd, which is loaded when it is needed: linked, its eight libraries would make the
+/// tool's start longer.
+struct sd_functions {
+    void* library = ::dlopen("libsystemd.so.0", RTLD_NOW | RTLD_LOCAL);
+    bool complete = library != nullptr;
+
+    symbol find(const char* name) noexcept
+    {
+        void* const found = library != nullptr ? ::dlsym(library, name) : nullptr;
+        complete = complete && found != nullptr;
+        return {found};
+    }
+
+#define TACTOR_SD_BUS(name) decltype(&::sd_bus_##name) name = find("sd_bus_" #name)
+    TACTOR_SD_BUS(open_system);
+    TACTOR_SD_BUS(open_user);
+    TACTOR_SD_BUS(close_unref);
+    TACTOR_SD_BUS(process);
+    TACTOR_SD_BUS(wait);
+    TACTOR_SD_BUS(get_fd);
+    TACTOR_SD_BUS(get_events);
+    TACTOR_SD_BUS(add_object);
+    TACTOR_SD_BUS(call_method_async);
+    TACTOR_SD_BUS(slot_unref);
+    TACTOR_SD_BUS(message_ref);
+    TACTOR_SD_BUS(message_unref);
+    TACTOR_SD_BUS(message_get_errno);
+    TACTOR_SD_BUS(message_is_method_call);
+    TACTOR_SD_BUS(message_read);
+    TACTOR_SD_BUS(reply_method_return);
+#undef TACTOR_SD_BUS
+};
+
+const sd_functions& sd() noexcept
+{
+    static const sd_functions all;
+    return all;
+}
+
+struct message_end {
+    void operator()(sd_bus_message* m) const noexcept { sd().message_unref(m); }
+};
+using message = std::unique_ptr<sd_bus_message, message_end>;
+
+/// Object and interface of a service.
+struct remote {
+    const char* name;
+    const char* path;
+    const char* interface;
+};
+constexpr remote bus_daemon{"org.freedesktop.DBus", "/org/freedesktop/DBus", "org.freedesktop.DBus"};
+constexpr const char* properties = "org.freedesktop.DBus.Properties";
+
+/// A connection to a bus. One thread at a time uses it. If it fails, it stays closed, and each call fails.
+class connection {
+public:
+    explicit connection(bool of_system) noexcept
+    {
+        if (sd().complete && (of_system ? sd().open_system : sd().open_user)(&bus_) < 0)
+            bus_ = nullptr;
+    }
+    ~connection()
+    {
+        if (bus_ != nullptr)
+            sd().close_unref(bus_);
+    }
+    connection(const connection&) = delete;
+    connection& operator=(const connection&) = delete;
+
+    sd_bus* get() const noexcept { return bus_; }
+
+    /// Calls a method. Returns the reply; null for an error, and without a reply within a second.
+    template <class... T>
+    message call(const remote& to, const char* method, const char* types, T... arguments) noexcept
+    {
+        using clock = std::chrono::steady_clock;
+        const clock::time_point end = clock::now() + std::chrono::seconds(1);
+        message reply;
+        sd_bus_slot* slot = nullptr;
+        int done = bus_ == nullptr ? -ENOTCONN
+                                   : sd().call_method_async(bus_, &slot, to.name, to.path, to.interface,
+                                                            method, keep, &reply, types, arguments...);
+        while (done >= 0 && reply == nullptr && clock::now() < end) {
+            done = sd().process(bus_, nullptr);
+            const auto left = std::chrono::ceil<std::chrono::microseconds>(end - clock::now()).count();
+            if (done == 0)
+                done = sd().wait(bus_, static_cast<std::uint64_t>(std::max<std::int64_t>(0, left)));
+            if (done == -EINTR)
+                done = 0;
+        }
+        if (slot != nullptr)
+            sd().slot_unref(slot); // drops a later reply
+        return reply != nullptr && sd().message_get_errno(reply.get()) == 0 ? std::move(reply) : nullptr;
+    }
+
+    /// Calls a method, and reads the one value of its reply, which lasts until the next call of this
+    /// function. `type`: that of the value, after "v" for a value in a variant.
+    template <class V, class... T>
+    bool ask(V* value, std::string_view type, const remote& to, const char* method, const char* types,
+             T... arguments) noexcept
+    {
+        last_ = call(to, method, types, arguments...);
+        return last_ != nullptr &&
+               (type[0] == 'v' ? sd().message_read(last_.get(), "v", type.data() + 1, value)
+                               : sd().message_read(last_.get(), type.data(), value)) > 0;
+    }
+
+private:
+    static int keep(sd_bus_message* m, void* reply, sd_bus_error*) noexcept
+    {
+        static_cast<message*>(reply)->reset(sd().message_ref(m));
+        return 1;
+    }
+
+    sd_bus* bus_ = nullptr;
+    message last_;
+};
+
+// Lowers both limits on the time of real-time threads to `longest_us`. Keeps lower ones.
+bool limit_runtime(std::int64_t longest_us) noexcept
+{
+    rlimit l{};
+    if (longest_us <= 0 || ::getrlimit(RLIMIT_RTTIME, &l) != 0)
+        return false;
+    l.rlim_max = std::min(l.rlim_max, static_cast<rlim_t>(longest_us));
+    l.rlim_cur = std::min(l.rlim_cur, l.rlim_max);
+    return ::setrlimit(RLIMIT_RTTIME, &l) == 0;
+}
+
+constexpr const char* card_interface = "org.freedesktop.ReserveDevice1";
+
+} // namespace
+
+bool ask_realtime(pid_t thread, int priority) noexcept
+{
+    constexpr remote kit{"org.freedesktop.RealtimeKit1", "/org/freedesktop/RealtimeKit1",
+                         "org.freedesktop.RealtimeKit1"};
+    constexpr remote facts{kit.name, kit.path, properties};
+    connection bus(true);
+    std::int64_t longest_us = 0;
+    std::int32_t highest = 0;
+    return bus.ask(&longest_us, "vx", facts, "Get", "ss", kit.interface, "RTTimeUSecMax") &&
+           bus.ask(&highest, "vi", facts, "Get", "ss", kit.interface, "MaxRealtimePriority") && highest > 0 &&
+           limit_runtime(longest_us) &&
+           bus.call(kit, "MakeThreadRealtimeWithPID", "ttu", static_cast<std::uint64_t>(::getpid()),
+                    static_cast<std::uint64_t>(thread),
+                    static_cast<std::uint32_t>(std::min(priority, highest))) != nullptr;
+}
+
+struct reservation::impl {
+    impl(unsigned card_index, std::function<bool()> g)
+        : name(fmt::format("{}.Audio{}", card_interface, card_index)),
+          path(fmt::format("/org/freedesktop/ReserveDevice1/Audio{}", card_index)),
+          give_up(std::move(g))
+    {
+    }
+
+    bool request_name(std::uint32_t flags) noexcept
+    {
+        constexpr std::uint32_t is_owner = 1;
+        std::uint32_t result = 0;
+        return bus.ask(&result, "u", bus_daemon, "RequestName", "su", name.c_str(), flags) &&
+               result == is_owner;
+    }
+    int answer(sd_bus_message* m) noexcept;
+    void serve() noexcept;
+
+    std::string name;
+    std::string path;
+    std::function<bool()> give_up;
+    rt::event_fd stop;
+    connection bus{false};
+    message request; // waits until the card is closed
+    std::optional<rt::thread> thread;
+};
+
+int reservation::impl::answer(sd_bus_message* m) noexcept
+{
+    std::int32_t theirs = 0;
+    if (sd().message_is_method_call(m, card_interface, "RequestRelease") > 0 &&
+        sd().message_read(m, "i", &theirs) > 0) {
+        if (theirs <= priority || request != nullptr || !give_up || !give_up())
+            return sd().reply_method_return(m, "b", 0);
+        request.reset(sd().message_ref(m));
+        return 1;
+    }
+    const char* property = nullptr;
+    if (sd().message_is_method_call(m, properties, "Get") > 0 &&
+        sd().message_read(m, "ss", nullptr, &property) > 0)
+        return std::string_view(property) == "Priority" ? sd().reply_method_return(m, "v", "i", priority)
+                                                        : sd().reply_method_return(m, "v", "s", "tactor");
+    return 0; // sd-bus replies that there is no such method
+}
+
+// Answers other programs until `stop` is signalled.
+void reservation::impl::serve() noexcept
+{
+    for (pollfd fds[] = {{stop.fd(), POLLIN, 0}, {sd().get_fd(bus.get()), 0, 0}}; fds[0].revents == 0;) {
+        int done = 1;
+        while (done > 0)
+            done = sd().process(bus.get(), nullptr);
+        if (done < 0)
+            fds[1].fd = -1; // without the bus nobody asks for the card
+        fds[1].events = static_cast<short>(sd().get_events(bus.get()));
+        ::poll(fds, 2, -1);
+    }
+}
+
+reservation::reservation(std::unique_ptr<impl> i) : impl_(std::move(i))
+{
+}
+
+reservation::~reservation()
+{
+    impl_->stop.signal();
+    impl_->thread.reset();
+    // Other programs take the name once they have the reply, so the name is free before.
+    impl_->bus.call(bus_daemon, "ReleaseName", "s", impl_->name.c_str());
+    if (impl_->request != nullptr)
+        sd().reply_method_return(impl_->request.get(), "b", 1);
+    impl_->request.reset();
+}
+
+std::unique_ptr<reservation> reservation::take(unsigned card_index, std::function<bool()> give_up,
+                                               std::string& holder)
+try {
+    constexpr std::uint32_t replace = 2;
+    constexpr std::uint32_t do_not_queue = 4;
+    auto i = std::make_unique<impl>(card_index, std::move(give_up));
+    const auto answer = [](sd_bus_message* m, void* self, sd_bus_error*) noexcept {
+        return static_cast<impl*>(self)->answer(m);
+    };
+    if (i->bus.get() == nullptr ||
+        sd().add_object(i->bus.get(), nullptr, i->path.c_str(), answer, i.get()) < 0 ||
+        i->request_name(do_not_queue)) // the program that holds the card does not reserve cards
+        return nullptr;
+    const remote card{i->name.c_str(), i->path.c_str(), card_interface};
+    const char* text = nullptr;
+    int agrees = 0;
+    if (i->bus.ask(&text, "vs", {card.name, card.path, properties}, "Get", "ss", card_interface,
+                   "ApplicationName"))
+        holder = text;
+    if (!i->bus.ask(&agrees, "b", card, "RequestRelease", "i", priority) || agrees == 0 ||
+        !i->request_name(do_not_queue | replace))
+        return nullptr;
+    i->thread.emplace(rt::thread_options{.name = "tactor-bus"}, [p = i.get()] { p->serve(); });
+    return std::unique_ptr<reservation>(new reservation(std::move(i)));
+} catch (const std::system_error&) { // no descriptors or threads left
+    return nullptr;
+}
+
+} // namespace tactor::desktop

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Replacement without sd-bus: grants nothing.
+#include <utility>
+
+#include "desktop/desktop.hpp"
+
+namespace tactor::desktop {
+
+struct reservation::impl {};
+
+bool ask_realtime(pid_t, int) noexcept
+{
+    return false;
+}
+
+reservation::reservation(std::unique_ptr<impl> i) : impl_(std::move(i))
+{
+}
+
+reservation::~reservation() = default;
+
+std::unique_ptr<reservation> reservation::take(unsigned, std::function<bool()>, std::string&)
+{
+    return nullptr;
+}
+
+} // namespace tactor::desktop
