@@ -12,7 +12,7 @@ import sys
 MAY_INCLUDE = {
     "core": set(),
     "options": {"core", "percept"},
-    "files": {"core"},
+    "files": {"core", "files/json"},
     "files/json": {"core"},
     "files/plan": {"core", "files", "files/json", "plan", "percept", "synth"},
     "plan": {"core"},

@@ -178,6 +178,9 @@ struct stroke_fit {
     /// Strokes with the same number above 0 are fitted together, as a single picture. 0: this stroke is
     /// fitted alone.
     unsigned group = 0;
+    /// Maps (0, 0) to (1, 1) mm to the box around the tactors, without a margin, instead of making the stroke
+    /// as large as possible. Points outside the hull of the tactors move to its edge.
+    bool unit_square = false;
 
     friend bool operator==(const stroke_fit&, const stroke_fit&) = default;
 };
@@ -232,15 +235,19 @@ struct stroke {
 ///
 /// `intensity_max`, here and below: value of an intensity in CSV and of a timed point in TOML that means 1,
 /// such as 255. A greater value is refused.
+///
+/// `position`, here and below: place on the body whose touches are read, for a format that has several.
+/// Empty: the first, with a warning that names the others.
 /// \throws error (bad_input) with file, line and column.
-[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file,
-                                                          double intensity_max = 1.0);
+[[nodiscard]] TACTOR_API std::vector<stroke>
+load_strokes(const std::filesystem::path& file, double intensity_max = 1.0, std::string_view position = {});
 
 /// Reads strokes from an open descriptor, such as standard input, to its end. Guesses the format as
 /// parse_strokes() does. `name` is used in messages. Blocks until the end of the input.
 /// \throws error (bad_input) with line and column.
 [[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(int descriptor, const std::string& name,
-                                                          double intensity_max = 1.0);
+                                                          double intensity_max = 1.0,
+                                                          std::string_view position = {});
 
 /// Reads strokes from TOML text. `name` is used in messages.
 [[nodiscard]] TACTOR_API std::vector<stroke>
@@ -257,7 +264,8 @@ parse_strokes_toml(std::string_view text, const std::string& name, double intens
                                                                const std::string& name);
 /// Reads strokes in the format that the beginning of the text shows; TOML if it shows none.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name,
-                                                           double intensity_max = 1.0);
+                                                           double intensity_max = 1.0,
+                                                           std::string_view position = {});
 
 } // namespace v0
 } // namespace tactor

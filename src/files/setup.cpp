@@ -71,7 +71,7 @@ written_value read_value(const toml_table& t, const toml_table::key_value& e, co
 
 constexpr bounds limit_db{min_db, 0.0};
 constexpr bounds spread_db{0.0, -min_db};
-constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
+constexpr unsigned most_whole = std::numeric_limits<unsigned>::max();
 
 // Notes the entry of a tactor. Refuses a second one.
 void note_entry(const toml_table& t, unsigned i, std::vector<const toml_table*>& entries, const char* hint)
@@ -520,12 +520,12 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
     note_entry(t, i, entries, "give each tactor one entry in [[calibration.tactor]]");
     for (const char* key : {"check_right", "check_below_right", "staircases"})
-        t.whole(key, 0, any_number);
+        t.whole(key, 0, most_whole);
     if (const toml::array* all = t.list("reversals_dbfs", "levels"))
         for (const toml::node& n : *all)
             t.to_number(n, "reversals_dbfs", limit_db);
     return {i, t.number("threshold_dbfs", limit_db), t.number("sd_db", spread_db),
-            t.number("posterior_sd_db", spread_db), t.need(t.whole("trials", 0, any_number), "trials")};
+            t.number("posterior_sd_db", spread_db), t.need(t.whole("trials", 0, most_whole), "trials")};
 }
 
 // Reads and checks [calibration] and [[calibration.tactor]], which describe the measurement of thresholds.
@@ -545,7 +545,7 @@ void read_calibration(const toml_table& t, located_setup& out)
     r.feedback = t.boolean("feedback");
     r.masker = t.text("masker");
     r.date = t.text("date");
-    r.seed = t.whole("seed", 0, any_number);
+    r.seed = t.whole("seed", 0, most_whole);
     r.simulated = t.boolean("simulated").value_or(false);
     const std::vector<toml_table> entries = t.tables("tactor");
     std::vector<const toml_table*> seen(out.contents.array->tactors.size());

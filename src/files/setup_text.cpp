@@ -287,6 +287,8 @@ void add_choices(lines& out, const stroke& s)
     out.add_unusual("level_db", s.choices.level_db, 0.0);
     if (s.fit && s.fit->group != 0)
         refuse(s, "its group is fitted as a whole", "call apply_fits() first");
+    if (s.fit && s.fit->unit_square)
+        refuse(s, "its places are parts of an array", "call apply_fits() first");
     if (s.fit) {
         out.add("fit", true);
         out.add("fit_margin_mm", s.fit->margin_mm);

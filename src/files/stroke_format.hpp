@@ -20,6 +20,7 @@ struct stroke_file_text {
     const std::string& name;                       ///< stands for the text in messages
     double intensity_max = 1.0;                    ///< value of an intensity that means 1
     const std::filesystem::path* folder = nullptr; ///< of files that it names; null: it must not name any
+    std::string_view position = {};                ///< place on the body; empty: the first in the text
 };
 
 /// A format of stroke files.
@@ -37,7 +38,11 @@ struct stroke_format {
     std::string (*write)(std::span<const stroke> strokes) = nullptr;
     /// A file has the points of one stroke: no second stroke, and no options.
     bool only_points = false;
+    bool has_positions = false; ///< a file may have touches for several places on the body
 };
+
+/// Reads a text. \throws error (bad_input), also for a position that the format does not have.
+std::vector<stroke> read_stroke_text(const stroke_format& f, const stroke_file_text& s);
 
 /// Returns all formats. The first, TOML, is for texts of no known format: its reader explains the fault.
 std::span<const stroke_format* const> stroke_formats() noexcept;
@@ -54,7 +59,7 @@ const stroke_format* find_format_by_content(std::string_view text);
 /// Returns the format of a text with strokes: by the extension of its file, else by its content, else TOML.
 const stroke_format* find_stroke_format(std::string_view text, const std::filesystem::path& file);
 
-/// Returns "TOML, CSV or SVG": the titles of all formats.
+/// Returns "TOML, CSV, SVG or TACT": the titles of all formats.
 std::string list_stroke_formats();
 
 } // namespace tactor::detail

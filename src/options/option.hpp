@@ -65,8 +65,9 @@ struct option_values {
     std::optional<std::string> pcm = {};
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
-    std::optional<double> usual_speed_mm_s = {}; ///< speed of strokes that have neither a time nor a speed
-    std::optional<double> intensity_max = {};    ///< value in a recording that means intensity 1
+    std::optional<double> usual_speed_mm_s = {};   ///< speed of strokes that have neither a time nor a speed
+    std::optional<double> intensity_max = {};      ///< value in a recording that means intensity 1
+    std::optional<std::string> position = {};      ///< place on the body whose touches a file plays
     bool fit = false;
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate = {};

@@ -17,8 +17,10 @@
 #include "core/access.hpp"
 #include "core/refused.hpp"
 #include "core/trajectory/impl.hpp"
+#include "core/trajectory/spans.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
+#include "plan/job.hpp"
 
 namespace tactor {
 inline namespace v0 {
@@ -197,6 +199,22 @@ affine make_map(const fitting& f)
     return {f.scale, 0.0, 0.0, f.scale, f.to.x_mm, f.to.y_mm};
 }
 
+/// Maps the unit square to the box around the tactors, and points outside their hull to its edge.
+trajectory spread_over(const layout& l, const trajectory& t)
+{
+    point low = l.places().front();
+    point high = low;
+    for (const point p : l.places()) {
+        low = {std::min(low.x_mm, p.x_mm), std::min(low.y_mm, p.y_mm)};
+        high = {std::max(high.x_mm, p.x_mm), std::max(high.y_mm, p.y_mm)};
+    }
+    std::vector<timed_point> points = detail::sample_points(t);
+    for (timed_point& p : points)
+        p.position = detail::held_in(l, {std::lerp(low.x_mm, high.x_mm, p.position.x_mm),
+                                         std::lerp(low.y_mm, high.y_mm, p.position.y_mm)});
+    return trajectory::timed(std::move(points));
+}
+
 } // namespace
 
 fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, double margin_mm)
@@ -224,7 +242,10 @@ std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l)
     std::map<std::pair<unsigned, std::size_t>, std::vector<std::size_t>>
         pictures; // strokes of group 0 are pictures by themselves
     for (std::size_t i = 0; i < strokes.size(); ++i)
-        if (const auto& fit = strokes[i].fit)
+        if (const auto& fit = strokes[i].fit; fit && fit->unit_square) {
+            strokes[i].motion = spread_over(l, strokes[i].motion);
+            strokes[i].fit.reset();
+        } else if (fit)
             pictures[{fit->group, fit->group == 0 ? i : 0}].push_back(i);
     for (const auto& [group, members] : pictures) {
         std::vector<stroke> together;

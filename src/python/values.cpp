@@ -44,7 +44,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(recording, file, rate_hz, samples, sha256, mi
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(modulation, hz, depth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_part, part, hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_choices, algorithm, phantom, faces, soa_s, burst_s, level_db)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_fit, margin_mm, group)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_fit, margin_mm, group, unit_square)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(start_anchor, from, back)
 
 } // namespace v0
@@ -416,8 +416,10 @@ void bind_stroke(py::module_& m)
         .def_static("timed", &timed)
         .def_static("preset", &preset_stroke)
         .def_static("shape", &shape_stroke)
-        .def_static("load", [](const std::string& file,
-                               double intensity_max) { return load_strokes(file, intensity_max); })
+        .def_static("load",
+                    [](const std::string& file, double intensity_max, const std::string& position) {
+                        return load_strokes(file, intensity_max, position);
+                    })
         .def_static("parse", &parse_strokes)
         .def_static("from_state", &read_state<stroke>)
         .def("state", &write_state<stroke>)

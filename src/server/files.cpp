@@ -99,12 +99,14 @@ std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string&
     return std::move(f.made.strokes);
 }
 
-read_file read_bytes(std::string bytes, const std::string& name, double intensity_max)
+read_file read_bytes(std::string bytes, const std::string& name, double intensity_max,
+                     std::string_view position)
 {
     if (is_plan(bytes, name))
         return {read_plan_strokes(bytes, name)};
     const detail::stroke_format* format = detail::find_stroke_format(bytes, name);
-    std::vector<stroke> strokes = format->parse({bytes, name, intensity_max});
+    std::vector<stroke> strokes =
+        detail::read_stroke_text(*format, {bytes, name, intensity_max, nullptr, position});
     if (format->name != "toml" || intensity_max != 1.0)
         bytes.clear(); // other programs would read other intensities
     return {std::move(strokes), std::move(bytes)};
@@ -373,7 +375,7 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
 
 std::string import_strokes(const planning& with, const layout& faces, const json& params)
 {
-    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
+    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max", "position"});
     constexpr std::array<std::string_view, 3> sources{"stroke", "text", "base64"};
     const std::string source(find_one(params, sources));
     if (source.empty())
@@ -381,10 +383,13 @@ std::string import_strokes(const planning& with, const layout& faces, const json
     const std::string named = read_name(params);
     const std::string name = source == "stroke" ? source : named;
     const double intensity_max = number_or(params, "intensity_max", detail::bounds_of::intensity_max, 1.0);
+    const json* place = member(params, "position");
+    const std::string position = place == nullptr ? "" : text(*place, "position");
     const bool fit = flag(params, "fit");
     try {
-        read_file f = source == "stroke" ? read_file{read_strokes(source, params[source], with.owner)}
-                                         : read_bytes(content(source, params[source]), name, intensity_max);
+        read_file f = source == "stroke"
+                          ? read_file{read_strokes(source, params[source], with.owner)}
+                          : read_bytes(content(source, params[source]), name, intensity_max, position);
         if (fit)
             f.toml.clear();
         f.strokes = prepare_strokes(with, faces, std::move(f.strokes), with.owner, fit);

@@ -93,7 +93,7 @@ void read_standard_input(const settings& s, environment& e)
         }
     }();
     if (!files::holds_plans(text)) {
-        e.standard_input = parse_strokes(text, name, s.intensity_max.value_or(1.0));
+        e.standard_input = parse_strokes(text, name, s.intensity_max.value_or(1.0), s.position.value_or(""));
         return;
     }
     options::refuse_planning(s, name);

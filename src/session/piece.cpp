@@ -164,6 +164,12 @@ stroke points_stroke(const std::string& name, std::span<const timed_point> point
 std::vector<stroke> read_strokes(source from, const std::string& named, const options::option_values& o)
 {
     const double intensity_max = o.intensity_max.value_or(1.0);
+    const std::string position = o.position.value_or("");
+    if (!position.empty() && !std::holds_alternative<format_text>(from) &&
+        !std::holds_alternative<stroke_file>(from) && !std::holds_alternative<std::vector<stroke>>(from))
+        throw error(error_kind::bad_input, "position", fmt::format("{} has no positions", named),
+                    "leave it out: it chooses a part of a .tact file")
+            .with_field("position");
     const double speed_mm_s = o.speed_mm_s.value_or(o.usual_speed_mm_s.value_or(default_speed_mm_s));
     return std::visit(
         overloaded{
@@ -173,9 +179,9 @@ std::vector<stroke> read_strokes(source from, const std::string& named, const op
                 return std::vector{points_stroke("points", s, intensity_max)};
             },
             [&](const format_text& s) {
-                return s.format->parse({s.text, named, intensity_max});
+                return detail::read_stroke_text(*s.format, {s.text, named, intensity_max, nullptr, position});
             },
-            [&](const stroke_file& s) { return load_strokes(s.file, intensity_max); },
+            [&](const stroke_file& s) { return load_strokes(s.file, intensity_max, position); },
             [](std::vector<stroke>& s) { return std::move(s); },
             [](piece& s) { return std::move(s.strokes); },
             [](const samples_file&) { return std::vector<stroke>(); },

@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 
@@ -30,7 +31,100 @@ std::string range_text(const detail::bounds& range)
     return fmt::format("{} to {}", low, range.high);
 }
 
+// Returns the end of the comment at `at`; `at` if there is none.
+std::size_t find_comment_end(std::string_view text, std::size_t at)
+{
+    const std::string_view mark = text.substr(at, 2);
+    if (mark != "//" && mark != "/*")
+        return at;
+    const std::size_t end = text.find(mark == "//" ? "\n" : "*/", at + 2);
+    return end == std::string_view::npos ? text.size() : end + (mark == "//" ? 0 : 2);
+}
+
+// Returns the end of the run of characters from `at` on that one of `in` or a digit begins and continues.
+std::size_t find_run_end(std::string_view text, std::size_t at, std::string_view in)
+{
+    while (at < text.size() && ((text[at] >= '0' && text[at] <= '9') || in.find(text[at]) != in.npos))
+        ++at;
+    return at;
+}
+
+// Removes comments, and commas before a closing bracket; lines stay. With `json5` also puts plain names and
+// texts in single quotes into double quotes. Refuses a text of more than `deepest` nested values, whose tree
+// would take far more memory than the text.
+std::string make_strict(std::string_view text, const std::string& file, bool json5)
+{
+    constexpr std::size_t deepest = 64;
+    constexpr std::string_view name = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$";
+    std::string out;
+    out.reserve(text.size());
+    std::size_t depth = 0;
+    std::size_t comma = std::string::npos; // place in `out` of a comma without a value after it
+    for (std::size_t i = 0; i < text.size();) {
+        const char c = text[i];
+        if (const std::size_t end = find_comment_end(text, i); end != i) {
+            out.append(
+                static_cast<std::size_t>(std::count(text.begin() + static_cast<std::ptrdiff_t>(i),
+                                                    text.begin() + static_cast<std::ptrdiff_t>(end), '\n')),
+                '\n');
+            i = end;
+            continue;
+        }
+        if (detail::blank(c)) {
+            out += text[i++];
+            continue;
+        }
+        if ((c == '}' || c == ']') && comma != std::string::npos)
+            out[comma] = ' ';
+        comma = c == ',' ? out.size() : std::string::npos;
+        depth += c == '{' || c == '[' ? 1 : 0;
+        depth -= (c == '}' || c == ']') && depth > 0 ? 1 : 0;
+        if (depth > deepest)
+            throw error(error_kind::bad_input, source_place{file},
+                        fmt::format("it has more than {} nested values", deepest), "name another file");
+        std::size_t end = i + 1;
+        if (c == '"' || (json5 && c == '\'')) {
+            out += '"';
+            for (; end < text.size() && text[end] != c; ++end) {
+                const bool escaped = text[end] == '\\' && end + 1 < text.size();
+                if (escaped ? text[end + 1] != '\'' : text[end] == '"') // not in JSON
+                    out += '\\';
+                end += escaped ? 1 : 0;
+                out += text[end];
+            }
+            if (end < text.size())
+                out += '"';
+            ++end;
+        } else if (const std::size_t to = find_run_end(text, i, name);
+                   json5 && to > i && name.find(c) != name.npos) {
+            const std::string_view word = text.substr(i, to - i);
+            const bool value = word == "true" || word == "false" || word == "null";
+            out += value ? std::string(word) : fmt::format("\"{}\"", word);
+            end = to;
+        } else if (const std::size_t number = find_run_end(text, i, "+-.eE"); number > i) {
+            out.append(text.substr(i, number - i));
+            end = number;
+        } else {
+            out += c;
+        }
+        i = end;
+    }
+    return out;
+}
+
 } // namespace
+
+ordered_json read_foreign_object(std::string_view text, const std::string& file, bool json5)
+{
+    constexpr std::size_t most_mb = 16;
+    if (text.size() > most_mb << 20U)
+        throw error(error_kind::bad_input, source_place{file},
+                    fmt::format("it is longer than {} MB", most_mb), "check that it is the right file");
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (text.starts_with(mark))
+        text.remove_prefix(mark.size());
+    return read_object(make_strict(text, file, json5), file);
+}
 
 ordered_json read_object(const std::string& text, const std::string& file)
 {
@@ -131,6 +225,18 @@ std::vector<std::string> json_value::keys() const
     return all;
 }
 
+double json_value::need_number(const detail::bounds& range, bool texts) const
+{
+    const std::optional<double> v = texts && exists() && value_->is_string()
+                                        ? detail::number_in<double>(detail::without_blanks(*text()))
+                                        : need_number();
+    if (!v)
+        refuse("it is not a number");
+    if (!range.holds(*v))
+        refuse(fmt::format("{} is out of range: it must be {}", *v, range_text(range)));
+    return *v;
+}
+
 void json_value::need_members() const
 {
     if (!need_member().exists())
@@ -175,14 +281,6 @@ void json_reader::finish() const
             const std::string_view near = detail::nearest_name(key, known_);
             object_[key].refuse("it is an unknown field", near.empty() ? "" : detail::meant_name(key, near));
         }
-}
-
-double json_reader::number(const json_value& from, const detail::bounds& range)
-{
-    const double v = from.need_number();
-    if (!range.holds(v))
-        from.refuse(fmt::format("{} is out of range: it must be {}", v, range_text(range)));
-    return v;
 }
 
 double json_reader::whole(const json_value& from, const detail::bounds& range, bool is_unsigned, bool is_long)

@@ -25,10 +25,15 @@ namespace tactor::files {
 
 /// Reads a text that is one object. \throws error (bad_input) with the file's name and the line.
 nlohmann::ordered_json read_object(const std::string& text, const std::string& file);
+/// Reads a file of another program that is one object. Skips a byte order mark, comments, and commas after
+/// the last element. `json5`: names may be without quotes, and texts in single quotes.
+/// \throws error (bad_input) as read_object(), and for more than 16 MB or 64 nested values.
+nlohmann::ordered_json read_foreign_object(std::string_view text, const std::string& file,
+                                           bool json5 = false);
 
 /// A value that may be missing; null counts as missing. It refers to the document and to the file's name,
-/// which must outlive it. All members but exists() and is_list() throw error (bad_input) for a value of
-/// another type, and the members need_... also for a missing value.
+/// which must outlive it. All members but exists(), is_list() and is_text() throw error (bad_input) for a
+/// value of another type, and the members need_... also for a missing value.
 class json_value {
 public:
     /// Makes a value; `hint` ends the messages about it.
@@ -43,6 +48,7 @@ public:
     /// Returns the name of the file.
     const std::string& file() const noexcept { return *file_; }
     bool is_list() const noexcept { return exists() && value_->is_array(); }
+    bool is_text() const noexcept { return exists() && value_->is_string(); }
     /// Returns the names of an object's members.
     std::vector<std::string> keys() const;
 
@@ -59,6 +65,8 @@ public:
     std::optional<bool> truth() const;
 
     double need_number() const { return need(number()); }
+    /// Returns a number within bounds. With `texts`, a text that holds a number counts as that number.
+    double need_number(const detail::bounds& range, bool texts = false) const;
     std::string need_text() const { return need(text()); }
     bool need_truth() const { return need(truth()); }
     /// Returns a value of a closed set, by its name.
@@ -203,7 +211,7 @@ private:
         else if constexpr (std::integral<T>)
             v = static_cast<T>(whole(from, what.range, std::is_unsigned_v<T>, sizeof(T) > sizeof(unsigned)));
         else if constexpr (std::floating_point<T>)
-            v = number(from, what.range);
+            v = from.need_number(what.range);
         else if constexpr (std::is_enum_v<T>)
             v = from.need_kind<T>();
         else
@@ -244,7 +252,6 @@ private:
         for (std::size_t i = 0; i < Size; ++i)
             take(items[i], all[i], what);
     }
-    static double number(const json_value& from, const detail::bounds& range);
     static double whole(const json_value& from, const detail::bounds& range, bool is_unsigned, bool is_long);
 
     json_value object_;

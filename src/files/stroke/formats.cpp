@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/refused.hpp"
 #include "core/words.hpp"
 #include "files/text_file.hpp"
 
@@ -16,10 +17,11 @@ namespace tactor::detail {
 extern const stroke_format toml_strokes;
 extern const stroke_format csv_strokes;
 extern const stroke_format svg_strokes;
+extern const stroke_format tact_strokes;
 
 namespace {
 
-constexpr const stroke_format* formats[] = {&toml_strokes, &csv_strokes, &svg_strokes};
+constexpr const stroke_format* formats[] = {&toml_strokes, &csv_strokes, &svg_strokes, &tact_strokes};
 
 template <class Is>
 const stroke_format* find_format(Is is)
@@ -62,6 +64,14 @@ const stroke_format* find_stroke_format(std::string_view text, const std::filesy
     return found == nullptr ? formats[0] : found;
 }
 
+std::vector<stroke> read_stroke_text(const stroke_format& f, const stroke_file_text& s)
+{
+    if (!s.position.empty() && !f.has_positions)
+        throw bad_field("position", fmt::format("{} has strokes for one place only", s.name),
+                        "leave it out: it chooses a part of a .tact file");
+    return f.parse(s);
+}
+
 std::string list_stroke_formats()
 {
     std::string all;
@@ -79,23 +89,29 @@ std::string list_stroke_formats()
 namespace tactor {
 inline namespace v0 {
 
-std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
+std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max,
+                                  std::string_view position)
 {
-    return detail::find_stroke_format(text, {})->parse({text, name, intensity_max});
+    return detail::read_stroke_text(*detail::find_stroke_format(text, {}),
+                                    {text, name, intensity_max, nullptr, position});
 }
 
-std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
+std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max,
+                                 std::string_view position)
 {
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
     const std::filesystem::path folder = file.parent_path();
-    return detail::find_stroke_format(text, file)->parse({text, name, intensity_max, &folder});
+    return detail::read_stroke_text(*detail::find_stroke_format(text, file),
+                                    {text, name, intensity_max, &folder, position});
 }
 
-std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)
+std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max,
+                                 std::string_view position)
 {
     detail::note_input(fmt::format("/dev/fd/{}", descriptor));
-    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name, intensity_max);
+    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name, intensity_max,
+                         position);
 }
 
 } // namespace v0

@@ -371,7 +371,7 @@ def _cores(strokes: _t.Any) -> list[_t.Any]:
     return [s._core for s in strokes]
 
 
-def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0) -> list[Stroke]:
+def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0, position: str = "") -> list[Stroke]:
     """Reads a stroke file by its extension, see tactor.toml(5).
 
     Parameters
@@ -379,6 +379,8 @@ def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0) -> list[St
     file : path-like
     intensity_max : float
         The intensity in a recording (CSV, timed points) that means 1, see `Stroke.timed`.
+    position : str
+        Place on the body whose touches a .tact file plays, such as "VestBack". Empty: the first, front before back.
 
     Returns
     -------
@@ -390,15 +392,17 @@ def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0) -> list[St
     InputError
         With file, line and column.
     """
+    _need(position, str, "position")
     with reading(file) as name:
-        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name, _number("intensity_max", intensity_max))]
+        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name, _number("intensity_max", intensity_max), position)]
 
 
-def parse(text: str, name: str = "text", *, intensity_max: float = 1.0) -> list[Stroke]:
-    """Reads strokes from the text of a stroke file, whose beginning gives its format. `intensity_max` as for `load`."""
+def parse(text: str, name: str = "text", *, intensity_max: float = 1.0, position: str = "") -> list[Stroke]:
+    """Reads strokes from the text of a stroke file, whose beginning gives its format. `intensity_max` and `position` as for `load`."""
     _need(text, str, "text")
+    _need(position, str, "position")
     _need(name, str, "name")
-    return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name, _number("intensity_max", intensity_max))]
+    return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name, _number("intensity_max", intensity_max), position)]
 
 
 def stroke_presets() -> list[str]:
