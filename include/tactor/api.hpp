@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Export marker, and names of the values of enumerations. Names with TACTOR_API are the interface of
-/// libtactor; everything else in the shared library is hidden. Closed sets are enumerations called ..._kind,
-/// so that fields can have the plain names. Any thread may call their functions; they do not block.
+/// libtactor; everything else in the shared library is hidden. An enumeration for a closed set of values is
+/// called ..._kind, so that fields can have the plain name. Any thread may call the functions of
+/// enumerations, which do not block.
 #pragma once
 
 #include <span>
 #include <string_view>
 
-// Every header includes this one first. CMake requests the compiler's default, C++17.
+// Every header includes this header first. By default, CMake requests the compiler's default standard, C++17.
 #if defined(__cplusplus) && __cplusplus < 202002L
 #error "tactor needs C++20: -std=c++20 (CMake: cxx_std_20)"
-#include "-std=c++20" // no such file: ends the compilation before many errors that say less
+#include "-std=c++20" // no such file: ends the compilation before many errors that explain less
 #endif
 
 #if defined(__GNUC__)
@@ -21,13 +22,13 @@
 #endif
 
 namespace tactor::detail {
-struct access; // gives the library access to the inside of its classes
+struct access; // gives the library access to private members of its classes
 } // namespace tactor::detail
 
 namespace tactor {
 inline namespace v0 {
 
-/// Returns the value whose to_string() is `name`: from_string<phantom_kind>("barycentric").
+/// Returns the value whose to_string() is `name`, for example from_string<phantom_kind>("barycentric").
 /// \throws error (bad_input) that lists the names.
 template <typename Kind>
 [[nodiscard]] Kind from_string(std::string_view name) = delete;
@@ -39,8 +40,8 @@ template <typename Kind>
 } // namespace v0
 } // namespace tactor
 
-/// Declares the name functions of an enumeration, in its own namespace: to_string(), which returns "unknown"
-/// for a number that is no value of it, from_string<>() and all_values<>().
+/// Declares to_string(), from_string<>() and all_values<>() for an enumeration, in its namespace. to_string()
+/// returns "unknown" for a number that is not a value of the enumeration.
 #define TACTOR_KIND(Kind)                                                                                    \
     TACTOR_API std::string_view to_string(Kind k) noexcept;                                                  \
     template <>                                                                                              \

@@ -16,7 +16,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Working principle of a tactor. It decides which bursts the tactor can make.
+/// Working principle of a tactor. The principle decides which bursts the tactor can make.
 enum class actuator_kind {
     unknown,
     piezo,
@@ -43,13 +43,14 @@ struct tactor_spec {
     std::optional<double> threshold_dbfs = {}; ///< measured detection threshold, dBFS
     int polarity = 1;                          ///< 1, or -1 if the actuator is wired with reversed polarity
     actuator_kind actuator = actuator_kind::unknown;
-    /// Thresholds at several frequencies, ascending. They replace threshold_dbfs. Between two frequencies the
-    /// threshold in dB is linear in the logarithm of the frequency. Outside them the nearest one counts.
+    /// Thresholds at several frequencies, in ascending order of frequency. They replace threshold_dbfs.
+    /// Between two frequencies the threshold in dB is linear in the logarithm of the frequency. Below the
+    /// lowest and above the highest frequency, the nearest threshold counts.
     std::vector<threshold_point> thresholds = {};
     std::optional<double> rise_s = {}; ///< time until the vibration reaches 1 - 1/e of its strength, s
     source_place where = {};           ///< place in the array file, for error messages
-    /// Measured peak displacement (zero to peak) of a sine at 0 dBFS at the working carrier, with the skin on
-    /// it, um. Reports state it; no sample depends on it.
+    /// Displacement of the tactor with skin on it, zero to peak, um: measured with a sine of 0 dBFS at the
+    /// working carrier. Reports state this value; no sample depends on it.
     std::optional<double> displacement_um_at_0dbfs = {};
 };
 
@@ -59,10 +60,10 @@ struct array {
     std::vector<tactor_spec> tactors = {};
     source_place where = {};
     std::string site = {}; ///< place on the body, such as "left palm"; empty: not known
-    std::string up = {};   ///< direction of its upper edge on the body, such as "fingers"; empty: not known
-    std::optional<point> place = {};     ///< pictures only: its middle, from the site's landmark, mm
-    std::optional<double> turn_deg = {}; ///< pictures only: clockwise turn of the body part under it
-    std::optional<double> body_mm = {};  ///< pictures only: length of the body part, such as the hand
+    std::string up = {};   ///< direction of the upper edge on the body, such as "fingers"; empty: not known
+    std::optional<point> place = {};     ///< for pictures: middle of the array, from the site's landmark, mm
+    std::optional<double> turn_deg = {}; ///< for pictures: clockwise turn of the body part under the array
+    std::optional<double> body_mm = {};  ///< for pictures: length of the body part, such as the hand
 
     /// Returns the number of channels that the array needs: the highest channel + 1.
     TACTOR_API unsigned channels() const noexcept;
@@ -77,13 +78,13 @@ struct grid_lines {
     std::vector<double> y_mm = {}; ///< rows
 };
 
-/// Returns the grid that the tactors form. Returns nothing unless each column crosses each row in a tactor
-/// and there is no other tactor. Lines nearer than same_place_mm count as the same line. A single row or
-/// column is a grid, too.
+/// Returns the grid that the tactors form. Returns nothing unless there is a tactor wherever a column crosses
+/// a row, and no other tactor. Two lines less than same_place_mm apart count as one line. A single row or a
+/// single column is a grid, too.
 [[nodiscard]] TACTOR_API std::optional<grid_lines> find_grid(const array& a);
 
-/// Makes an array of rows x columns tactors: index = row * columns + column, channel = index, tactor 0 at (0,
-/// 0).
+/// Makes an array of rows x columns tactors. The index of a tactor is row * columns + column, its channel
+/// equals its index, and tactor 0 is at (0, 0).
 /// \throws error (bad_input) for no rows or columns, more than 1024 tactors, or a pitch that is not positive
 ///         and finite.
 [[nodiscard]] TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
@@ -96,9 +97,9 @@ struct grid_lines {
 /// \throws error (bad_input) that lists the presets.
 [[nodiscard]] TACTOR_API array preset_array(std::string_view name);
 
-/// Checks the rules for every array: at least one tactor, finite places, no two tactors on one place or one
-/// channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 1024, because no PCM has
-/// more). O(n^2).
+/// Checks the rules for every array. The array has at least one tactor. Places are finite, and no two tactors
+/// share a place or a channel. Gains and limits are in range (max_dbfs <= 0, polarity 1 or -1). Channels are
+/// below 1024, because no PCM has more. O(n^2).
 /// \throws error (bad_input) that names the tactors and their line.
 TACTOR_API void validate(const array& a);
 

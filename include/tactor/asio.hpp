@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Playback as an asynchronous operation of Boost.Asio. Header-only, and not part of <tactor/tactor.hpp>, so
-/// that other programs need no Asio.
+/// Playback as an asynchronous operation of Boost.Asio. Header-only. <tactor/tactor.hpp> does not include
+/// this header, so that other programs need no Asio.
 #pragma once
 
 #include <exception>
@@ -20,8 +20,8 @@
 
 namespace tactor::detail {
 
-/// A handler that waits for a stroke's end. Until then it gives work to two executors: its own, and the one
-/// that the caller named.
+/// A handler that waits for a stroke's end. Until then it keeps work on two executors: that of the wrapped
+/// handler, and the one that the caller named.
 template <typename Handler, typename Named>
 class stroke_waiter {
 public:
@@ -48,7 +48,7 @@ private:
     boost::asio::executor_work_guard<executor> work_;
 };
 
-/// Returns an executor: `where` itself, or the one of a context, a socket or a timer.
+/// Returns `where` if it is an executor, else the executor of `where`: a context, a socket or a timer.
 template <typename Where>
 auto find_executor(Where& where)
 {
@@ -63,7 +63,7 @@ template <typename Token>
 constexpr bool runs_nowhere = std::is_invocable_v<std::decay_t<Token>&, std::exception_ptr, stroke_report>&&
     std::is_same_v<boost::asio::associated_executor_t<std::decay_t<Token>>, boost::asio::system_executor>;
 
-/// Calls the handler when a stroke has ended. `start` returns its id, and may start it.
+/// Calls the handler when a stroke has ended. `start` returns the stroke's id, and may start the stroke.
 template <typename Named, typename Handler, typename Start>
 void wait_for_stroke(const Named& named, player& p, Handler&& h, Start start)
 {
@@ -86,17 +86,17 @@ void wait_for_stroke(const Named& named, player& p, Handler&& h, Start start)
 namespace tactor {
 inline namespace v0 {
 
-/// Waits for a stroke's end, then calls handler(std::exception_ptr, stroke_report). `where` is an executor or
-/// an object that has one (an io_context, a socket).
+/// Waits for a stroke's end, then calls handler(std::exception_ptr, stroke_report). `where` is an executor,
+/// or an object with an executor such as an io_context or a socket.
 ///
-/// The handler runs there, or on its own associated executor if it has one (boost::asio::bind_executor). It
-/// never runs in this call and never in a thread of the player. With use_future or use_awaitable the
-/// exception is rethrown there. Both executors have work until then, so io_context::run() does not return
-/// earlier.
+/// The handler runs on its associated executor (boost::asio::bind_executor) if it has one, else on that of
+/// `where`. It never runs inside this call, and never in a thread of the player. With use_future or
+/// use_awaitable, the future or the coroutine rethrows the exception. Both executors have work until the
+/// handler runs, so io_context::run() does not return earlier.
 ///
 /// For an unknown stroke the exception is an error (bad_input). A cancelled or interrupted stroke gives no
 /// exception: see the report. The player must live until the handler is called, or be closed earlier: closing
-/// ends all strokes.
+/// the player ends all strokes.
 template <typename Where, typename Token>
 auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
 {
@@ -107,7 +107,8 @@ auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
         token);
 }
 
-/// Waits as above, for tokens that have an executor: use_awaitable, use_future, bind_executor().
+/// Waits like the function above, for tokens that have an executor: use_awaitable, use_future,
+/// bind_executor().
 template <typename Token>
 auto async_wait(player& p, stroke_id id, Token&& token)
 {
@@ -116,8 +117,9 @@ auto async_wait(player& p, stroke_id id, Token&& token)
     return async_wait(boost::asio::system_executor(), p, id, std::forward<Token>(token));
 }
 
-/// Submits a score and waits for its end, as async_wait() does. The handler gets an exception from submit().
-/// The score is submitted when the operation starts: at once with callbacks and futures.
+/// Submits a score and waits for its end, as async_wait() does. If submit() throws, the handler receives the
+/// exception. The score is submitted when the operation starts. With callbacks and futures, the operation
+/// starts at once.
 template <typename Where, typename Token>
 auto async_play(Where&& where, player& p, score s, start_at start, Token&& token)
 {
@@ -129,7 +131,8 @@ auto async_play(Where&& where, player& p, score s, start_at start, Token&& token
         token);
 }
 
-/// Plays as above, for tokens that have an executor: use_awaitable, use_future, bind_executor().
+/// Plays like the function above, for tokens that have an executor: use_awaitable, use_future,
+/// bind_executor().
 template <typename Token>
 auto async_play(player& p, score s, start_at start, Token&& token)
 {

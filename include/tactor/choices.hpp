@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options with a closed set of values, for plans, sound and observers, and the options that a stroke may set
-/// for itself: how it is planned and when it starts.
+/// Options with a closed set of values, for plans, sound and observers. Also the options that a single stroke
+/// may set: how the stroke is planned and when it starts.
 #pragma once
 
 #include <cstddef>
@@ -24,15 +24,15 @@ enum class phantom_kind {
     barycentric,      ///< sqrt of barycentric coordinates: equal energy, continuous, no centroid error
     linear,           ///< barycentric coordinates as amplitudes
     log,              ///< log2(1 + b)
-    gaussian,         ///< all tactors near, exp(-d^2 / (2 (0.6 pitch)^2)), equal energy
+    gaussian,         ///< all nearby tactors, exp(-d^2 / (2 (0.6 pitch)^2)), equal energy
 };
 TACTOR_KIND(phantom_kind);
 
 /// The three tactors that phantom_kind::inverse_distance uses.
 enum class faces_kind {
-    delaunay, ///< three corners of the Delaunay face at the point; their triangle holds it
-    nearest,  ///< the three nearest of the whole array, as in Park et al. 2016; their triangle may miss the
-              ///< point
+    delaunay, ///< three corners of the Delaunay face at the point; their triangle contains the point
+    nearest,  ///< the three tactors nearest to the point, as in Park et al. 2016; the point may lie outside
+              ///< their triangle
 };
 TACTOR_KIND(faces_kind);
 
@@ -44,7 +44,7 @@ TACTOR_KIND(timing_kind);
 enum class outside_kind { error, clamp };
 TACTOR_KIND(outside_kind);
 
-/// Rule that joins bursts that overlap on one tactor into one amplitude.
+/// Rule that computes a single amplitude where bursts overlap on one tactor.
 enum class overlap_kind { energy, max, sum };
 TACTOR_KIND(overlap_kind);
 
@@ -53,19 +53,19 @@ TACTOR_KIND(overlap_kind);
 enum class scale_kind { linear, sl, stevens };
 TACTOR_KIND(scale_kind);
 
-/// Start of the carrier's phase.
-/// `stroke`: one carrier runs from the stroke's first frame, and bursts open and close it. A tactor that
-/// plays several bursts in a row goes on without a break.
-/// `burst`: the carrier starts again with each burst (where bursts overlap on a tactor, with the first). A
-/// burst of 70 ms at 250 Hz has 17.5 cycles, so the sign flips from burst to burst: the spectrum has lines at
-/// 242.9 and 257.1 Hz instead of 250 Hz, and the mean is above 0.
+/// Start of the carrier's phase. `stroke`: one carrier runs from the stroke's first frame, and bursts switch
+/// it on and off. A tactor that plays several bursts in a row vibrates without a break. `burst`: the carrier
+/// starts again with each burst. Where bursts overlap on a tactor, it starts with the first of them. A burst
+/// of 70 ms at 250 Hz has 17.5 cycles, so the sign of the vibration flips from burst to burst. Its spectrum
+/// then has lines at 242.9 and 257.1 Hz instead of 250 Hz, and its mean is above 0.
 enum class phase_kind { stroke, burst };
 TACTOR_KIND(phase_kind);
 
 /// Treatment of a score whose strokes or bursts together exceed the requested level on a tactor.
 enum class together_kind {
-    weaken, ///< weakens the whole score by one factor, so that its loudest tactor just reaches that level
-    sum,    ///< adds them up, limited by the tactor's max_dbfs and full scale
+    weaken, ///< weakens the whole score by one factor, so that the loudest tactor just reaches the requested
+            ///< level
+    sum,    ///< adds strokes and bursts up, limited by the tactor's max_dbfs and full scale
 };
 TACTOR_KIND(together_kind);
 
@@ -83,7 +83,7 @@ struct stroke_choices {
     std::optional<phantom_kind> phantom = {};
     std::optional<double> soa_s = {};
     std::optional<double> burst_s = {};
-    double level_db = 0.0; ///< added to its amplitudes after plan_options::scale, dB, 0 or less
+    double level_db = 0.0; ///< added to the stroke's amplitudes after plan_options::scale, dB, 0 or less
     std::optional<faces_kind> faces = {};
 
     friend bool operator==(const stroke_choices&, const stroke_choices&) = default;
@@ -97,19 +97,21 @@ enum class start_from_kind {
 };
 TACTOR_KIND(start_from_kind);
 
-/// Reference time of a stroke's start. If fewer than `back` strokes come before it, the start counts from the
-/// start of the score.
+/// Reference time of a stroke's start. If fewer than `back` strokes come before the stroke, its start counts
+/// from the start of the score.
 struct start_anchor {
     start_from_kind from = start_from_kind::piece;
-    /// Number of strokes. `start`: counts from the start of the stroke that is `back` places before this one.
-    /// `end`: counts from the time when the last `back` strokes before this one have all ended.
+    /// Number of strokes. With `start`, the time counts from the start of the stroke that is `back` places
+    /// before this stroke. With `end`, it counts from the time when the last `back` strokes before this
+    /// stroke have all ended.
     unsigned back = 1;
 
     friend bool operator==(const start_anchor&, const start_anchor&) = default;
 };
 
-/// Returns the start of a stroke in seconds from the start of the score. `starts_s` and `ends_s` are those of
-/// the strokes before it, in order. Without `start_s` the stroke starts when the stroke before it ends.
+/// Returns the start of a stroke in seconds from the start of the score. `starts_s` and `ends_s` are the
+/// starts and ends of the strokes before it, in order. Without `start_s` the stroke starts when the stroke
+/// before it ends.
 /// \throws error (bad_input) if the stroke would start before the score.
 [[nodiscard]] TACTOR_API double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
                                                 std::span<const double> starts_s,

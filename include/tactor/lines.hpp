@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The lines of a player: outputs that it switches on and off, and inputs whose edges it watches; and the
-/// GPIO lines of this computer. Derive from these classes to use other hardware.
+/// The lines of a player: outputs that the player switches on and off, and inputs whose edges it watches.
+/// Also the GPIO lines of this computer. Derive from the classes here to use other hardware.
 #pragma once
 
 #include <cstdint>
@@ -46,22 +46,23 @@ struct amplifier_settings {
     double settle_s = 0.010; ///< turn-on time of the amplifier
 };
 
-/// An output that is on or off, e.g. the enable input of an amplifier. Derive from it to use other hardware.
+/// An output that is on or off, for example to the enable input of an amplifier. Derive from this class to
+/// use other hardware.
 class TACTOR_API enable_line {
 public:
     enable_line() = default;
     enable_line(const enable_line&) = delete;
     enable_line& operator=(const enable_line&) = delete;
     virtual ~enable_line();
-    /// Switches the line. Returns false on failure. If "on" fails, the player stops its stream. If "off"
-    /// fails, the player tries again every 10 ms for a second, and once more when it closes, see
-    /// player_stats::left_on. Takes one ioctl or write of a few microseconds and does not allocate. Never
-    /// called by the audio thread.
+    /// Switches the line. Returns false on failure. If the line does not switch on, the player stops its
+    /// stream. If the line does not switch off, the player tries again every 10 ms for a second, and once
+    /// more when the player closes; see player_stats::left_on. Takes one ioctl or write of a few microseconds
+    /// and does not allocate. The audio thread never calls this.
     [[nodiscard]] virtual bool set(bool on) noexcept = 0;
     /// Tells the line that the player is alive. The thread that calls set() calls this every 50 ms while the
-    /// line is on. Returns false if the line is off or lost: it went off by itself because the player was
-    /// silent for too long (stopped by a signal, or hanging). It then stays off until the next set(true).
-    /// Does not block.
+    /// line is on. Returns false if the line is lost, or if it went off by itself because beat() was not
+    /// called for too long: the player hung, or a signal had stopped it. The line then stays off until the
+    /// next set(true). Does not block.
     [[nodiscard]] virtual bool beat() noexcept { return true; }
 };
 
@@ -78,27 +79,28 @@ public:
     edge_input(const edge_input&) = delete;
     edge_input& operator=(const edge_input&) = delete;
     virtual ~edge_input();
-    /// Returns a descriptor that is readable when an edge waits. This object owns it.
+    /// Returns a descriptor that is readable when an edge waits. This object owns the descriptor.
     [[nodiscard]] virtual int descriptor() const noexcept = 0;
     /// Returns the next edge, or nothing. Does not block.
     [[nodiscard]] virtual std::optional<gpio_edge> read() noexcept = 0;
 };
 
-/// Opens the amplifier's enable line. A small process, the holder, owns the line. It switches the line off on
-/// request, 150 ms after the last beat() or set(), and when this process ends in any way, SIGKILL included.
-/// The line starts switched off. Blocks until the holder has it. This call forks: make it before you start
-/// real-time threads and before you lock memory.
-/// \throws error (not_available) for a chip or line that does not exist (the message lists those that do),
-///         for a line in use (by which process), and for missing permission (which group to join).
+/// Opens the amplifier's enable line. A small process, the holder, owns the line. The holder switches the
+/// line off on request, 150 ms after the last beat() or set(), and when this process ends in any way, even by
+/// SIGKILL. At first the line is off. Blocks until the holder has the line. This call forks: make it before
+/// you start real-time threads and before you lock memory.
+/// \throws error (not_available) if the chip or line does not exist (the message lists the existing ones), if
+///         the line is in use (the message names the process), or if the permission is missing (the message
+///         names the group to join).
 [[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s);
 
-/// Opens a line for sync pulses. This process owns it. The line starts switched off, and is off again when
+/// Opens a line for sync pulses. This process owns the line. At first the line is off; it goes off again when
 /// the object is destroyed. Throws like open_amplifier().
 [[nodiscard]] TACTOR_API std::unique_ptr<enable_line> open_output(const gpio_line_name& line,
                                                                   bool active_low = false);
 
-/// Opens an input that reports edges. Drops an edge within `debounce_s` (0 to 10) after another. Throws like
-/// open_amplifier(), and bad_input for a `debounce_s` out of range.
+/// Opens an input that reports edges. Drops an edge that follows another edge within `debounce_s` (0 to 10).
+/// Throws like open_amplifier(), and throws error (bad_input) if `debounce_s` is out of range.
 [[nodiscard]] TACTOR_API std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, edge_kind edge,
                                                                 double debounce_s = 0.001,
                                                                 pull_kind pull = pull_kind::as_is);
@@ -116,7 +118,7 @@ struct gpio_chip_info {
     std::string name = {};  ///< gpiochipN
     std::string label = {}; ///< e.g. "pinctrl-rp1"
     std::vector<gpio_line_info> lines = {};
-    std::string error = {}; ///< reason why it could not be opened; empty: none
+    std::string error = {}; ///< reason why the chip could not be opened; empty: it was opened
 };
 
 /// Lists the GPIO chips, by path. Does not throw for chips that cannot be opened. Blocks shortly.
@@ -131,9 +133,10 @@ struct gpio_line_place {
 };
 
 /// Looks up a line as open_output() would, but does not request or drive it. Blocks shortly.
-/// \throws error: not_available for a chip or line that does not exist (the message lists those that do) and
-///         for missing permission (which group to join); bad_input for a name with neither chip and offset
-///         nor a line's name; runtime as list_gpio().
+/// \throws error (not_available) if the chip or line does not exist (the message lists the existing ones), or
+///         if the permission is missing (the message names the group to join).
+/// \throws error (bad_input) for a name that has neither chip and offset nor the name of a line.
+/// \throws error (runtime) as list_gpio() does.
 [[nodiscard]] TACTOR_API gpio_line_place find_gpio_line(const gpio_line_name& line);
 
 } // namespace v0

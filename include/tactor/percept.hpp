@@ -29,36 +29,39 @@ struct percept_sample {
     std::optional<point> felt = {};
     double intensity = 0.0; ///< square root of the summed energy, linear
     double target_intensity = 1.0;
-    bool shared = false; ///< a tactor serves two bursts
-    /// Speed of the felt position, smoothed over percept_window_s. None if this window extends beyond the
-    /// movement, or to before the first felt position.
+    bool shared = false; ///< a tactor serves two bursts at once
+    /// Speed of the felt position, smoothed over percept_window_s. None if this window begins before the
+    /// first felt position, or extends beyond the movement.
     std::optional<double> speed_mm_s = {};
 };
 
 /// Distance of the prediction from the target.
 struct percept_summary {
-    /// Distance at equal times from the felt place to the target. None if nothing is felt, as the others.
+    /// RMS distance between the felt place and the target at the same time. If nothing is felt, this value
+    /// and all other optional values are none.
     std::optional<double> rms_error_mm = {};
     std::optional<double> largest_error_mm = {};
-    /// Time from the target to the felt path: the lag, of 0 ... longest_lag_s in steps of percept_step_s, at
-    /// which the RMS error is least; the shortest of equal ones. Before its start the target is at its start.
+    /// Time by which the felt path lags behind the target. Of the lags from 0 to longest_lag_s in steps of
+    /// percept_step_s, it is the lag with the least RMS error. If errors are equal, the shortest lag counts.
+    /// Before the stroke begins, the target counts as at its first place.
     std::optional<double> lag_s = {};
     std::optional<double> rms_at_lag_mm = {};
-    /// Parts of the error at equal times along the target's movement and across it. While the target rests,
-    /// its last movement counts, or else its first. None if it never moves.
+    /// Parts of the error at the same time: along the direction of the target's movement, and across it.
+    /// While the target rests, the direction of its last movement counts, or of its first if it has not moved
+    /// yet. None if the target never moves.
     std::optional<double> along_rms_mm = {};
     std::optional<double> along_max_mm = {};
     std::optional<double> across_rms_mm = {};
     std::optional<double> across_max_mm = {};
-    /// Distance from the felt place to the nearest point of the path through the samples' targets.
+    /// RMS distance from the felt place to the nearest point of the path through the samples' targets.
     std::optional<double> rms_to_path_mm = {};
     /// Coefficient of variation (standard deviation / mean) of speed. None for a movement that is too short
-    /// to have a speed, or that is not felt to move.
+    /// to have a speed, or in which no motion is felt.
     std::optional<double> speed_cv = {};
     /// Coefficient of variation of intensity; silence has intensity 0. None if nothing is felt.
     std::optional<double> intensity_cv = {};
     double silent_share = 0.0; ///< share of the time without a sounding tactor, 0 ... 1
-    double shared_share = 0.0; ///< share of the time in which one tactor serves two bursts, 0 ... 1
+    double shared_share = 0.0; ///< share of the time in which a tactor serves two bursts at once, 0 ... 1
 };
 
 /// Interval of the samples, s.
@@ -72,43 +75,45 @@ inline constexpr double longest_percept_s = 3600.0;
 
 /// Difference of one person from the person for whom the plan was made.
 struct person {
-    /// Gain in sensitivity of each tactor, dB; below 0 if its threshold is higher than assumed. Empty: no
-    /// difference.
+    /// Change of the person's sensitivity at each tactor, dB; below 0 if the threshold is higher than
+    /// assumed. Empty: no difference.
     std::vector<double> sensitivity_db = {};
     /// Shift of each tactor from its assumed place to the place where it is felt, mm. Empty: no difference.
     std::vector<point> shift = {};
 };
 
-/// Predicts the percept at 0, 1, 2 ... ms, as long as the target moves. The last sample is at the end of the
-/// stroke if that is a multiple of 1 ms (within 1 ns), else just before it. `p` must be a plan of `s` on `a`.
-/// `who`: the person who feels it, if not the one for whom it was made.
+/// Predicts the percept at 0, 1, 2 ... ms until the end of the stroke. The last sample is at the end of the
+/// stroke if the end is a multiple of 1 ms (within 1 ns), else at the last multiple before the end. `p` must
+/// be a plan of `s` on `a`. `who` describes a person other than the one for whom the plan was made.
 ///
-/// A burst sounds from its onset to its end, its end excluded (within 1 ns). The exception is a burst that
-/// ends with the movement: it still counts at that time, unless another begins there. plan::overlap joins
-/// bursts that overlap on one tactor.
+/// A burst sounds from its onset until just before its end (within 1 ns). A burst that ends with the movement
+/// also sounds at its end, unless another burst begins then. Where bursts overlap on one tactor,
+/// plan::overlap says how to combine them.
 ///
-/// Speed: in silence, the last felt position is held. These positions are averaged over percept_window_s, and
-/// speed is the central difference of the average.
+/// For the speed, the last felt position is held during silence. The positions are averaged over
+/// percept_window_s, and the speed is the central difference of these averages.
 ///
-/// O(samples * log n) for a stroke of n points, and for each burst O(1) in the number of bursts that overlap
-/// with it. An hour has 3,600,001 samples, 317 MB. follow_percept() keeps none, and summarise() only their
-/// targets, 65 MB.
+/// O(samples * log n) for a stroke of n points. The time for a burst does not depend on the number of bursts
+/// that overlap with it. An hour has 3,600,001 samples, which take 317 MB. follow_percept() stores no
+/// samples. summarise() stores only their targets, which take 65 MB.
 ///
 /// \throws error (bad_input) if the stroke is longer than longest_percept_s, if the plan names a tactor that
-///         the array does not have, and if a list of `who` is neither empty nor one finite number for each
-///         tactor.
+///         the array does not have, and if a list in `who` is not empty and does not have one finite value
+///         for each tactor.
 [[nodiscard]] TACTOR_API std::vector<percept_sample> predict_percept(const array& a, const stroke& s,
                                                                      const plan& p, const person& who = {});
 
-/// Passes the same samples to `each`, in order, in the calling thread, each once its speed is known. Memory
-/// does not grow with the length of the stroke.
-/// \throws error as predict_percept(), before the first sample; for a tactor that the array does not have,
-///         when the plan reaches it. Exceptions from `each` pass through.
+/// Predicts the same samples as predict_percept(), and passes each of them to `each` as soon as its speed is
+/// known. Calls `each` in order, in the calling thread. Memory does not grow with the length of the stroke.
+/// \throws error as predict_percept() does. Throws for a tactor that the array does not have when the plan
+///         reaches this tactor, and for everything else before the first sample. Exceptions from `each` pass
+///         through.
 TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, const person& who,
                                const std::function<void(const percept_sample&)>& each);
 
-/// Summarises samples. Errors and speed count only while something is felt. Standard deviations are those of
-/// the population (divided by n). O(n log n) for n samples of a path that does not return to where it was.
+/// Summarises samples. Errors and speed count only while something is felt. Standard deviations are
+/// population standard deviations (divided by n). O(n log n) for n samples if the path does not return to
+/// earlier places.
 [[nodiscard]] TACTOR_API percept_summary summarise(const std::vector<percept_sample>& samples);
 
 /// Summarises all samples of predict_percept() without storing them.
@@ -116,10 +121,10 @@ TACTOR_API void follow_percept(const array& a, const stroke& s, const plan& p, c
 [[nodiscard]] TACTOR_API percept_summary summarise(const array& a, const stroke& s, const plan& p,
                                                    const person& who = {});
 
-/// Goldreich's observer (PLoS ONE 2007; Goldreich and Tong 2013). It localises taps with standard deviation
-/// sigma_mm and expects speeds of 0 with standard deviation sigma_v_mm_s. It was built for taps on the
-/// forearm, with a sigma of 10 mm; the default of 5 mm is assumed. There is no fit for the palm, or for
-/// bursts that touch.
+/// Goldreich's Bayesian observer (PLoS ONE 2007; Goldreich and Tong 2013). The observer's error in localising
+/// a tap has standard deviation sigma_mm. The prior of the speed has mean 0 and standard deviation
+/// sigma_v_mm_s. The model was built for taps on the forearm, with a sigma of 10 mm; the default of 5 mm is
+/// an assumption. Nobody has fitted the model to the palm, or to bursts without a gap between them.
 struct low_speed_observer {
     double sigma_mm = 5.0;       ///< least_sigma_mm to most_sigma_mm
     double sigma_v_mm_s = 100.0; ///< least_sigma_v_mm_s to most_sigma_v_mm_s
@@ -132,13 +137,15 @@ inline constexpr double most_sigma_mm = 1000.0;
 inline constexpr double least_sigma_v_mm_s = 0.001;
 inline constexpr double most_sigma_v_mm_s = 1e6;
 
-/// Returns a sentence about the model, its parameters and its purpose, to print with its numbers.
+/// Returns a sentence about the model, its parameters and its purpose, to print with the model's numbers.
 [[nodiscard]] TACTOR_API std::string describe(const low_speed_observer& o);
 
-/// Returns the places where taps are felt. They begin at `onsets_s` (ascending). Each tap alone would be felt
-/// at `alone`. The result is the x that minimises
-/// sum |alone_i - x_i|^2 / sigma^2 + sum |x_(i+1) - x_i|^2 / (sigma_v (t_(i+1) - t_i))^2.
-/// Taps at the same time are felt at one place. O(n), and exact to rounding. Any thread.
+/// Returns the places where taps are felt. The taps begin at `onsets_s` (ascending). `alone` are the places
+/// where each tap would be felt if it were the only one. The result is the x that minimises
+///
+///     sum |alone_i - x_i|^2 / sigma^2 + sum |x_(i+1) - x_i|^2 / (sigma_v (t_(i+1) - t_i))^2
+///
+/// Taps with equal onsets are felt at one place. O(n), and exact except for rounding. Any thread.
 /// \throws error (bad_input) for parameters out of bounds, lists of different lengths, numbers that are not
 ///         finite, and onsets that do not ascend.
 [[nodiscard]] TACTOR_API std::vector<point>
@@ -148,7 +155,7 @@ felt_places(const low_speed_observer& o, std::span<const double> onsets_s, std::
 struct tap {
     double onset_s = 0.0;
     point target = {}; ///< the target's place at the onset
-    point alone = {};  ///< centre of energy of the burst's drives: the place where it is felt alone
+    point alone = {};  ///< centre of energy of the drives: the place where this burst is felt alone
     point felt = {};
 
     friend bool operator==(const tap&, const tap&) = default;
@@ -158,18 +165,18 @@ struct tap {
 struct tap_summary {
     std::optional<double> rms_error_mm = {};     ///< none without taps
     std::optional<double> largest_error_mm = {}; ///< none without taps
-    double felt_length_mm = 0.0;                 ///< length of the chain of felt places
-    double target_length_mm = 0.0;               ///< length of the chain of target places
+    double felt_length_mm = 0.0;                 ///< length of the line through the felt places
+    double target_length_mm = 0.0;               ///< length of the line through the targets
     /// felt_length_mm / target_length_mm; none if the target rests.
     std::optional<double> length_ratio = {};
 };
 
 /// Predicts where the observer feels a plan's bursts. Bursts without drives are not felt. `p` must be a plan
-/// of `s` on `a`. `who`: the person who feels them, if not the one for whom the plan was made. O(n log m) in
-/// n bursts and the m points of the stroke.
-/// \throws error (bad_input) as felt_places() does, for a continuous plan, for which the observer has no
-///         prediction, for a plan that names a tactor that the array does not have, and as predict_percept()
-///         does for a person.
+/// of `s` on `a`. `who` describes a person other than the one for whom the plan was made. O(n log m) for n
+/// bursts and a stroke of m points.
+/// \throws error (bad_input) as felt_places() does, and as predict_percept() does for `who`.
+/// \throws error (bad_input) for a continuous plan, for which the observer has no prediction, and for a plan
+///         that names a tactor that the array does not have.
 [[nodiscard]] TACTOR_API std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p,
                                                        const low_speed_observer& o = {},
                                                        const person& who = {});
@@ -186,14 +193,19 @@ struct compensated_places {
     friend bool operator==(const compensated_places&, const compensated_places&) = default;
 };
 
-/// Computes the places at which taps must be played to be felt at x: m = (I + K) x. If some m_i lies outside
-/// the array, the result is the m in its hull that minimises sum |x(m) - x|^2. This convex problem is solved
-/// until the sum changes by less than 1e-12 of itself in ten steps. Where the minimum is flat, as with strong
-/// links, the m of another solver may differ though they are felt at the same places. O(n) in taps if
-/// all fit; else some 50 to 2000 such steps, at most 5000, and ten million divided by n for long chains. Any
-/// thread.
-/// \throws error (bad_input) as felt_places() does, for taps that begin together or nearly so for the
-///         observer (k of ten million and more), and for more than a million taps.
+/// Computes the places m at which taps must be played so that they are felt at the targets x:
+///
+///     m = (I + K) x
+///
+/// If some m_i lies outside the array, the result is the m in the array's hull that minimises sum |x(m) -
+/// x|^2. The solver of this convex problem stops when ten steps change the sum by less than 1e-12 of its
+/// value. If the minimum is flat, as with strong links between taps, another solver may find other places
+/// that are felt in the same way. O(n) for n taps if all m_i lie on the array. Otherwise the solver takes
+/// some 50 to 2000 steps of O(n). It takes at most 5000 steps, and for long chains of taps at most ten
+/// million divided by n. Any thread.
+/// \throws error (bad_input) as felt_places() does, for taps that begin at the same time or nearly so for the
+///         observer (a link k above ten million), and for more than a million taps if some m_i lies outside
+///         the array.
 [[nodiscard]] TACTOR_API compensated_places compensate(const layout& l, const low_speed_observer& o,
                                                        std::span<const double> onsets_s,
                                                        std::span<const point> targets);
@@ -212,9 +224,9 @@ struct compensated_plan {
 };
 
 /// Plans as make_plan() does, then moves the bursts for the observer. Assumes that each burst alone is felt
-/// at its own point, which holds for phantom_kind::barycentric. With other phantoms, the distance from that
-/// point to the centre of energy adds to the error. The plan warns that its bursts are moved, and names the
-/// remaining error.
+/// at its own point, which is true for phantom_kind::barycentric. With other phantoms, the distance from that
+/// point to the centre of energy adds to the error. A warning in the plan says that bursts were moved, and
+/// how large the remaining error is.
 /// \throws error (bad_input) as make_plan() and compensate() do, and for `continuous`.
 [[nodiscard]] TACTOR_API compensated_plan make_compensated_plan(const array& a, const layout& l,
                                                                 const stroke& s, const plan_options& o,

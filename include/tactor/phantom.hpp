@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Phantom tactors: which tactors play, and how strongly, so that a person feels a point between them.
-/// Strokes that are fitted to an array.
+/// Phantom tactors: which tactors play, and how strongly, so that a person feels a point between them. Also
+/// fitting of strokes to an array.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Part of one tactor in a phantom. The amplitude is linear; 1 is the requested intensity.
+/// Contribution of one tactor to a phantom. The amplitude is linear; 1 is the requested intensity.
 struct drive {
     unsigned tactor = 0;
     double amplitude = 0.0;
@@ -27,17 +27,17 @@ struct drive {
     friend bool operator==(const drive&, const drive&) = default;
 };
 
-/// Distance outside the array, mm, at which a stroke still counts as on its edge. Rounding by drawing
-/// programs and unit conversions is smaller.
+/// Distance from the array, mm, up to which a place outside the array counts as on its edge. The rounding
+/// errors of drawing programs and unit conversions are smaller.
 inline constexpr double edge_tolerance_mm = 0.01 - same_place_mm; // 0.01 itself is outside, rounded or not
 
 /// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one face.
-/// Immutable. Copies and moves share it, so a moved-from layout keeps its value. Any thread.
+/// Immutable. Copies and moves share the faces, so a moved-from layout keeps its value. Any thread.
 class TACTOR_API layout {
 public:
     /// Computes the faces. O(n log n).
-    /// \throws error (bad_input) as validate() does, and for two tactors that are too near to each other for
-    ///         this, about 1e-9 of the array's extent.
+    /// \throws error (bad_input) as validate() does, and for two tactors that are too near to each other to
+    ///         compute faces (about 1e-9 of the array's extent).
     explicit layout(const array& a);
     layout(const layout&) noexcept = default;
     layout& operator=(const layout&) noexcept = default;
@@ -45,11 +45,12 @@ public:
     /// Returns the tactors' places by index.
     [[nodiscard]] const std::vector<point>& places() const noexcept;
 
-    /// Returns the faces as tactor indices in order round each face. Empty if all tactors are in one line.
+    /// Returns the faces. Each face has the indices of its tactors in order round the face. Returns no faces
+    /// if all tactors are in one line.
     [[nodiscard]] const std::vector<std::vector<unsigned>>& faces() const noexcept;
 
-    /// Returns true if p is in the hull or on its edge (within same_place_mm). Strokes may leave it by
-    /// edge_tolerance_mm; such places are moved to the edge.
+    /// Returns true if p is in the hull or on its edge (within same_place_mm). A stroke may leave the hull by
+    /// up to edge_tolerance_mm: the places outside are moved to the edge.
     [[nodiscard]] bool contains(point p) const;
     /// Returns the point of the hull nearest to p.
     [[nodiscard]] point nearest(point p) const;
@@ -65,7 +66,7 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// A rule that chooses the tactors of a point. Derive from it to make another model.
+/// A rule that chooses the tactors that play for a point. Derive from it to make another model.
 class TACTOR_API phantom_model {
 public:
     phantom_model() = default;
@@ -77,18 +78,19 @@ public:
     /// Replaces `out` by the drives of a phantom of intensity `a_v` at p, in order of tactor. Each amplitude
     /// must be finite and above 0. p is inside the hull.
     ///
-    /// Called when plans are made, for a continuous stroke once for each sample (at most ten million), and
-    /// for each point of a live stroke. A live stroke ends without playing the point if an amplitude is above
-    /// a_v or if this throws. Two exceptions leave the stroke alive: error (bad_input), which refuses the
-    /// point, and std::bad_alloc.
+    /// The library calls this when it makes a plan, and for each point of a live stroke. For a continuous
+    /// stroke it calls this once for each sample (at most ten million). A live stroke ends without playing
+    /// the point if an amplitude is above a_v, or if this throws. Two exceptions do not end the stroke: error
+    /// (bad_input), which refuses the point, and std::bad_alloc.
     virtual void weights(point p, double a_v, std::vector<drive>& out) const = 0;
 };
 
-/// Makes a built-in model on a layout. Each point takes O(log n) in the tactors, and O(k log k) in those of
-/// the face, which matters only if hundreds lie on one circle. A point outside the hull counts as the nearest
-/// point of it.
-/// \throws error (bad_input) for faces_kind::nearest with another model than inverse_distance. weights()
-///         throws it for a point or an intensity that is not finite, and for an intensity below 0.
+/// Makes a built-in model on a layout. Each point takes O(log n) for n tactors and O(k log k) for a face of k
+/// tactors, which matters only if hundreds of tactors lie on one circle. A point outside the hull counts as
+/// the nearest point of the hull.
+/// \throws error (bad_input) for faces_kind::nearest with another model than inverse_distance. weights() of
+///         the model throws error (bad_input) for a point or an intensity that is not finite, and for an
+///         intensity below 0.
 [[nodiscard]] TACTOR_API std::shared_ptr<const phantom_model>
 make_phantom(phantom_kind k, const layout& l, faces_kind f = faces_kind::delaunay);
 
@@ -120,26 +122,26 @@ struct fitted_strokes {
     fitting placed = {};
 };
 
-/// Moves and scales strokes together, as a single picture. The middle of their common bounds moves to the
-/// middle of the array: the centre of gravity of the hull of the tactors' centres. The picture becomes as
-/// large as possible inside that hull (the area that outside_kind::error accepts), at least `margin_mm`
-/// (finite, >= 0) from its edge. Width and height keep their ratio. `l` is the layout of the array:
-/// fit_strokes(strokes, layout(a)).
+/// Moves and scales strokes together, as a single picture. The middle of the picture's bounds moves to the
+/// middle of the array, which is the centre of gravity of the hull of the tactors' centres. The picture
+/// becomes as large as possible inside that hull (the area that outside_kind::error accepts), at least
+/// `margin_mm` (finite, >= 0) from the edge. The ratio of width to height does not change. `l` is the layout
+/// of the array, as in fit_strokes(strokes, layout(a)).
 ///
-/// If all tactors lie in one line, within a tenth of their pitch, that line is the array: the picture is
-/// fitted by its extent along the line, and its extent across is dropped. A picture without extent (a timed
-/// stroke that rests) moves to the middle.
+/// If all tactors lie in one line, within a tenth of their pitch, that line is the array. The picture is then
+/// fitted by its extent along the line, and loses its extent across the line. A picture without extent (a
+/// timed stroke that rests) moves to the middle.
 ///
-/// Strokes with a speed (stroke::speed_mm_s) keep it. The others keep their time, whatever their new length.
-/// Starts, intensities and carriers stay. A pure function; any thread. O(n log n) in the points, and O(k h)
-/// in k curves and the h corners of the hull.
-/// \throws error (bad_input) for a margin that leaves no part of the array, for a picture with an extent on a
-///         single tactor, and for a stroke that runs only across an array in one line.
+/// Strokes with a speed (stroke::speed_mm_s) keep that speed. The other strokes keep their duration, whatever
+/// their new length is. Starts, intensities and carriers do not change. A pure function; any thread. O(n log
+/// n) for n points, and O(k h) for k curves and a hull of h corners.
+/// \throws error (bad_input) for a margin that leaves no part of the array, for a picture with an extent if
+///         the array is a single tactor, and for a stroke that only crosses the line of an array in one line.
 [[nodiscard]] TACTOR_API fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l,
                                                     double margin_mm = 0.0);
 
-/// Fits each stroke with a stroke::fit: alone, or together with the others of its group. The returned strokes
-/// have no stroke::fit. Throws as above.
+/// Fits each stroke that has a stroke::fit, alone or together with the other strokes of its group. The
+/// returned strokes have no stroke::fit. Throws as fit_strokes() does.
 [[nodiscard]] TACTOR_API std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l);
 
 } // namespace v0

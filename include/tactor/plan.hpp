@@ -33,15 +33,16 @@ struct timing_profile {
     double max_soa_s = 0.07; ///< Eq. (11), as the paper rounds it: intercept / (1 - slope)
 };
 
-/// Map from the requested intensity to an amplitude. It keeps 0 and 1.
+/// Map from the requested intensity to an amplitude. Without level_db, 0 stays 0 and 1 stays 1.
 struct intensity_scale {
     scale_kind kind = scale_kind::linear;
-    /// stevens: felt = amplitude^exponent, so the amplitude is intensity^(1 / exponent). 0.1 to 3. On the
-    /// finger it is 0.95 at 60 Hz and 0.6 at 250 Hz (Stevens, Perception & Psychophysics 3, 1968).
+    /// stevens: exponent of Stevens's law, 0.1 to 3. The felt strength is amplitude^exponent, so the
+    /// amplitude is intensity^(1 / exponent). On the finger the exponent is 0.95 at 60 Hz and 0.6 at 250 Hz
+    /// (Stevens, Perception & Psychophysics 3, 1968).
     double exponent = 0.6;
     double sl_db = 0.0; ///< sl: sensation level of intensity 1, dB, above 0
-    /// Level that is added to the amplitudes, dB, 0 or less. Below 0, intensity 1 has an amplitude below 1. A
-    /// stroke's own level (stroke_choices) adds to it.
+    /// Level that is added to the amplitudes, dB, 0 or less. If it is below 0, intensity 1 has an amplitude
+    /// below 1. The level of a single stroke (stroke_choices) is added to this level.
     double level_db = 0.0;
 
     /// Returns the amplitude of an intensity.
@@ -55,15 +56,18 @@ struct intensity_scale {
 struct plan_options {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
-    /// `nearest` works only with phantom_kind::inverse_distance. The plan warns if the triangle of the three
-    /// tactors misses the point. Tactile Brush plays on grid lines and warns that it does not use this.
+    /// `nearest` works only with phantom_kind::inverse_distance. The plan then warns if a point lies outside
+    /// the triangle of its three tactors. Tactile Brush plays on grid lines, ignores this option and warns of
+    /// that.
     faces_kind faces = faces_kind::delaunay;
-    /// Custom model instead of `phantom`. The plan keeps it as long as it needs drives from it.
+    /// Custom model instead of `phantom`. The plan keeps the model as long as it needs drives from the model.
     std::shared_ptr<const phantom_model> custom_phantom = {};
     timing_profile profile = {};
-    double soa_s = 0.07; ///< intercept < soa <= max_soa (with burst_s up to 10); the longest SOA for `fit`
-    /// Duration of each burst of park2016 instead of the law's, 0.0001 s to soa_s. The plan warns if the pair
-    /// does not follow the law. The other algorithms warn that they do not use it.
+    /// SOA: above the intercept, at most max_soa_s (10 s with burst_s). With `fit`, the longest SOA.
+    double soa_s = 0.07;
+    /// Duration of each burst of park2016, 0.0001 s to soa_s, instead of the duration by the timing law. The
+    /// plan warns if SOA and duration do not follow the law. The other algorithms warn that they do not use
+    /// this option.
     std::optional<double> burst_s = {};
     timing_kind timing = timing_kind::fixed;
     double min_duration_s = 0.020; ///< shortest burst that `fit` may use
@@ -98,9 +102,10 @@ struct conflict {
     friend bool operator==(const conflict&, const conflict&) = default;
 };
 
-/// Carrier frequency from one time until the next point. With u from 0 to 1 between their times, and `next`
-/// the frequency of the next point, it is
-/// hz + u (next - hz) + u (1 - u) (bend[0] + bend[1] u + bend[2] u^2 + bend[3] u^3).
+/// Carrier frequency from t_s until the next point. Between the times of both points, u goes from 0 to 1.
+/// `next` is the frequency of the next point. Then the frequency is
+///
+///     hz + u (next - hz) + u (1 - u) (bend[0] + bend[1] u + bend[2] u^2 + bend[3] u^3)
 struct carrier_point {
     double t_s = 0.0;                ///< from the start of the carrier
     double hz = 0.0;                 ///< >= 0
@@ -109,14 +114,14 @@ struct carrier_point {
     friend bool operator==(const carrier_point&, const carrier_point&) = default;
 };
 
-/// Interval, s, at which `continuous` evaluates the phantom. Values are linear between.
+/// Interval, s, at which `continuous` evaluates the phantom. Values between are interpolated linearly.
 inline constexpr double continuous_step_s = 0.001;
 
 /// Samples of a continuous stroke by column, in order of time. A plain value.
 struct curve_samples {
     std::vector<point> positions = {};
     std::vector<double> intensities = {}; ///< A_v, as plan_options::scale gives it
-    std::vector<std::size_t> ends = {};   ///< by sample: number of `drives` up to and including it
+    std::vector<std::size_t> ends = {};   ///< for each sample: number of `drives` up to its last one
     std::vector<drive> drives = {};       ///< each sample's drives in order of tactor
 
     /// Appends position, intensity and drives of `b`.
@@ -125,15 +130,16 @@ struct curve_samples {
     friend bool operator==(const curve_samples&, const curve_samples&) = default;
 };
 
-/// Position, intensity and drives of a continuous stroke every continuous_step_s and at its end; linear
-/// between. A value: two curves are equal if all their samples are. Copies and moves share the samples, so a
-/// moved-from curve keeps its value. Any thread. With a phantom model of the library the curve computes its
-/// samples when they are read, so an hour needs no more memory than a second.
+/// Position, intensity and drives of a continuous stroke, every continuous_step_s and at its end. Values
+/// between are interpolated linearly. A value: two curves are equal if all their samples are equal. Copies
+/// and moves share the samples, so a moved-from curve keeps its value. Any thread. With a phantom model of
+/// the library, the curve computes a sample when it is read, so an hour needs no more memory than a second.
 class TACTOR_API curve {
 public:
     /// Makes a curve of ceil(duration_s / continuous_step_s) + 1 samples.
-    /// \throws error (bad_input) for a duration that is not above 0 or is longer than a day, another number
-    ///         of samples, drives that are not in order of tactor, and numbers that are not finite.
+    /// \throws error (bad_input) for a duration that is not above 0 or is longer than a day, for a wrong
+    ///         number of samples, for drives that are not in order of tactor, and for numbers that are not
+    ///         finite.
     curve(double duration_s, curve_samples samples);
     curve(const curve&) noexcept = default;
     curve& operator=(const curve&) noexcept = default;
@@ -144,11 +150,10 @@ public:
     /// Returns the time of sample k: k steps, at most the duration.
     [[nodiscard]] double time_s(std::uint64_t k) const noexcept;
 
-    /// Replaces `out` by sample k as a burst without duration. If there are not so many samples, uses the
-    /// last one.
+    /// Replaces `out` by sample k as a burst without duration. If k is size() or more, uses the last sample.
     void sample(std::uint64_t k, burst& out) const;
-    /// Replaces `out` by the values at a time, clamped to 0 ... duration_s; linear between the neighbouring
-    /// samples.
+    /// Replaces `out` by the values at a time, which is clamped to 0 ... duration_s. Interpolates linearly
+    /// between the neighbouring samples.
     void at(double t_s, burst& out) const;
 
     friend TACTOR_API bool operator==(const curve& a, const curve& b);
@@ -163,7 +168,7 @@ private:
 };
 
 /// Drives of the tactors over time: bursts or a curve. A value: the same input gives the same plan. A program
-/// can compare, store and rebuild it.
+/// can compare, store and rebuild plans.
 struct plan {
     std::string algorithm = {}; ///< name of the planner: an algorithm_kind or another name
     std::string phantom = {};
@@ -182,16 +187,17 @@ struct plan {
     waveform wave = {};
     modulation am = {};
     /// Carrier frequency over time, in order of time. Empty: carrier_hz throughout. For a recording along the
-    /// path it is the rate of repetition.
+    /// path, the frequency is the rate at which the recording repeats.
     std::vector<carrier_point> course = {};
 
     friend bool operator==(const plan&, const plan&) = default;
 };
 
 /// Plans one stroke on an array. `l` must be the layout of `a`. The stroke's own choices (stroke::choices)
-/// override `o`. A stroke with a stroke::fit is fitted first. O(log n) in the tactors for each burst.
-/// \throws error (bad_input) for an SOA out of bounds, a path that leaves the array (with the place), timing
-///         that is not possible (with the nearest duration that is), and Tactile Brush without a grid.
+/// override `o`. A stroke with a stroke::fit is fitted first. Each burst takes O(log n) for n tactors.
+/// \throws error (bad_input) for an SOA out of bounds, for a path that leaves the array (the message names
+///         the place), for timing that is not possible (the message names the nearest possible duration), and
+///         for Tactile Brush on an array that is not a grid.
 [[nodiscard]] TACTOR_API plan make_plan(const array& a, const layout& l, const stroke& s,
                                         const plan_options& o);
 
@@ -202,8 +208,9 @@ struct plan {
 /// \throws error (bad_input) unless intercept < soa <= max_soa; the message names both bounds.
 [[nodiscard]] TACTOR_API double burst_duration_s(const timing_profile& p, double soa_s);
 
-/// Returns the duration of park2016's bursts: burst_s if it is set, else the law's.
-/// \throws error (bad_input) as above, and for a burst that is longer than the SOA or shorter than 0.1 ms.
+/// Returns the duration of park2016's bursts: burst_s if it is set, else the duration by the timing law.
+/// \throws error (bad_input) as the function above does, and for a burst that is longer than the SOA or
+///         shorter than 0.1 ms.
 [[nodiscard]] TACTOR_API double burst_duration_s(const plan_options& o);
 
 } // namespace v0

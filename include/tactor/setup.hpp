@@ -28,9 +28,9 @@ struct output_settings {
     std::optional<unsigned> periods = {};       ///< periods in the buffer, >= 2
 };
 
-/// [sync.codes]: numbers of the events of one kind.
+/// [sync.codes]: numbers of the events of a kind.
 struct code_numbering {
-    std::optional<unsigned> first = {}; ///< none: follows the last number of the kind before
+    std::optional<unsigned> first = {}; ///< none: the number after the last number of the kind before
     /// Parts of an event that select its number: run, motion, method, value, interval, answer. None: the
     /// parts that are usual for the kind.
     std::optional<std::vector<std::string>> by = {};
@@ -39,13 +39,13 @@ struct code_numbering {
 /// [sync] code: numbers that mark what happens in a study with people.
 struct code_settings {
     std::optional<unsigned> channel = {}; ///< spare PCM channel of the pulse codes
-    double bit_s = 0.002;                 ///< length of a bit there
+    double bit_s = 0.002;                 ///< length of a bit on that channel
     std::string chip = {};                ///< GPIO chip; empty: no lines
-    std::vector<unsigned> offsets = {};   ///< its lines, least significant bit first; eight at most
+    std::vector<unsigned> offsets = {};   ///< lines of this chip, least significant bit first; eight at most
     double pulse_s = 0.005;               ///< time for which the lines and the box show a number
     bool lsl = false;                     ///< markers to the Lab Streaming Layer
     std::string serial = {};              ///< port of a serial trigger box; empty: none
-    unsigned baud = 115200;               ///< its rate, bits in a second
+    unsigned baud = 115200;               ///< rate of this port, bits per second
     code_numbering stimulus = {};
     code_numbering standard = {}; ///< stimuli with the standard's value
     code_numbering caught = {};   ///< trials without a stimulus
@@ -66,14 +66,14 @@ struct sync_settings {
     std::optional<code_settings> code = {};
 };
 
-/// [limits], see drive_limits. Missing values have the defaults there.
+/// [limits], see drive_limits. Missing values have the defaults of drive_limits.
 struct limit_settings {
     std::optional<double> power_dbfs = {};
     std::optional<double> max_drive_s = {};
     std::optional<double> window_s = {};
 };
 
-/// A value of a table whose names only the program knows: [defaults], [serve]. The program checks names and
+/// A value of [defaults] or [serve]: tables whose names only the program knows. The program checks names and
 /// values.
 struct written_value {
     std::string name = {}; ///< as written in the file
@@ -105,7 +105,7 @@ struct calibration_origin {
     double carrier_hz = 0.0;
     bool simulated = false;
     std::string method = {};                ///< "staircase", "adjustment" or "quest"
-    std::optional<std::string> rule = {};   ///< "1up3down" or "1up2down", of a staircase
+    std::optional<std::string> rule = {};   ///< staircase: "1up3down" or "1up2down"
     double interval_s = 0.0;                ///< duration of each interval
     std::optional<bool> feedback = {};      ///< the participant was told whether each answer was right
     std::optional<std::string> masker = {}; ///< description of the masking noise

@@ -21,27 +21,27 @@ inline namespace v0 {
 
 /// Map from the channels of a stream to the channels of the device.
 struct stream_wiring {
-    /// Device channels that each channel of the stream reaches, ascending (those of a second device count
-    /// from 1024). A channel that reaches none is lost. Empty: each channel reaches the one of the same
-    /// number.
+    /// For each channel of the stream: the device channels that it reaches, ascending. The channels of a
+    /// second device count from 1024. A channel of the stream that reaches no device channel is lost. Empty:
+    /// each channel reaches the device channel with the same number.
     std::vector<std::vector<unsigned>> outputs = {};
     /// Factors on the samples, in the order of `outputs`; a factor below 0 reverses the polarity. An output
-    /// with a gain below 0.001 (-60 dB) counts as not reached. Empty: all are 1.
+    /// with a gain below 0.001 (-60 dB) counts as not reached. Empty: all factors are 1.
     std::vector<std::vector<double>> gains = {};
-    /// Plugin on the route whose level is not known: "type softvol". Empty: none.
+    /// Plugin on the route whose level is not known, such as "type softvol". Empty: none.
     std::string level_by = {};
-    /// Plugin on the route that may move channels, so that `outputs` is not known: "type pulse". Empty:
-    /// `outputs` is known.
+    /// Plugin on the route that may move channels, such as "type pulse", so that `outputs` is not known.
+    /// Empty: `outputs` is known.
     std::string hidden_by = {};
-    /// Largest factor on the samples of any channel after one of the tables on the route, 1 or more. Above 1
-    /// ALSA may clip them there, whatever `gains` are at the end.
+    /// Largest factor on the samples of any channel after one of the tables on the route, 1 or more. If it is
+    /// above 1, ALSA may clip samples at that table, whatever the `gains` of the whole route are.
     double most_gain = 1.0;
 };
 
 /// Negotiated stream. While the sink lives, only has_clock may change.
 struct stream_setup {
     std::string name;        ///< as the user named it
-    std::string device = {}; ///< name under which the drive time of its channels is kept; empty: it is not
+    std::string device = {}; ///< name under which drive times are kept; empty: drive times are not kept
     unsigned channels = 0;
     unsigned device_channels =
         0;             ///< channels of the PCM; those beyond `channels` are silent; 0: equal to `channels`
@@ -98,14 +98,14 @@ public:
     /// more.
     [[nodiscard]] virtual const stream_setup& setup() const noexcept = 0;
 
-    /// Makes the stream ready to be filled: first, and after each xrun. Begins a new epoch.
+    /// Makes the stream ready to be filled, at first and after each xrun. Begins a new epoch.
     [[nodiscard]] virtual io_kind prepare() noexcept = 0;
     /// Starts the DAC explicitly, after the prefill.
     [[nodiscard]] virtual io_kind start() noexcept = 0;
     /// Tries to return from `suspended`. Returns `again` while the device is not ready.
     [[nodiscard]] virtual io_kind resume() noexcept = 0;
-    /// Returns the time, ns, for which the stream stood still in the xrun that was just reported; 0 if it is
-    /// not known. Called before prepare().
+    /// Returns the time in ns for which the stream stood still in the xrun that was just reported, or 0 if
+    /// this time is not known. Called before prepare().
     [[nodiscard]] virtual std::int64_t xrun_ns() noexcept;
 
     /// Returns an upper bound of the number of descriptors.
@@ -117,16 +117,16 @@ public:
 
     /// Returns the number of frames that can be written now.
     [[nodiscard]] virtual io_result available() noexcept = 0;
-    /// Writes whole interleaved frames. May take fewer than offered, even none.
+    /// Writes whole interleaved frames. May take fewer frames than offered, even none.
     [[nodiscard]] virtual io_result write(std::span<const std::byte> frames) noexcept = 0;
     [[nodiscard]] virtual stream_position position() noexcept = 0;
     /// Stops at once and discards the queued frames.
     virtual void drop() noexcept = 0;
 };
 
-/// A sink for a target without a clock: a socket, a pipe, a simulation. Frames leave it at the sample rate by
-/// CLOCK_MONOTONIC. If the writer is late, the sink's time waits for it, so there are no xruns. Derive from
-/// it and implement take().
+/// A sink for a target without a clock: a socket, a pipe, a simulation. CLOCK_MONOTONIC sets the pace: frames
+/// leave the sink at the sample rate. If the writer is late, the sink's time waits for the writer, so there
+/// are no xruns. Derive from this class and implement take().
 class TACTOR_API paced_sink : public sink {
 public:
     /// Uses name, device, channels (1 to 1024), rate (8000 to 768000 Hz) and format of `s`. period_frames (50
@@ -149,9 +149,10 @@ public:
     void drop() noexcept final;
 
 protected:
-    /// Takes the next frames of the stream, interleaved, at most a period of them, up to buffer_frames before
-    /// their time. `first` counts from the epoch's start. The audio thread calls this: it must not block,
-    /// lock, allocate or log. Returns `ok`, or `lost` or `failed`, which end the stream.
+    /// Takes the next interleaved frames of the stream: at most one period, and at most buffer_frames before
+    /// their time. `first` is the number of the first of these frames, counted from the start of the epoch.
+    /// The audio thread calls this: it must not block, lock, allocate or log. Returns `ok`, or `lost` or
+    /// `failed`, which end the stream.
     [[nodiscard]] virtual io_kind take(std::uint64_t first, std::span<const std::byte> frames) noexcept = 0;
 
 private:

@@ -22,8 +22,7 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Progress from rest to rest. With u the elapsed part of the time (0 to 1), the covered part of the length
-/// is:
+/// Progress from rest to rest. u is the elapsed part of the time (0 to 1). The covered part of the length is:
 enum class easing_kind {
     linear,       ///< u: constant speed
     in_out,       ///< u^2 (3 - 2 u): the speed is a parabola, at most 1.5 times the mean
@@ -50,8 +49,8 @@ struct rest {
 };
 
 /// Movement of a target along a path. The default has constant speed. A profile is linear between its points,
-/// and constant before the first and after the last. Its parts ascend. A speed profile is linear in length,
-/// not in time: between two points the speed grows or falls exponentially in time.
+/// and constant before the first point and after the last. The parts of its points ascend. A speed profile is
+/// linear in length, not in time: between two points the speed grows or falls exponentially in time.
 struct movement {
     /// Time of the whole movement, rests included. None: it follows from the speeds.
     std::optional<double> duration_s = {};
@@ -80,8 +79,8 @@ struct meeting {
     friend bool operator==(const meeting&, const meeting&) = default;
 };
 
-/// Position and intensity over time (rendering model, section 2). Immutable. Copies and moves share it, so a
-/// moved-from trajectory keeps its value. Any thread.
+/// Position and intensity over time (rendering model, section 2). Immutable. Copies and moves share the
+/// contents, so a moved-from trajectory keeps its value. Any thread.
 class TACTOR_API trajectory {
 public:
     /// Makes a touch that rests at (0, 0) mm for a second.
@@ -92,11 +91,12 @@ public:
     /// \throws error (bad_input) unless 0 < duration_s <= 86400.
     [[nodiscard]] static trajectory along(path p, double duration_s, double intensity = 1.0);
 
-    /// Moves along a path as `m` describes: in its duration, or else at its speeds (default_speed_mm_s if it
-    /// has none).
+    /// Moves along a path as `m` describes: in the duration of `m`, or else at its speeds. Without a duration
+    /// and speeds, the speed is default_speed_mm_s.
     /// \throws error (bad_input) for parts that do not ascend from 0 to 1, speeds that are not above 0, and
-    ///         rests that take the whole duration or more. For a path that is a single place: also without a
-    ///         duration, and with rests or an intensity profile.
+    ///         rests that take the whole duration or more.
+    /// \throws error (bad_input) for a path that is a single place if `m` has no duration, or has rests or an
+    ///         intensity profile.
     [[nodiscard]] static trajectory along(path p, const movement& m, double intensity = 1.0);
 
     /// Moves linearly between timed points: at least two, times strictly ascending from 0, all numbers
@@ -109,7 +109,7 @@ public:
 
     /// Returns the position at a time, clamped to 0 ... duration. O(log n).
     [[nodiscard]] point position(double t_s) const noexcept;
-    /// Returns the intensity at a time (A_v), clamped in the same way.
+    /// Returns the intensity A_v at a time, which is clamped in the same way.
     [[nodiscard]] double intensity(double t_s) const noexcept;
 
     /// Returns the same movement with another duration, rests included. Throws like along().
@@ -120,7 +120,7 @@ public:
     /// \throws error (bad_input) unless speed_mm_s is finite, above 0 and gives a possible duration.
     [[nodiscard]] trajectory with_speed(double speed_mm_s) const;
 
-    /// Returns the movement backwards: at time t it is where this one is at duration - t.
+    /// Returns the movement backwards: at time t the new movement is where this movement is at duration - t.
     [[nodiscard]] trajectory reversed() const;
 
     /// Returns the same movement with every intensity multiplied by `factor`.
@@ -200,15 +200,17 @@ struct stroke {
     /// Start in seconds, counted from `anchor`. None: when the stroke before it ends.
     std::optional<double> start_s = {};
     start_anchor anchor = {};
-    /// Speed from which the duration follows; none if the input gives a time. fit_strokes() keeps it.
+    /// Speed from which the duration follows; none if the input gives a time. fit_strokes() does not change
+    /// the speed.
     std::optional<double> speed_mm_s = {};
-    /// Input without a time and a speed: default_speed_mm_s holds unless a set-up has another speed.
+    /// True if the input has neither a time nor a speed: default_speed_mm_s then applies, unless a set-up has
+    /// another speed.
     bool usual_pace = false;
     std::optional<stroke_fit> fit = {};
     stroke_sound sound = {};
     stroke_choices choices = {};
     note_kind note = note_kind::none;
-    std::string made_for = {}; ///< name of the array preset for which it was drawn; messages name it
+    std::string made_for = {}; ///< name of the array preset for which it was drawn, for messages
     /// Oddities of the input that were accepted. make_plan() passes them on to plan::warnings.
     std::vector<std::string> warnings = {};
     stroke_places places = {};
@@ -225,19 +227,19 @@ struct stroke {
 /// Returns the names of the shapes for first steps: "tap", "line", "circle", "eight" and "spiral".
 [[nodiscard]] TACTOR_API const std::vector<std::string>& stroke_shapes();
 
-/// Returns a shape by name. It fits itself to the array on which it is played (stroke::fit). It moves at
-/// default_speed_mm_s; a tap takes 0.3 s.
+/// Returns a shape by name. The shape is fitted to the array on which it is played (stroke::fit). Its speed
+/// is default_speed_mm_s; a tap takes 0.3 s.
 /// \throws error (bad_input) that lists the shapes.
 [[nodiscard]] TACTOR_API stroke shape_stroke(std::string_view name);
 
 /// Reads one or more strokes from a file. The extension decides the format, see tactor.toml(5). May block on
 /// the file system.
 ///
-/// `intensity_max`, here and below: value of an intensity in CSV and of a timed point in TOML that means 1,
-/// such as 255. A greater value is refused.
+/// `intensity_max`, here and below, is the number that means intensity 1 in CSV and in timed points of TOML,
+/// such as 255. Greater numbers are refused.
 ///
-/// `position`, here and below: place on the body whose touches are read, for a format that has several.
-/// Empty: the first, with a warning that names the others.
+/// `position`, here and below, is the place on the body whose touches are read from a format that has several.
+/// Empty: the first place, with a warning that names the others.
 /// \throws error (bad_input) with file, line and column.
 [[nodiscard]] TACTOR_API std::vector<stroke>
 load_strokes(const std::filesystem::path& file, double intensity_max = 1.0, std::string_view position = {});
@@ -253,16 +255,17 @@ load_strokes(const std::filesystem::path& file, double intensity_max = 1.0, std:
 [[nodiscard]] TACTOR_API std::vector<stroke>
 parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max = 1.0);
 /// Reads a stroke from CSV with a header line that names t_s, x_mm, y_mm and optionally intensity, in any
-/// order. The time of the first line becomes the stroke's zero; it may be any from -1e10 to 1e10 s. Of lines
-/// with equal times the last one counts, with a warning. Where place or intensity is nan, the touch is
-/// lifted. Rows of nothing but commas are skipped.
+/// order. The time of the first line becomes time 0 of the stroke; it may be any time from -1e10 to 1e10 s.
+/// If several lines have the same time, the last of them counts, and there is a warning. Where place or
+/// intensity is nan, the touch is lifted. Rows that have nothing but commas are skipped.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name,
                                                                double intensity_max = 1.0);
 /// Reads strokes from an SVG document. Each subpath of each shape is a stroke, in document order. One user
 /// unit is 1 mm, unless the document's width or height has a physical unit.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text,
                                                                const std::string& name);
-/// Reads strokes in the format that the beginning of the text shows; TOML if it shows none.
+/// Reads strokes in the format that the beginning of the text shows, or in TOML if the beginning shows no
+/// format.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name,
                                                            double intensity_max = 1.0,
                                                            std::string_view position = {});

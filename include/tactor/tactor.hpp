@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Includes every header but <tactor/asio.hpp> and <tactor/config.hpp>, and plays a stroke by one call.
-/// Include this one, or single headers.
+/// Includes every header except <tactor/asio.hpp> and <tactor/config.hpp>, and declares play(), which plays a
+/// stroke in one call. Include this header, or single headers.
 #pragma once
 
 #include <string>
@@ -29,10 +29,10 @@ inline namespace v0 {
 
 /// Plays a stroke once on an ALSA device, such as "hw:CARD=Tactor", and waits until it has ended. Returns how
 /// it ended. Opens the device with the channels of the array (o.channels if that is more) and o.rate, and
-/// closes it again. Reads no configuration and switches no amplifier. Blocks; any thread without real-time
-/// priority. A program that plays more than one stroke keeps a player. \throws error: bad_input for a stroke
-/// that cannot be planned or rendered, as make_plan() and score;
-///         not_available or runtime for a device that cannot be opened, as open_alsa().
+/// closes the device again. Reads no configuration and switches no amplifier. Blocks. Any thread without
+/// real-time priority may call this. To play more than one stroke, use a player.
+/// \throws error (bad_input) for a stroke that cannot be planned or rendered, as make_plan() and score do.
+/// \throws error (not_available or runtime) for a device that cannot be opened, as open_alsa() does.
 [[nodiscard]] inline stroke_report play(const std::string& pcm, const array& a, const stroke& s,
                                         const render_options& o = {}, const plan_options& p = {})
 {

@@ -9,7 +9,7 @@
 
 #include <tactor/api.hpp>
 
-/// Version of these headers. version() returns that of the running library.
+/// Version of these headers. version() returns the version of the running library.
 #define TACTOR_VERSION_MAJOR 0
 #define TACTOR_VERSION_MINOR 1
 #define TACTOR_VERSION_PATCH 0
@@ -26,8 +26,8 @@ inline namespace v0 {
 /// Returns the version, "0.1.0".
 [[nodiscard]] TACTOR_API const char* version() noexcept;
 
-/// Returns facts for a bug report: how the library was built, with what, and which version of its loops this
-/// processor runs. A few lines for people. Any thread.
+/// Returns facts for a bug report, as a few lines for people: how and with what the library was built, and
+/// which version of its loops this processor runs. Any thread.
 [[nodiscard]] TACTOR_API std::string build_facts();
 
 /// Rights that limits and capabilities give this process.

@@ -19,15 +19,16 @@
 namespace tactor {
 inline namespace v0 {
 
-/// Shapes of the carrier. Square, triangle and sawtooth have the carrier's frequency and their harmonics
-/// below half the rate. Each begins where it crosses zero upwards. Noise lies between two frequencies. The
-/// peak of each is the requested amplitude: a square has up to 1.6 times the power of a sine, and noise a
-/// tenth of it.
+/// Shapes of the carrier. Square, triangle and sawtooth have the carrier's frequency and those of their
+/// harmonics that are below half the rate. Each of these waves begins where it crosses zero upwards. Noise
+/// lies between two frequencies. The peak of each waveform is the requested amplitude, but the power differs:
+/// a square wave has up to 1.6 times the power of a sine, and noise has a tenth of the power of a sine.
 enum class waveform_kind { sine, square, triangle, sawtooth, noise, recording };
 TACTOR_KIND(waveform_kind);
 
-/// Placement of recorded samples along a stroke: as the carrier's cycle; in their own time, from the stroke's
-/// first frame on; or along the path, by its length. Samples shorter than the stroke are repeated.
+/// Placement of recorded samples along a stroke. `cycle`: the samples are one cycle of the carrier. `time`:
+/// they play at their own rate, from the stroke's first frame on. `length`: they lie along the length of the
+/// path. Samples that are shorter than the stroke are repeated.
 enum class texture_kind { cycle, time, length };
 TACTOR_KIND(texture_kind);
 
@@ -40,17 +41,18 @@ struct recording {
     std::vector<float> samples = {};
     /// SHA-256 of the file's bytes, 64 lower-case hexadecimal digits; empty without a file.
     std::string sha256 = {};
-    /// Samples that the file's header announces but the file lacks, because it was cut short.
+    /// Number of samples that the file's header announces but the file does not have, because it was cut
+    /// short.
     std::uint64_t missing = 0;
 
     friend bool operator==(const recording&, const recording&) = default;
 };
 
-/// Least distance of the frequencies of noise from each other and from 0, Hz.
+/// Least distance between the two frequencies of noise, and of each from 0, Hz.
 inline constexpr double least_noise_hz = 1.0;
-/// Most samples of a recording that is a cycle or lies along a path by its length.
+/// Highest number of samples of a recording with texture_kind::cycle or texture_kind::length.
 inline constexpr std::size_t most_cycle_samples = std::size_t{1} << 16;
-/// Most samples of any recording.
+/// Highest number of samples of any recording.
 inline constexpr std::size_t most_recording_samples = std::size_t{1} << 22;
 
 /// A carrier's waveform. A plain value; copies share the recording.
@@ -61,15 +63,18 @@ struct waveform {
     std::uint64_t seed = 1; ///< noise: the same number gives the same noise
     std::shared_ptr<const recording> recorded = {}; ///< recording only
     texture_kind texture = texture_kind::cycle;     ///< recording only
-    /// texture_kind::length: length of path that the whole recording covers once, mm; 0: the whole path.
+    /// texture_kind::length: length of path that the whole recording covers, mm; 0: the whole path.
     double texture_mm = 0.0;
 
     /// Compares recordings by their contents.
     TACTOR_API friend bool operator==(const waveform& a, const waveform& b);
 };
 
-/// Amplitude modulation: the vibration is multiplied by (1 + depth sin(2 pi hz t)) / (1 + depth), which keeps
-/// its peak. t is 0 at the start of the carrier.
+/// Amplitude modulation. The vibration is multiplied by the following factor, which does not change its peak:
+///
+///     (1 + depth sin(2 pi hz t)) / (1 + depth)
+///
+/// t is 0 at the start of the carrier.
 struct modulation {
     double hz = 0.0;    ///< 0: none; at most 20000
     double depth = 1.0; ///< 0 to 1
@@ -87,7 +92,8 @@ struct modulation {
 /// that must not open files.
 [[nodiscard]] TACTOR_API bool waveform_names_file(std::string_view text) noexcept;
 
-/// Returns the text that parse_waveform() reads: with the frequencies of noise, or the file of a recording.
+/// Returns the text from which parse_waveform() makes this waveform. It has the frequencies of noise or the
+/// file of a recording.
 [[nodiscard]] TACTOR_API std::string waveform_text(const waveform& w);
 
 /// Parses "HZ" or "HZ:DEPTH".
@@ -99,10 +105,11 @@ struct modulation {
 /// \throws error (bad_input) that names the file.
 [[nodiscard]] TACTOR_API recording load_recording(const std::filesystem::path& file);
 
-/// Most bytes of own_samples, which stay in memory while they play: 10 minutes of nine channels of floats.
+/// Highest number of bytes of own_samples, which stay in memory while they play. It is enough for 10 minutes
+/// of nine channels of floats.
 inline constexpr std::size_t most_own_bytes = std::size_t{1} << 30;
 
-/// Samples of one's own for all channels of a stream; score::from_samples() makes a score of them.
+/// Your own samples for all channels of a stream. score::from_samples() makes a score of them.
 struct own_samples {
     std::string file = {}; ///< file of origin, for messages
     unsigned rate = 48000; ///< Hz
@@ -115,10 +122,11 @@ struct own_samples {
     friend bool operator==(const own_samples&, const own_samples&) = default;
 };
 
-/// Reads a WAV file (RIFF, RF64 or BW64) of any number of channels, without a loss: integers of 8 to 32 bits
-/// and floats of 32 bits. Floats of 64 bits become floats of 32 bits. For a moment the file is in memory
+/// Reads a WAV file (RIFF, RF64 or BW64) of any number of channels. Integers of 8 to 32 bits and floats of 32
+/// bits are read without loss. Floats of 64 bits become floats of 32 bits. For a moment the file is in memory
 /// twice. Blocks on the file system.
-/// \throws error (bad_input) that names the file, also where it is cut short or longer than most_own_bytes.
+/// \throws error (bad_input) that names the file, also if the file is cut short or has more than
+///         most_own_bytes.
 [[nodiscard]] TACTOR_API own_samples load_samples(const std::filesystem::path& file);
 
 /// Checks ranges. The constructor of a score checks values that depend on the sample rate.
@@ -127,17 +135,19 @@ TACTOR_API void validate(const waveform& w);
 TACTOR_API void validate(const modulation& m);
 
 /// Shape of a burst's rise and fall: half a cycle of a cosine, a straight line, or an exponential that ends
-/// after five of its time constants. `tukey` is raised_cosine with ramps that are a part of the burst.
+/// after five time constants. `tukey` is raised_cosine with ramps whose length is a part of the burst's
+/// duration.
 enum class envelope_kind { raised_cosine, linear, exponential, tukey };
 TACTOR_KIND(envelope_kind);
 
-/// Envelope of every burst, and of a continuous stroke as a whole. If both ramps do not fit, they are
-/// shortened in the same ratio.
+/// Envelope of every burst, and of a continuous stroke as a whole. If a burst is too short for both ramps,
+/// they are shortened in the same ratio.
 struct burst_envelope {
     envelope_kind kind = envelope_kind::raised_cosine;
     std::optional<double> attack_s = {};  ///< s, from 0; none: render_options::ramp_s
     std::optional<double> release_s = {}; ///< s, from 0; none: render_options::ramp_s
-    double tukey_part = 0.5; ///< tukey: part of the burst in both ramps, 0 to 1; replaces the other ramps
+    /// tukey: part of the burst that both ramps take together, 0 to 1; replaces the other ramps.
+    double tukey_part = 0.5;
 
     friend bool operator==(const burst_envelope&, const burst_envelope&) = default;
 };
@@ -146,7 +156,7 @@ struct burst_envelope {
 /// \throws error (bad_input).
 [[nodiscard]] TACTOR_API burst_envelope parse_envelope(std::string_view text);
 
-/// Returns the text that parse_envelope() reads, without the ramps.
+/// Returns the text from which parse_envelope() makes this envelope, without the ramps.
 [[nodiscard]] TACTOR_API std::string envelope_text(const burst_envelope& e);
 
 } // namespace v0
