@@ -46,8 +46,9 @@ struct stream_options {
     bool live = false;                   ///< points come from standard input
     std::optional<double> smooth_s = {}; ///< smoothing of those points
     bool no_gpio = false;
-    bool verbose = false; ///< log on standard error
-    std::string log = {}; ///< file that log lines are appended to; empty: none
+    bool no_desktop = false; ///< ask neither RealtimeKit nor sound servers
+    bool verbose = false;    ///< log on standard error
+    std::string log = {};    ///< file that log lines are appended to; empty: none
     std::optional<double> power_dbfs = {};
     std::optional<double> max_drive_s = {};
     std::optional<double> drive_window_s = {};

@@ -132,8 +132,10 @@ public:
         o.require_realtime = s.stream.require_realtime;
         o.keep_drive_time = keep;
         o.log = device.log;
-        open_->stream = std::make_unique<player>(session::open_device(device, e.tactors), e.tactors, o,
-                                                 open_->lines.lend());
+        session::prepare_desktop(s.stream);
+        open_->card.ask = !s.stream.no_desktop;
+        open_->stream = std::make_unique<player>(session::open_device(device, e.tactors, open_->card),
+                                                 e.tactors, o, open_->lines.lend());
         if (detail::array_text(e.tactors) != detail::array_text(a))
             configured_ = e.tactors;
         doubt_ = e.array_doubt;
@@ -235,6 +237,7 @@ public:
         {
             const std::unique_lock lock(open_->mutex);
             open_->lines = session::lent_lines();
+            open_->card.reserved.reset();
         }
         events_->close();
     }
@@ -250,6 +253,7 @@ private:
     struct open_state {
         mutable std::shared_mutex mutex;
         session::lent_lines lines;
+        session::card_claim card;
         std::unique_ptr<player> stream;
         player_stats last_stats; ///< values without a stream, as the next
         std::optional<std::string> last_end;

@@ -2,9 +2,12 @@
 #include "session/device.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -13,10 +16,12 @@
 
 #include <tactor/tactor.hpp>
 
+#include "core/log.hpp"
 #include "core/members.hpp"
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
 #include "files/setup_layers.hpp"
+#include "rt/thread.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
@@ -237,10 +242,55 @@ std::string find_fit(alsa_options o, const array& a)
     return {};
 }
 
-std::unique_ptr<sink> open_device(const alsa_options& o, const array& a)
+void prepare_desktop(const stream_options& o) noexcept
+{
+    rt::set_realtime_helper(o.no_desktop ? nullptr : desktop::ask_realtime);
+}
+
+std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>& open, unsigned card_index,
+                                   card_claim& c)
+{
+    const auto give_up = [&c] {
+        if (c.idle) {
+            c.asked = true;
+            c.news();
+        }
+        return c.idle.load();
+    };
+    c.holder.clear();
+    for (auto end = std::chrono::steady_clock::time_point::max();;) {
+        try {
+            return open();
+        } catch (const error& e) {
+            const bool last = e.os_code() != EBUSY || !c.ask || std::chrono::steady_clock::now() > end;
+            if (!last && c.reserved != nullptr) { // the other program is closing the card
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                continue;
+            }
+            if (!last)
+                c.reserved = desktop::reservation::take(card_index, give_up, c.holder);
+            else
+                c.reserved.reset();
+            c.holder = shown(c.holder);
+            if (c.reserved == nullptr && (last || c.holder.empty()))
+                throw;
+            if (c.reserved == nullptr)
+                throw e.reworded(e.subject(), e.why(),
+                                 fmt::format("{} keeps it when asked; {}", c.holder, e.hint()));
+            end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+        }
+    }
+}
+
+std::unique_ptr<sink> open_device(const alsa_options& o, const array& a, card_claim& c)
 {
     try {
-        return open_alsa(o);
+        const std::optional<card_info> card = read_card(o.pcm);
+        std::unique_ptr<sink> s =
+            card ? open_on_card([&o] { return open_alsa(o); }, card->index, c) : open_alsa(o);
+        if (c.reserved != nullptr)
+            detail::log(o.log, log_kind::info, "{} has given up the card until the stream ends", c.holder);
+        return s;
     } catch (const error& e) {
         const std::string fit = e.field() == "channels" && o.wider ? find_fit(o, a) : "";
         if (fit.empty())

@@ -4,6 +4,8 @@
 /// all devices.
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +18,7 @@
 #include <tactor/sink.hpp>
 #include <tactor/tactor.hpp>
 
+#include "desktop/desktop.hpp"
 #include "session/environment.hpp"
 
 namespace tactor::session {
@@ -47,8 +50,28 @@ double latency_ms(const stream_setup& s);
 /// or, if `a` needs fewer, the channel that a marker or a plan adds to it. Empty: none.
 std::string find_fit(alsa_options o, const array& a);
 
-/// Opens like open_alsa() for this array; if the PCM has too few channels, the hint names what fits.
-std::unique_ptr<sink> open_device(const alsa_options& o, const array& a);
+/// Allows this process to ask RealtimeKit for the priority of its threads, or forbids it (`no_desktop`).
+void prepare_desktop(const stream_options& o) noexcept;
+
+/// A card that a session has from a sound server, and that other programs may ask for.
+struct card_claim {
+    bool ask = true;                 ///< false: a busy card is an error
+    std::atomic<bool> idle = false;  ///< no stroke needs the card, so another program may have it
+    std::atomic<bool> asked = false; ///< another program was promised that the card is closed soon
+    std::function<void()> news = {}; ///< called in another thread after `asked` is set
+    std::string holder = {};         ///< program that gave the card up; empty: it was not busy
+    std::unique_ptr<desktop::reservation> reserved = {}; ///< to be reset once the device is closed
+};
+
+/// Opens a device on a card by `open`. If the card is busy, asks the program that holds it to give it up, and
+/// tries again. Blocks for some seconds at most.
+/// \throws exceptions of `open`; if the program refuses, the hint says so.
+std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>& open, unsigned card_index,
+                                   card_claim& c);
+
+/// Opens like open_alsa() for this array, by open_on_card(); if the PCM has too few channels, the hint names
+/// what fits.
+std::unique_ptr<sink> open_device(const alsa_options& o, const array& a, card_claim& c);
 
 /// Returns the sound server between this process and a PCM; empty: none. If a variable of PipeWire is unset,
 /// sets it in this process, so that each channel goes unmixed to the output with its number. Call it before

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "session/device.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
@@ -144,10 +143,10 @@ void stream_policy::ended(std::string why)
     set(stream_state::lost, std::move(why));
 }
 
-void stream_policy::stopped()
+void stream_policy::stopped(std::string why)
 {
     if (phase_ == phase::open && !std::exchange(broken_, true))
-        set(stream_state::idle, "everything was stopped; the next stroke starts it");
+        set(stream_state::idle, std::move(why));
 }
 
 void stream_policy::closed(bool left_on)
@@ -282,7 +281,9 @@ amplifier_state lent_lines::amplifier() const noexcept
 stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm)
 {
     stream_parts p;
-    p.open = [device, tactors = e.tactors] { return open_device(device, tactors); };
+    prepare_desktop(o);
+    p.card->ask = !o.no_desktop;
+    p.open = [device, tactors = e.tactors, card = p.card] { return open_device(device, tactors, *card); };
     p.lines = lent_lines(open_lines(o, e, arm));
     p.tactors = e.tactors;
     p.player.limits = find_limits(o, e);
@@ -310,6 +311,7 @@ device_stream::device_stream(stream_parts p)
     : stream_policy(p.times), parts_(std::move(p)), setup_(parts_.wished)
 {
     parts_.lines.on_switch([this] { news_.signal(); });
+    parts_.card->news = [this] { news_.signal(); };
     parts_.player.log = [this, log = parts_.player.log](log_kind k, std::string_view text) {
         if (log)
             log(k, text);
@@ -336,13 +338,21 @@ void device_stream::finish() noexcept
 void device_stream::cancel_all()
 {
     if (player_ != nullptr && !player_->ended() && !player_->cancel_all())
-        stopped();
+        stopped("everything was stopped; the next stroke starts it");
+}
+
+void device_stream::set_busy(bool is)
+{
+    parts_.card->idle = !is;
+    stream_policy::set_busy(is);
 }
 
 std::optional<device_stream::time> device_stream::step(time now)
 {
     if (outcome_ != nullptr && outcome_->done)
         finish_work();
+    if (parts_.card->idle && parts_.card->asked.exchange(false))
+        stopped("another program asked for the card; the next stroke starts it");
     if (player_ != nullptr && !drive_time_doubted_)
         if (const std::string doubt = player_->drive_time_doubt(); !doubt.empty()) {
             drive_time_doubted_ = true;
@@ -405,6 +415,7 @@ void device_stream::open()
         });
         outcome_->player = std::move(p);
     } catch (const std::exception& e) {
+        parts_.card->reserved.reset();
         outcome_->failure = std::current_exception();
         outcome_->why = e.what();
     }
@@ -415,6 +426,7 @@ void device_stream::close()
     outcome_->player->stop();
     outcome_->last = outcome_->player->stats();
     outcome_->player.reset(); // sends the last reports; the player holds the device and borrows the lines
+    parts_.card->reserved.reset();
 }
 
 void device_stream::finish_work()

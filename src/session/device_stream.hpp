@@ -18,6 +18,7 @@
 #include <tactor/tactor.hpp>
 
 #include "rt/event_fd.hpp"
+#include "session/device.hpp"
 #include "session/environment.hpp"
 
 namespace tactor::session {
@@ -61,8 +62,8 @@ public:
     void closed(bool left_on);
     /// Notes that the stream has ended by itself.
     void ended(std::string why);
-    /// Notes that the stream ends because everything was stopped. The next stroke opens it again.
-    void stopped();
+    /// Notes that the stream ends, for this reason. The next stroke opens it again.
+    void stopped(std::string why);
     /// Notes that the amplifier is off, or on again, while the stream goes on.
     void mute(bool is);
     /// Notes that there are strokes, or none.
@@ -154,6 +155,7 @@ private:
 
 struct stream_parts {
     std::function<std::unique_ptr<sink>()> open = {}; ///< blocks shortly. \throws error
+    std::shared_ptr<card_claim> card = std::make_shared<card_claim>();
     lent_lines lines = {};
     array tactors = {};
     player_options player = {};
@@ -177,8 +179,11 @@ public:
     device_stream& operator=(const device_stream&) = delete;
 
     using stream_policy::end, stream_policy::is_out, stream_policy::is_over, stream_policy::reason,
-        stream_policy::set_busy, stream_policy::state, stream_policy::time, stream_policy::wake;
+        stream_policy::state, stream_policy::time, stream_policy::wake;
 
+    /// Notes that there are strokes, or none. While there are none, the device may be closed, and other
+    /// programs get the card on request. A stream for which this is never called keeps its card.
+    void set_busy(bool is);
     /// Handles events. Call it when descriptor() is readable, after work, and at the time that it returns.
     /// Does not block.
     std::optional<time> step(time now = time::clock::now());

@@ -402,7 +402,12 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     CHECK(has(judged(f, "memory", n).found,
               "8 MiB of locked memory (RLIMIT_MEMLOCK), 100 MiB needed, including a reserve"));
     CHECK_FALSE(judged(f, "memory", n).cure.empty());
-    f.rights.priority = 40;
+    f.priority = 20; // granted all the same
+    n.require_realtime = true;
+    CHECK(judged(f, "real time", n).how == level::ok);
+    CHECK(judged(f, "real time", n).found == "RealtimeKit grants SCHED_FIFO at 20, 65 requested");
+    n.require_realtime = false;
+    f.rights.priority = f.priority = 40;
     CHECK(has(judged(f, "real time", n).found, "SCHED_FIFO only up to 40, 65 requested"));
     n.require_realtime = true;
     CHECK(judged(f, "real time", n).how == level::error);

@@ -13,7 +13,7 @@ OTHER = "a separate parameter of the protocol"
 # Options that no client of the service may give.
 NO_CLIENT = {
     "path": OTHER, "shape": OTHER, "live": OTHER, "smooth": OTHER, "arm": OTHER,
-    "array": OWNER, "config": OWNER, "device": OWNER, "channels": OWNER, "rate": OWNER, "sample-format": OWNER, "no-gpio": OWNER,
+    "array": OWNER, "config": OWNER, "device": OWNER, "channels": OWNER, "rate": OWNER, "sample-format": OWNER, "no-gpio": OWNER, "no-desktop": OWNER,
     "power-dbfs": OWNER, "max-drive-s": OWNER, "drive-window-s": OWNER, "latency-ms": OWNER, "period-frames": OWNER, "periods": OWNER,
     "require-realtime": OWNER, "reopen-s": OWNER, "sync-delay-ms": OWNER, "verbose": OWNER, "log": OWNER,
     "texture": "a client names no file", "texture-mm": "a client names no file",
@@ -28,7 +28,7 @@ NO_METHOD = {"intensity-max": "a key of the method's own file, as of a motion's"
 # clock and one array.
 IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "soa", "burst", "waveform", "noise-seed", "texture", "texture-mm", "fit"}
 # Options that commands use and only [defaults] of a file sets: about a place on the body, a person or an observer.
-FILE_ONLY = {"slope", "intercept", "min-duration", "sigma-v-mm-s", "stevens-exponent", "spread-seed"}
+FILE_ONLY = {"slope", "intercept", "min-duration", "sigma-v-mm-s", "stevens-exponent", "spread-seed", "no-desktop"}
 # Other differences between front ends, and their reasons:
 # - Configuration: Python's Player and devices() read its [defaults]; plan(), Score() and live() read those of the array file alone, so that a
 #   plan is the same on each machine. marker_channel is [sync]'s on the command line, beside the wires.
@@ -92,18 +92,22 @@ class Options(ToolTest):
             said = self.about(name)["Commands"].split(", ")
             self.assertEqual(said, [c for c in COMMANDS if name in takes[c]], name)
 
-    def test_only_a_file_sets_what_describes_a_place_a_person_or_an_observer(self):
-        value = {"slope": 0.4, "intercept": 0.03, "min-duration": 0.069, "sigma-v-mm-s": 80, "stevens-exponent": 0.9, "spread-seed": 2}
+    def test_only_a_file_sets_what_describes_a_place_a_person_an_observer_or_a_computer(self):
+        value = {"slope": 0.4, "intercept": 0.03, "min-duration": 0.069, "sigma-v-mm-s": 80, "stevens-exponent": 0.9, "spread-seed": 2,
+                 "no-desktop": "true"}
         plain = {"plan": ("--timing", "fit", "--compensate", "low-speed", "--intensity-scale", "stevens"), "compare": ("--spread", "20")}
         for name in FILE_ONLY:
             about = self.about(name)
             self.assertEqual((about["[defaults]"], "Commands" in about), (name, False))
             for command in about["Used by"].split(", "):
                 self.assertNotIn(name, self.list_options(command))
-                required = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg")}.get(command, ())
-                stroke = () if command == "check" else ("soft.csv",)
+                required = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg"), "calibrate": ("--participant", "P1", "-o", "x.toml"),
+                            "experiment": ("--participant", "P1", "-o", "x")}.get(command, ())
+                stroke = () if command in ("check", "calibrate", "serve") else ("soft.csv",)
                 said = self.refused(2, command, *stroke, *required, f"--{name}", str(value[name])).stderr
                 self.assertIn(f"--{name}: only a file can set it (put {name} into [defaults] of a file for --array)", said)
+            if name == "no-desktop":  # tests/session/test_reserved.cpp tries it
+                continue
             # The cure works.
             self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,5,5,0.4\n0.51,35,35,0.4\n")
             self.write("felt.toml", f'[array]\npreset = "palm-3x3"\n[defaults]\n{name} = {value[name]}\n')

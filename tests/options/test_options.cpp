@@ -282,6 +282,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
                                                  {"sigma-mm", "4"},
                                                  {"sigma-v-mm-s", "90"},
                                                  {"spread-seed", "7"},
+                                                 {"no-desktop", "true"},
                                                  {"level-dbfs", "-6.5"}};
     std::size_t known = 0;
     for (const option& o : options::all()) {

@@ -126,6 +126,25 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
           "finished");
 }
 
+TEST_CASE("a card that another program asks for is closed between strokes, and opened by the next one")
+{
+    std::shared_ptr<session::card_claim> card;
+    running_rig rig([&card](server::service_options&, server::stream_options& s) { card = s.card; });
+    const auto c = rig.client();
+    const json number = rig.ok(c, "play", brief)["stroke"];
+    CHECK_FALSE(card->idle);
+    card->asked = true; // a request that came just before the stroke waits for its end
+    card->news();
+    CHECK(rig.find_end(c, number)["state"] == "finished");
+    rig.until([&] { return rig.cards.back().closed(); });
+    CHECK_FALSE(card->asked);
+    const json now = rig.ok(c, "status")["stream"];
+    CHECK(now["state"] == "idle");
+    CHECK(now["reason"] == "another program asked for the card; the next stroke starts it");
+    rig.sleep_and_plug();
+    CHECK(rig.find_end(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
+}
+
 TEST_CASE("requests that want no stream do not keep it from being idle")
 {
     running_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.02; });

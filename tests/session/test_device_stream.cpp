@@ -290,9 +290,10 @@ TEST_CASE("a stream that ends because everything was stopped is idle, not lost")
 {
     owner o;
     o.open();
-    o.policy.stopped();
+    o.policy.stopped("everything was stopped");
     o.policy.ended("the stream was stopped");
     CHECK(o.policy.state() == stream_state::idle);
+    CHECK(o.policy.reason() == "everything was stopped");
     o.close();
     CHECK_FALSE(o.wait_for(act::open));
     o.policy.wake();

@@ -98,6 +98,7 @@ struct system_facts {
     std::vector<std::string> joined = {}; ///< groups of the user, in force or not
     realtime_rights rights = {};
     int priority_error = 0;                 ///< errno of an attempt to get the audio thread's priority
+    int priority = 0;                       ///< priority of that attempt; 0: refused
     std::uint64_t memory_bytes = 0;         ///< memory that play would lock
     std::vector<device_node> sound = {};    ///< playback devices
     std::vector<device_node> gpio = {};     ///< chips

@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <grp.h>
 #include <pwd.h>
+#include <sched.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -183,6 +184,9 @@ finding check_priority(const system_facts& f, const system_needs& n)
     if (f.rights.priority >= asked_priority)
         return passed("real time",
                       fmt::format("SCHED_FIFO up to {}, {} requested", f.rights.priority, asked_priority));
+    if (f.rights.priority == 0 && f.priority > 0)
+        return passed("real time", fmt::format("RealtimeKit grants SCHED_FIFO at {}, {} requested",
+                                               f.priority, asked_priority));
     const std::string found =
         f.rights.priority == 0
             ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
@@ -285,8 +289,12 @@ system_facts read_system(const fs::path& root, const std::string& user)
     f.groups = own_groups();
     f.joined = find_groups(user, root / "etc/group");
     f.rights = probe_realtime_rights();
-    f.priority_error =
-        rt::thread({.name = "tactor-check", .fifo = true, .priority = asked_priority}, [] {}).fifo_error();
+    rt::thread attempt({.name = "tactor-check", .fifo = true, .priority = asked_priority}, [&f] {
+        sched_param p{};
+        f.priority = ::sched_getparam(0, &p) == 0 ? p.sched_priority : 0;
+    });
+    attempt.join();
+    f.priority_error = attempt.fifo_error();
     f.memory_bytes = session::memory_to_lock();
     f.sound = nodes(root / "dev/snd", "pcmC", "p");
     f.gpio = nodes(root / "dev", "gpiochip");

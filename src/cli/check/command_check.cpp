@@ -111,11 +111,15 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
                    bool named, std::string& kept_as)
 {
     const std::string server = session::prepare_server(device.pcm);
-    const stream_setup made = session::open_device(device, e.tactors)->setup();
+    session::card_claim card{.ask = !o.no_desktop};
+    const stream_setup made = session::open_device(device, e.tactors, card)->setup();
     kept_as = made.device;
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return refuse_lost_tactor(device, lost);
-    const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
+    const std::string found =
+        describe(made) +
+        (card.holder.empty() ? "" : fmt::format("; {} has given up the card for this check", card.holder)) +
+        (server.empty() ? "" : "; " + session::server_note(server));
     if (!named)
         return warning("device", "none is configured, so play uses " + found,
                        "give -D PCM, or pcm under [output]; tactor devices lists them");
@@ -187,6 +191,7 @@ void check_machine(const setup& config, const alsa_options& device, const sessio
     n.amplifier = config.amplifier && !o.no_gpio;
     n.gpio = n.amplifier || (!o.no_gpio && config.sync && (config.sync->out || config.sync->in));
     n.require_realtime = o.require_realtime;
+    session::prepare_desktop(o);
     for (finding& f : check_system(read_system(), n))
         all.push_back(std::move(f));
 }

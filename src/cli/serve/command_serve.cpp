@@ -26,6 +26,7 @@
 #include "options/option.hpp"
 #include "rt/clock.hpp"
 #include "rt/system_files.hpp"
+#include "rt/thread.hpp"
 #include "server/server.hpp"
 #include "session/device.hpp"
 #include "session/log.hpp"
@@ -304,7 +305,8 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     server::stream_options stream{session::open_parts(device, play, e, armed)};
     const bool locked = session::prepare_realtime(play.require_realtime);
     session::give_memory_back();
-    session::warn_of_rights(probe_realtime_rights().priority != 0, locked);
+    const bool realtime = rt::thread({.name = "tactor-check", .fifo = true}, [] {}).fifo_error() == 0;
+    session::warn_of_rights(realtime, locked);
     stream.tactors = service.plans.tactors;
     stream.changed = [&stop, tell = make_owner_log()](server::stream_state state, const std::string& reason) {
         if (state == server::stream_state::closing)

@@ -48,10 +48,11 @@ class Player(_Unique):
     """
 
     def __init__(self, device: str, array: Array, *, rate: int | None = None, sample_format: _SampleFormat | None = None,
-                 channels: int | None = None, no_gpio: bool | None = None, power_dbfs: float | None = None, max_drive_s: float | None = None,
-                 drive_window_s: float | None = None, latency: float | None = None, period_frames: int | None = None, periods: int | None = None,
-                 require_realtime: bool | None = None, sync_delay: float | None = None, config: _t.Union[str, os.PathLike[str], None] = None,
-                 log: _t.Callable[[_LogKind, str], object] | None = None, keep_drive_time: bool = True) -> None:
+                 channels: int | None = None, no_gpio: bool | None = None, no_desktop: bool | None = None, power_dbfs: float | None = None,
+                 max_drive_s: float | None = None, drive_window_s: float | None = None, latency: float | None = None,
+                 period_frames: int | None = None, periods: int | None = None, require_realtime: bool | None = None, sync_delay: float | None = None,
+                 config: _t.Union[str, os.PathLike[str], None] = None, log: _t.Callable[[_LogKind, str], object] | None = None,
+                 keep_drive_time: bool = True) -> None:
         """Opens a device.
 
         Parameters
@@ -76,6 +77,8 @@ class Player(_Unique):
             Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
         no_gpio : bool
             Do not use the lines of [amplifier] and [sync].
+        no_desktop : bool
+            Do not ask RealtimeKit for priority, or a sound server for its card.
         power_dbfs : float
             Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
