@@ -44,7 +44,7 @@ MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
-        "runs{}.exponent.participants", "runs{}.adjustment.participants", "runs{}.adjustment.means", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
+        "runs{}.exponent.participants", "runs{}.adjustment.participants", "runs{}.adjustment.means", "runs{}.time_order.participants", "runs{}.time_order.participants{}", "runs{}.time_order.means", "runs{}.drawings.participants", "runs{}.drawings.participants{}", "runs{}.drawings.means", "runs{}.drawings.predicted",
         "runs{}.scaling.participants", "runs{}.scaling.participants{}.places", "runs{}.scaling.places", "runs{}.by",
         *(f"runs{{}}.{key}" for factor in ("methods", "sessions") for key in (factor, factor + "{}.means", factor + "{}.group_means"))}
 
