@@ -47,6 +47,7 @@ constexpr std::array commands{
     command{"render", "Write the samples to a WAV file, one channel per tactor", run_render},
     command{"play", "Play strokes on the array", run_play},
     command{"plot", "Draw the array, the path and the bursts over time", run_plot},
+    command{"convert", "Write strokes as a file of another format", run_convert},
     command{"compare", "Predict how a stroke feels with several algorithms", run_compare},
     command{"calibrate", "Measure a participant's threshold at each tactor", run_calibrate},
     command{"experiment", "Run an experiment with a participant or a simulated one", run_experiment},
@@ -152,13 +153,14 @@ void offer_values(const std::string& type, const std::string& typed, const std::
         offer_all(array_presets());
     else if (type == "PCM")
         offer_all(pcm_names());
-    else if (type == "STROKE")
+    else if (type == "STROKE" || type == "IN")
         offer_all(stroke_presets());
     else if (type == "EXPERIMENT")
         offer_all(std::array{study::shipped_experiment});
     else if (!type.starts_with("FILE"))
         offer_all(detail::split(type, type.find('|') == std::string::npos ? ',' : '|'));
-    if (means("FILE") || means("DIR") || means("PATH") || means("STROKE") || means("EXPERIMENT"))
+    if (means("FILE") || means("DIR") || means("PATH") || means("STROKE") || means("EXPERIMENT") ||
+        type == "IN" || type == "OUT")
         fmt::print(":files\n");
 }
 

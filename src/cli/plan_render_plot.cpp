@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// plan, render and plot: what a STROKE becomes without a device, as text, samples or a picture.
+// plan, render, plot and convert: what a STROKE becomes without a device, as text, samples, a picture or
+// another file.
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -21,6 +25,7 @@
 #include "plot/paint/output.hpp"
 #include "session/environment.hpp"
 #include "session/process.hpp"
+#include "session/stroke_text.hpp"
 #include "sink/wav/wav.hpp"
 
 namespace tactor::cli {
@@ -221,6 +226,78 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     return status_ok;
 }
 
+// Warns about each thing that a new file cannot hold.
+void warn_of_loss(const std::string& file, const std::vector<std::string>& left_out)
+{
+    for (const std::string& what : left_out)
+        say(stderr, "tactor: warning: {}: {}\n", shown(file), spelled(what));
+}
+
+// Returns the given options that hold for a whole piece, not for a stroke in a file.
+std::vector<std::string> list_options_of_piece(const settings& s)
+{
+    std::vector<std::string> all;
+    for (const options::option& o : options::all()) {
+        const bool read = o.name == "intensity_max" || o.name == "am" || (o.where & options::in_stroke) != 0;
+        if (!read && s.gives(o) && (o.where & options::in_defaults) != 0)
+            all.push_back(fmt::format("a stroke file cannot hold {{{}}}", o.name));
+    }
+    return all;
+}
+
+int convert_to_strokes(settings& s, const std::string& to, bool force)
+{
+    const detail::stroke_format& format = session::find_written_format(to, {".json", ".wav"});
+    refuse_samples(stroke_arguments(s).front());
+    const environment e = session::read_environment(s);
+    const layout faces(e.tactors);
+    piece p = open_piece(s, e, faces, stroke_arguments(s).front());
+    const bool planned = !p.plans.empty();
+    std::vector<stroke> strokes = planned ? session::list_plan_strokes(p) : p.strokes;
+    session::count_from_piece(strokes, format, [&](const auto&) {
+        session::plan_piece(p, e.tactors, faces, s);
+        return p.starts_s();
+    });
+    if (!planned)
+        session::put_options(strokes, s);
+    for (const stroke& k : strokes)
+        say_warnings(k.warnings);
+    warn_of_loss(to, session::save_strokes(strokes, to, force));
+    warn_of_loss(to, list_options_of_piece(s));
+    if (planned)
+        warn_of_loss(to, {"a stroke file cannot hold the plan's array, level and ramps"});
+    say(stdout, "{}: {}\n", to, counted(strokes.size(), "stroke"));
+    return status_ok;
+}
+
+int convert_to_plan(settings& s, const std::string& to, bool force)
+{
+    const environment e = session::read_environment(s);
+    const piece p = plan_one_piece(s, e);
+    const render_options sound = session::find_render(s, e);
+    const score samples = make_score(p, e, sound);
+    session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
+    files::save_plans(files::plans_text({p, e.tactors, samples, sound}), to, force);
+    const bool bursts = std::any_of(p.plans.begin(), p.plans.end(), [](auto& k) { return !k.plan.curve; });
+    if (bursts && e.plans.empty())
+        warn_of_loss(to, {"a plan cannot hold the path between its bursts"});
+    say(stdout, "{}: {}\n", to, counted(p.plans.size(), "plan"));
+    return status_ok;
+}
+
+int convert(settings& s, const std::string& to, bool force)
+{
+    const std::string extension = in_small_letters(fs::path(to).extension().string());
+    if (extension == ".json")
+        return convert_to_plan(s, to, force);
+    if (extension != ".wav")
+        return convert_to_strokes(s, to, force);
+    const int status = render(s, to, force);
+    if (status == status_ok && !names_samples(s.strokes.front()))
+        warn_of_loss(to, {"samples cannot hold the paths of strokes"});
+    return status;
+}
+
 } // namespace
 
 int run_plan(command_line& line)
@@ -275,6 +352,23 @@ int run_plot(command_line& line)
                     "tactor plot park2016-1 --view wave --width 170 -o wave.png");
     line.parse();
     return draw(s, o, f);
+}
+
+int run_convert(command_line& line)
+{
+    std::string to;
+    bool force = false;
+    add_strokes(line, 1, "IN");
+    settings& s = add_options(line, options::on_convert);
+    line.app.add_option("OUT", to, "the file to write: .toml, .csv, .svg, .json (a plan) or .wav (samples)")
+        ->type_name("")
+        ->required();
+    add_force_option(line.app, force);
+    line.app.footer("tactor convert park2016-3 stroke.toml\n"
+                    "tactor convert stroke.toml drawing.svg\n"
+                    "tactor convert stroke.toml plan.json --algorithm continuous");
+    line.parse();
+    return convert(s, to, force);
 }
 
 } // namespace tactor::cli

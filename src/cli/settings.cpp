@@ -114,10 +114,10 @@ std::string asked_of_stream(const settings& s)
     return {};
 }
 
-void add_strokes(command_line& line, int most)
+void add_strokes(command_line& line, int most, const std::string& name)
 {
     auto* strokes = line.app.add_option(
-        "STROKE", line.values.strokes,
+        name, line.values.strokes,
         "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
         "file (.toml, .csv, .svg, .tact; .json: a plan), or - for such a file on standard input");
     strokes->type_name("");

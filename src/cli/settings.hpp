@@ -55,8 +55,8 @@ settings& add_options(command_line& line, std::uint64_t place);
 /// if there is none.
 std::string asked_of_stream(const settings& s);
 
-/// Adds the argument STROKE, which may be given `most` times.
-void add_strokes(command_line& line, int most = 1);
+/// Adds the argument STROKE, which may be given `most` times, or has another name.
+void add_strokes(command_line& line, int most = 1, const std::string& name = "STROKE");
 
 /// Begins a heading of the help, with the options of the command that are added next.
 void begin_group(CLI::App& command, const std::string& heading = "Options");
@@ -113,6 +113,7 @@ int run_report(command_line& line);
 int run_render(command_line& line);
 int run_play(command_line& line);
 int run_plot(command_line& line);
+int run_convert(command_line& line);
 int run_devices(command_line& line);
 int run_calibrate(command_line& line);
 int run_check(command_line& line);

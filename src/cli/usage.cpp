@@ -245,6 +245,15 @@ error no_such_command(const CLI::App& app, const std::string& given)
             like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
 }
 
+// Returns the names of a command's arguments.
+std::vector<std::string> list_arguments(const CLI::App& command)
+{
+    std::vector<std::string> names;
+    for (const CLI::Option* o : command.get_options([](const CLI::Option* x) { return x->get_positional(); }))
+        names.push_back(o->get_name(true));
+    return names;
+}
+
 // Returns the error for a missing command, argument or option.
 error missing(const CLI::App& app, const CLI::App& command)
 {
@@ -261,7 +270,8 @@ error missing(const CLI::App& app, const CLI::App& command)
         return {error_kind::bad_input, name, "this option is missing",
                 fmt::format("add {} {}, see {}", name, (*o)->get_type_name(), help)};
     return {error_kind::bad_input, "command line", name + " is missing",
-            fmt::format("write tactor {} {}, see {}", command.get_name(), name, help)};
+            fmt::format("write tactor {} {}, see {}", command.get_name(),
+                        fmt::join(list_arguments(command), " "), help)};
 }
 
 // Returns the error for an option with too few or too many values. Its name comes first in the parser's text.
@@ -322,11 +332,11 @@ error unknown(const CLI::App& app, const CLI::App& command)
     }
     if (&command == &app)
         return no_such_command(app, given);
-    const auto takes = command.get_options([](const CLI::Option* o) { return o->get_positional(); });
+    const std::vector<std::string> takes = list_arguments(command);
     return {error_kind::bad_input, given, "there is one argument too many",
             takes.empty() ? fmt::format("leave it out: tactor {} accepts none", command.get_name())
                           : fmt::format("give one {}, and quote a name that has blanks",
-                                        takes.front()->get_name(true))};
+                                        fmt::join(takes, " and one "))};
 }
 
 // Turns the parser's error into one that names the option, and for an unknown option the nearest known one.

@@ -12,6 +12,8 @@
 
 #include <tactor/stroke.hpp>
 
+#include "files/output_file.hpp"
+
 namespace tactor::detail {
 
 /// Text of a stroke file, and what its reader needs besides.
@@ -39,6 +41,9 @@ struct stroke_format {
     /// A file has the points of one stroke: no second stroke, and no options.
     bool only_points = false;
     bool has_positions = false; ///< a file may have touches for several places on the body
+    /// A start may count from the start or end of the stroke before.
+    bool starts_from_strokes = false;
+    comment_marks comment = {"# ", ""};
 };
 
 /// Reads a text. \throws error (bad_input), also for a position that the format does not have.

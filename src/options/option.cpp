@@ -123,13 +123,18 @@ std::string write(const detail::mark& m, const spelling& by, bool in_file)
 
 std::span<const place_name> command_names() noexcept
 {
-    static constexpr std::array names{
-        place_name{on_plan, "plan"},           place_name{on_render, "render"},
-        place_name{on_plot, "plot"},           place_name{on_compare, "compare"},
-        place_name{on_play, "play"},           place_name{on_check, "check"},
-        place_name{on_calibrate, "calibrate"}, place_name{on_experiment, "experiment"},
-        place_name{on_devices, "devices"},     place_name{on_off, "off"},
-        place_name{on_serve, "serve"}};
+    static constexpr std::array names{place_name{on_plan, "plan"},
+                                      place_name{on_render, "render"},
+                                      place_name{on_plot, "plot"},
+                                      place_name{on_convert, "convert"},
+                                      place_name{on_compare, "compare"},
+                                      place_name{on_play, "play"},
+                                      place_name{on_check, "check"},
+                                      place_name{on_calibrate, "calibrate"},
+                                      place_name{on_experiment, "experiment"},
+                                      place_name{on_devices, "devices"},
+                                      place_name{on_off, "off"},
+                                      place_name{on_serve, "serve"}};
     return names;
 }
 

@@ -118,7 +118,8 @@ enum place : std::uint64_t {
     on_devices = 1 << 8,
     on_off = 1 << 9,
     on_serve = 1 << 10,
-    on_any_command = (1 << 11) - 1,
+    on_convert = 1 << 25,
+    on_any_command = ((1 << 11) - 1) | on_convert,
     in_defaults = 1 << 11,    ///< [defaults] of a configuration or array file
     in_method = 1 << 12,      ///< [[method]] of a definition
     by_client = 1 << 13,      ///< strokes that a client of the service requests

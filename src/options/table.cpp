@@ -72,7 +72,8 @@ constexpr access reach(Member)
 
 namespace of = detail::bounds_of;
 
-constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play;
+constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play | on_convert;
+constexpr std::uint64_t named = drawing & ~std::uint64_t{on_convert};    // an option names the stroke
 constexpr std::uint64_t rendered = drawing & ~std::uint64_t{on_compare}; // a prediction needs no sound
 constexpr std::uint64_t sounding = rendered | on_check;
 constexpr std::uint64_t playing = on_play | on_check | on_serve;
@@ -192,11 +193,11 @@ std::vector<std::string_view> shape_names()
 constexpr std::array table{
     option{.name = "path", .what = kind::text, .shown = "DATA", .in = group::stroke,
            .help = "SVG path data in mm, instead of STROKE",
-           .where = shown_first | drawing | through_server,
+           .where = shown_first | named | through_server,
            .to = reach([](auto& w) -> auto& { return w.path_data; })},
     option{.name = "shape", .what = kind::text, .choices = shape_names, .in = group::stroke,
            .help = "a simple stroke as large as the array, instead of STROKE",
-           .where = shown_first | drawing | through_server, .to = {set_shape, reach([](auto& w) -> auto& { return w.shape; }).get}},
+           .where = shown_first | named | through_server, .to = {set_shape, reach([](auto& w) -> auto& { return w.shape; }).get}},
     option{.name = "position", .what = kind::text, .shown = "NAME", .in = group::stroke,
            .help = "place on the body whose touches a .tact file plays (default: its first, front before back)",
            .where = drawing | by_client | planning,
@@ -393,7 +394,7 @@ constexpr std::array table{
     option{.name = "channels", .unit = "channels", .what = kind::whole, .allowed = of::device_channels, .shown = "N",
            .in = group::device,
            .help = "channels of the stream (default: the configuration's, else what the array needs)",
-           .where = in_player | with_device | on_render | in_score,
+           .where = in_player | with_device | on_render | on_convert | in_score,
            .to = reach([](auto& w) -> auto& { return w.channels; })},
     option{.name = "marker_channel", .what = kind::whole, .allowed = of::marker_channel, .in = group::device,
            .help = "spare channel that marks each stroke's first frames",

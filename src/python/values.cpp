@@ -17,12 +17,14 @@
 #include "core/path/impl.hpp"
 #include "core/trajectory/impl.hpp"
 #include "files/output_file.hpp"
+#include "files/plan/plan_json.hpp"
 #include "files/setup_text.hpp"
 #include "files/stroke_format.hpp"
 #include "files/text_file.hpp"
 #include "options/resolve.hpp"
 #include "options/serve.hpp"
 #include "python/binding.hpp"
+#include "session/stroke_text.hpp"
 
 template <class T>
 struct nlohmann::adl_serializer<std::optional<T>> {
@@ -227,12 +229,17 @@ void write_toml(const std::string& file, const std::string& text, bool force)
     detail::write_text(file, text, {"# ", ""}, force, detail::owner_kind::caller);
 }
 
-// A plan's bytes are its identity: it has no place for a note.
 void write_plan(const std::string& file, const std::string& text, bool force)
 {
     const without_lock free;
-    detail::check_same(file, text, force);
-    detail::write_file(file, text, detail::owner_kind::caller);
+    files::save_plans(text, file, force, detail::owner_kind::caller);
+}
+
+std::vector<std::string> save_strokes(std::vector<stroke> strokes, const std::string& file, bool force)
+{
+    const without_lock free;
+    session::count_from_piece(strokes, session::find_written_format(file), session::path_starts_s);
+    return session::save_strokes(strokes, file, force, detail::owner_kind::caller);
 }
 
 std::string read_text(const std::string& file)
@@ -411,6 +418,7 @@ py::list list_formats()
 void bind_stroke(py::module_& m)
 {
     m.def("stroke_formats", &list_formats);
+    m.def("save_strokes", &save_strokes);
     py::class_<stroke>(m, "Stroke")
         .def_static("along", &along)
         .def_static("timed", &timed)

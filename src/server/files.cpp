@@ -15,13 +15,10 @@
 #include <fmt/format.h>
 
 #include "core/bounds.hpp"
-#include "core/kind_names.hpp"
-#include "core/start_times.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
-#include "files/setup_text.hpp"
 #include "files/stroke_format.hpp"
 #include "net/rpc.hpp"
 #include "options/option.hpp"
@@ -30,6 +27,7 @@
 #include "server/faults.hpp"
 #include "server/service.hpp"
 #include "session/piece.hpp"
+#include "session/stroke_text.hpp"
 #include "sink/wav/wav.hpp"
 
 namespace tactor::server {
@@ -56,6 +54,11 @@ std::string read_name(const json& params)
     return name;
 }
 
+const detail::stroke_format& toml_format()
+{
+    return *detail::find_format_by_name("toml");
+}
+
 std::string content(const std::string& source, const json& v)
 {
     const std::string& raw = text(v, source);
@@ -73,71 +76,18 @@ bool is_plan(std::string_view bytes, const std::string& name)
            (detail::find_format_by_extension(name) == nullptr && files::holds_plans(bytes));
 }
 
-// Returns the method of a plan. A burst as long as its SOA counts as that of the timing law.
-stroke_choices read_method(const plan& p)
-{
-    stroke_choices method{.algorithm = detail::find_kind<algorithm_kind>(p.algorithm),
-                          .phantom = detail::find_kind<phantom_kind>(p.phantom)};
-    if (method.algorithm != algorithm_kind::park2016 || !p.soa_s || p.bursts.empty())
-        return method;
-    method.soa_s = p.soa_s;
-    if (const double burst_s = p.bursts.front().duration_s; burst_s < *p.soa_s)
-        method.burst_s = burst_s;
-    return method;
-}
-
-std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string& name)
-{
-    files::plan_file f = files::read_plans(bytes, name, files::recordings_kind::refuse);
-    for (std::size_t i = 0; i < f.made.strokes.size(); ++i) {
-        const double level_db = f.made.strokes[i].choices.level_db;
-        f.made.strokes[i].choices = read_method(f.made.plans[i].plan);
-        f.made.strokes[i].choices.level_db = level_db;
-        f.made.strokes[i].start_s = f.made.plans[i].start_s;
-        f.made.strokes[i].anchor = f.made.plans[i].anchor;
-    }
-    return std::move(f.made.strokes);
-}
-
 read_file read_bytes(std::string bytes, const std::string& name, double intensity_max,
                      std::string_view position)
 {
     if (is_plan(bytes, name))
-        return {read_plan_strokes(bytes, name)};
+        return {
+            session::list_plan_strokes(files::read_plans(bytes, name, files::recordings_kind::refuse).made)};
     const detail::stroke_format* format = detail::find_stroke_format(bytes, name);
     std::vector<stroke> strokes =
         detail::read_stroke_text(*format, {bytes, name, intensity_max, nullptr, position});
     if (format->name != "toml" || intensity_max != 1.0)
         bytes.clear(); // other programs would read other intensities
     return {std::move(strokes), std::move(bytes)};
-}
-
-// Returns the start of each stroke, s, as if each lasted as long as its path.
-std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
-{
-    detail::start_times times;
-    for (const stroke& k : strokes) {
-        times.start(k.start_s, k.anchor);
-        times.lasts(k.motion.duration_s());
-    }
-    return std::move(times).all();
-}
-
-// Returns true for a stroke whose start counts from the start of a group: a newly written stroke file has no
-// groups.
-bool counts_from_group(const stroke& k) noexcept
-{
-    return k.anchor.back != 1;
-}
-
-// Sets the starts of such strokes, s from the start of the piece.
-void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& starts_s)
-{
-    for (std::size_t i = 0; i < strokes.size(); ++i)
-        if (counts_from_group(strokes[i])) {
-            strokes[i].start_s = starts_s[i];
-            strokes[i].anchor = {};
-        }
 }
 
 // Appends the points of each stroke, directly as text: a document of a million numbers takes too much memory.
@@ -191,7 +141,7 @@ net::reply_json keys_json(const stroke& k)
 
 std::string result_text(read_file f)
 {
-    const std::vector<double> starts = path_starts_s(f.strokes);
+    const std::vector<double> starts = session::path_starts_s(f.strokes);
     net::reply_json strokes = net::reply_json::array();
     net::reply_json warnings = net::reply_json::array();
     for (std::size_t i = 0; i < f.strokes.size(); ++i) {
@@ -204,40 +154,13 @@ std::string result_text(read_file f)
             warnings.push_back(net::cut_echo(w));
     }
     if (f.toml.empty()) {
-        count_from_piece(f.strokes, starts);
-        f.toml = detail::strokes_text(f.strokes);
+        session::count_from_piece(f.strokes, toml_format(), [&starts](auto&) { return starts; });
+        f.toml = toml_format().write(f.strokes);
     }
     std::string out = fmt::format(R"({{"toml":{},"strokes":{},"points":[)", net::json_line(f.toml),
                                   net::json_line(strokes));
     append_points(out, f.strokes);
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
-}
-
-bool is_recording(const options::option_values& s)
-{
-    return s.plan.wave.kind == waveform_kind::recording;
-}
-
-// Adds to a stroke the options that differ from the built-in ones or that a client set, if stroke files have
-// keys for them and the stroke does not set them itself.
-void put_options(stroke& k, const options::option_values& s)
-{
-    const plan_options& p = s.plan;
-    const plan_options usual;
-    const auto put = [&s](auto& own, std::string_view option, const auto& chosen, const auto& built_in) {
-        if (!own && (s.gives(option) || chosen != built_in))
-            own = chosen;
-    };
-    put(k.choices.algorithm, "algorithm", p.algorithm, usual.algorithm);
-    put(k.choices.phantom, "phantom", p.phantom, usual.phantom);
-    put(k.choices.faces, "faces", p.faces, usual.faces);
-    put(k.choices.soa_s, "soa", p.soa_s, usual.soa_s);
-    put(k.choices.burst_s, "burst", p.burst_s, usual.burst_s);
-    if (k.sound.carrier_profile.empty())
-        put(k.sound.carrier_hz, "carrier", p.carrier_hz, usual.carrier_hz);
-    if (!is_recording(s))
-        put(k.sound.wave, "waveform", p.wave, usual.wave);
-    put(k.sound.am, "am", p.am, usual.am);
 }
 
 // Kind of a file.
@@ -259,7 +182,7 @@ const std::vector<file_kind>& file_kinds()
     static const std::vector<file_kind> kinds = [] {
         std::vector<file_kind> all;
         for (const detail::stroke_format* f : detail::stroke_formats())
-            if (f->write != nullptr)
+            if (f->write != nullptr && f->name != "svg") // a picture here
                 all.push_back({f->name, f->media_type, std::nullopt, f});
         all.insert(all.end(), other_kinds.begin(), other_kinds.end());
         return all;
@@ -299,18 +222,6 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
     if (make_file_name(name) != name)
         bad_param("name", "it is not a file name", "use 1 to 100 letters, digits, blanks, - and _");
     return name;
-}
-
-// Gives strokes that count from a group a start in seconds. It depends on their plans, because a plan may
-// last longer than its path.
-void place_by_plans(const service_options& o, const layout& faces, const options::option_values& s,
-                    std::vector<stroke>& strokes, const go_on_check& go_on)
-{
-    if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
-        return;
-    planned p{{"", strokes}, s.render};
-    plan_strokes(o.plans, faces, p, s, "stroke", go_on);
-    count_from_piece(strokes, p.starts_s());
 }
 
 // Returns the strokes as the tool reads them from the exported file, which decides their digits.
@@ -359,12 +270,16 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
         return kind.strokes->write(strokes);
     }
     if (kind.extension != "json") {
-        place_by_plans(o, faces, s, strokes, go_on);
-        for (stroke& k : strokes)
-            put_options(k, s);
+        const detail::stroke_format& to = kind.strokes != nullptr ? *kind.strokes : toml_format();
+        session::count_from_piece(strokes, to, [&](const std::vector<stroke>& all) {
+            planned p{{"", all}, s.render};
+            plan_strokes(o.plans, faces, p, s, "stroke", go_on);
+            return p.starts_s(); // a plan may last longer than its path
+        });
+        session::put_options(strokes, s);
         if (kind.strokes != nullptr)
             return kind.strokes->write(strokes);
-        strokes = read_again(detail::strokes_text(strokes), source, strokes);
+        strokes = read_again(to.write(strokes), source, strokes);
     }
     planned p{{name, std::move(strokes)}, s.render};
     plan_strokes(o.plans, faces, p, s, source, go_on);

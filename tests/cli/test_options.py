@@ -6,7 +6,7 @@ import subprocess
 
 from harness import ROOT, ToolTest, main
 
-COMMANDS = ("plan", "render", "plot", "compare", "play", "check", "calibrate", "experiment", "devices", "off", "serve")
+COMMANDS = ("plan", "render", "plot", "convert", "compare", "play", "check", "calibrate", "experiment", "devices", "off", "serve")
 GROUPS = ("Stroke", "Place", "Timing", "Sound", "Level", "Device", "Real time", "Output")
 OWNER = "the owner's: it guards people or the machine"
 OTHER = "a separate parameter of the protocol"
@@ -101,7 +101,7 @@ class Options(ToolTest):
             self.assertEqual((about["[defaults]"], "Commands" in about), (name, False))
             for command in about["Used by"].split(", "):
                 self.assertNotIn(name, self.list_options(command))
-                required = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg"), "calibrate": ("--participant", "P1", "-o", "x.toml"),
+                required = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg"), "convert": ("x.toml",), "calibrate": ("--participant", "P1", "-o", "x.toml"),
                             "experiment": ("--participant", "P1", "-o", "x")}.get(command, ())
                 stroke = () if command in ("check", "calibrate", "serve") else ("soft.csv",)
                 said = self.refused(2, command, *stroke, *required, f"--{name}", str(value[name])).stderr

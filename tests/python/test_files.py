@@ -159,3 +159,28 @@ def test_keys_that_no_plan_has_are_refused(palm, stroke, tmp_path, keys, hint):
     assert e.field.endswith(keys[-1]) and hint in e.hint and e.file is None
     (tmp_path / "p.json").write_text(json.dumps(record))
     assert refused(lambda: tactor.load_plan(tmp_path / "p.json")).file == str(tmp_path / "p.json")
+
+
+def test_strokes_are_saved_in_every_format_as_the_tool_converts_them(tool, tmp_path, palm, stroke):
+    two = [stroke, tactor.Stroke.timed([0, 0.5, 1], [0, 20, 40], [0, 40, 0], name="timed", start=0.25)]
+    tactor.save(two, tmp_path / "two.toml")
+    assert [(s.name, s.start) for s in tactor.load(tmp_path / "two.toml")] == [(s.name, s.start) for s in two]
+    with pytest.warns(UserWarning, match="SVG cannot hold the exact movement .* of stroke 2"):
+        tactor.save(two, tmp_path / "two.svg")
+    again = tactor.load(tmp_path / "two.svg")
+    assert [(s.name, s.start, s.duration) for s in again] == [(s.name, s.start, s.duration) for s in two]
+    assert tactor.plan(palm, again[0]) == tactor.plan(palm, stroke)
+    with pytest.warns(UserWarning, match="CSV cannot hold the start"):
+        tactor.save(two[1], tmp_path / "one.csv")
+    tool("convert", "two.toml", "tool.toml")
+    assert (tmp_path / "tool.toml").read_text() == (tmp_path / "two.toml").read_text()
+    for name in ("two.csv", "two.json", "two", "two.txt"):
+        with pytest.raises(tactor.InputError):
+            tactor.save(two, tmp_path / name)
+    with pytest.raises(tactor.InputError, match="no stroke"):
+        tactor.save([], tmp_path / "none.toml")
+    (tmp_path / "two.toml").write_text("# mine\n")
+    with pytest.raises(tactor.InputError, match="force=True"):
+        tactor.save(two, tmp_path / "two.toml")
+    tactor.save(two, tmp_path / "two.toml", force=True)
+    assert len(tactor.load(tmp_path / "two.toml")) == 2

@@ -16,6 +16,7 @@
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
 #include "files/json/writer.hpp"
+#include "files/output_file.hpp"
 #include "files/plan/plan_members.hpp"
 
 namespace tactor::files {
@@ -229,6 +230,13 @@ std::string plans_text(const plan_record& r)
     std::string text;
     write_plans(r, [&text](std::string_view part) { text += part; });
     return text;
+}
+
+void save_plans(const std::string& text, const std::filesystem::path& file, bool force,
+                detail::owner_kind writer)
+{
+    detail::check_same(file, text, force);
+    detail::write_file(file, text, writer);
 }
 
 nlohmann::ordered_json plan_schema()

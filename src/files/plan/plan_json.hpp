@@ -17,6 +17,7 @@
 #include <tactor/tactor.hpp>
 
 #include "files/json/writer.hpp"
+#include "files/text_file.hpp"
 #include "percept/compare.hpp"
 
 namespace tactor::files {
@@ -53,6 +54,12 @@ void write_plans(const plan_record& r, const text_sink& out);
 
 /// Returns what write_plans() writes.
 std::string plans_text(const plan_record& r);
+
+/// Writes a file of such a text, whole or not at all. Its bytes are its identity: it has no place for a mark,
+/// so without `force` no file with other bytes is replaced. Blocks on the file system.
+/// \throws error as detail::output_file; bad_input for such a file.
+void save_plans(const std::string& text, const std::filesystem::path& file, bool force,
+                detail::owner_kind writer = detail::owner_kind::user);
 
 /// Returns the schema of such an object.
 nlohmann::ordered_json plan_schema();

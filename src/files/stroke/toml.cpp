@@ -593,6 +593,7 @@ extern const stroke_format toml_strokes{
     .begins = [](std::string_view text) { return find_text_form(text) == text_form::toml; },
     .parse = read_strokes,
     .write = strokes_text,
+    .starts_from_strokes = true,
 };
 
 } // namespace tactor::detail

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <unordered_set>
 #include <utility>
 
@@ -13,10 +14,12 @@
 
 #include <tactor/error.hpp>
 
+#include "core/access.hpp"
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
 #include "core/path/impl.hpp"
 #include "core/suggest.hpp"
+#include "core/trajectory/impl.hpp"
 #include "files/stroke_format.hpp"
 #include "files/svg/document.hpp"
 #include "files/text_file.hpp"
@@ -467,6 +470,66 @@ std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& 
 namespace tactor::detail {
 namespace {
 
+using pugi::xml_node;
+
+// Adds a path that plays as a stroke: timed points become lines, at a constant speed.
+void add_stroke(xml_node svg, const stroke& s)
+{
+    const trajectory::impl& i = access::of(s.motion);
+    const auto* const drawn = std::get_if<drawn_path>(&i.law);
+    xml_node p = svg.append_child("path");
+    const auto set = [&p](const char* name, const auto& value) {
+        p.append_attribute(name).set_value(fmt::format("{}", value).c_str());
+    };
+    if (!s.name.empty())
+        set("id", s.name);
+    double strength = i.gain;
+    if (drawn != nullptr) {
+        set("d", drawn->way.svg());
+        strength *= drawn->intensity;
+        if (drawn->moves && drawn->moves->definition().easing != easing_kind::linear)
+            set("data-easing", to_string(drawn->moves->definition().easing));
+    } else {
+        std::vector<point> places;
+        for (const timed_point& t : *std::get<timed_points>(i.law).points)
+            places.push_back(t.position);
+        set("d", path::polyline(places).svg());
+    }
+    set("data-duration-s", i.duration_s);
+    if (s.start_s)
+        set("data-start-s", *s.start_s);
+    if (strength != 1.0)
+        set("data-intensity", strength);
+    if (s.sound.carrier_profile.empty() && s.sound.carrier_hz.value_or(HUGE_VAL) <= highest_carrier_hz)
+        set("data-carrier-hz", *s.sound.carrier_hz);
+}
+
+// Writes a document in which one user unit is a millimetre, with a margin round the strokes.
+std::string write_svg(std::span<const stroke> all)
+{
+    constexpr double margin_mm = 2.0;
+    constexpr int steps = 256;
+    std::vector<point> places;
+    pugi::xml_document document;
+    xml_node svg = document.append_child("svg");
+    for (const stroke& s : all) {
+        add_stroke(svg, s);
+        for (int k = 0; k <= steps; ++k)
+            places.push_back(s.motion.position(s.motion.duration_s() * k / steps));
+    }
+    const box b = box_around(places);
+    const point size = b.high - b.low + point{2.0 * margin_mm, 2.0 * margin_mm};
+    for (const auto& [name, value] : {std::pair("xmlns", std::string("http://www.w3.org/2000/svg")),
+                                      {"viewBox", fmt::format("{} {} {} {}", b.low.x_mm - margin_mm,
+                                                              b.low.y_mm - margin_mm, size.x_mm, size.y_mm)},
+                                      {"fill", "none"},
+                                      {"stroke", "black"}})
+        svg.append_attribute(name).set_value(value.c_str());
+    std::ostringstream text;
+    document.save(text, " ");
+    return std::move(text).str();
+}
+
 constexpr std::string_view svg_extensions[] = {".svg"};
 
 } // namespace
@@ -478,6 +541,8 @@ extern const stroke_format svg_strokes{
     .media_type = "image/svg+xml",
     .begins = [](std::string_view text) { return find_text_form(text) == text_form::xml; },
     .parse = [](const stroke_file_text& s) { return parse_strokes_svg(s.text, s.name); },
+    .write = write_svg,
+    .comment = {"<?", "?>"},
 };
 
 } // namespace tactor::detail

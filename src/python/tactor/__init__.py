@@ -15,7 +15,7 @@ from tactor._array import Array, PerceptMap, Point, Tactor, array_presets
 from tactor._errors import DeviceError, Error, InputError, StreamError
 from tactor._plan import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptSample, PhantomModel, Plan, burst_duration, load_plan, plan
 from tactor._score import Score
-from tactor._stroke import Fitting, Path, Stroke, apply_fits, fit_strokes, load, parse, stroke_presets, stroke_shapes
+from tactor._stroke import Fitting, Path, Stroke, apply_fits, fit_strokes, load, parse, save, stroke_presets, stroke_shapes
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl, study as study
@@ -31,7 +31,7 @@ __all__ = [
     "Meeting", "Path", "Percept", "PerceptMap", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "RemoteLive",
     "RemoteStroke", "Reply", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
     "array_presets", "build_facts", "burst_duration", "compare", "devices", "apply_fits", "fit_strokes", "load", "load_plan", "parse", "plan", "play", "plot",
-    "stroke_presets", "stroke_shapes",
+    "save", "stroke_presets", "stroke_shapes",
 ]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import typing as _t
+import warnings
 
 from tactor import _tactor
 from tactor._array import Array, Point, _places
@@ -403,6 +404,34 @@ def parse(text: str, name: str = "text", *, intensity_max: float = 1.0, position
     _need(position, str, "position")
     _need(name, str, "name")
     return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name, _number("intensity_max", intensity_max), position)]
+
+
+def save(strokes: _t.Union[Stroke, _t.Sequence[Stroke]], file: str | os.PathLike[str], force: bool = False) -> None:
+    """Writes strokes as a file that `load` and the tool read; `tactor convert` writes the same.
+
+    Complete or not at all. Warns about each thing that a file of this format cannot hold. A start that the file cannot hold becomes seconds from the
+    start of the piece, as if each stroke lasted as long as its path.
+
+    Parameters
+    ----------
+    strokes : Stroke or sequence of Stroke
+        A CSV file has one.
+    file : path-like
+        Ends in .toml, .csv or .svg.
+    force : bool
+        True replaces a file that tactor did not write, or that somebody changed since.
+
+    Raises
+    ------
+    InputError
+        For another extension, a folder that does not exist, and a file that `force` would replace.
+    StreamError
+        For what the file system refuses.
+    """
+    cores = _cores([strokes] if isinstance(strokes, Stroke) else strokes)
+    with reading(file) as to:
+        for lost in _tactor.save_strokes(cores, to, bool(force)):
+            warnings.warn(f"{os.fspath(file)!s}: {lost}", stacklevel=2)
 
 
 def stroke_presets() -> list[str]:

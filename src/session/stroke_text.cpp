@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "session/stroke_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tactor/error.hpp>
+
+#include "core/kind_names.hpp"
+#include "core/start_times.hpp"
+#include "core/words.hpp"
+#include "files/output_file.hpp"
+
+namespace tactor::session {
+namespace {
+
+// Returns the method of a plan. A burst as long as its SOA counts as that of the timing law.
+stroke_choices read_method(const plan& p)
+{
+    stroke_choices method{.algorithm = detail::find_kind<algorithm_kind>(p.algorithm),
+                          .phantom = detail::find_kind<phantom_kind>(p.phantom)};
+    if (method.algorithm != algorithm_kind::park2016 || !p.soa_s || p.bursts.empty())
+        return method;
+    method.soa_s = p.soa_s;
+    if (const double burst_s = p.bursts.front().duration_s; burst_s < *p.soa_s)
+        method.burst_s = burst_s;
+    return method;
+}
+
+// Returns true for a start that a new file cannot hold: it has no groups, and most formats count each start
+// from that of the piece.
+bool lacks_start(const stroke& k, const detail::stroke_format& to) noexcept
+{
+    return k.anchor.back != 1 || (!to.starts_from_strokes && k.anchor.from != start_from_kind::piece);
+}
+
+// Adds to a stroke the options that differ from the built-in ones or that the user set, if stroke files have
+// keys for them and the stroke does not set them itself.
+void put_options(stroke& k, const options::option_values& o)
+{
+    const plan_options& p = o.plan;
+    const plan_options usual;
+    const auto put = [&o](auto& own, std::string_view option, const auto& chosen, const auto& built_in) {
+        if (!own && (o.gives(option) || chosen != built_in))
+            own = chosen;
+    };
+    put(k.choices.algorithm, "algorithm", p.algorithm, usual.algorithm);
+    put(k.choices.phantom, "phantom", p.phantom, usual.phantom);
+    put(k.choices.faces, "faces", p.faces, usual.faces);
+    put(k.choices.soa_s, "soa", p.soa_s, usual.soa_s);
+    put(k.choices.burst_s, "burst", p.burst_s, usual.burst_s);
+    if (k.sound.carrier_profile.empty())
+        put(k.sound.carrier_hz, "carrier", p.carrier_hz, usual.carrier_hz);
+    if (p.wave.kind != waveform_kind::recording || o.place != options::by_client) // no names of files
+        put(k.sound.wave, "waveform", p.wave, usual.wave);
+    put(k.sound.am, "am", p.am, usual.am);
+}
+
+// Largest differences of a movement and its copy in a file.
+struct difference {
+    double duration_s = 0.0;
+    double mm = 0.0;
+    double intensity = 0.0;
+};
+
+difference compare(const trajectory& was, const trajectory& is)
+{
+    constexpr int steps = 4096;
+    difference d{.duration_s = std::abs(was.duration_s() - is.duration_s())};
+    for (int k = 0; k <= steps; ++k) {
+        const double t_s = was.duration_s() * k / steps;
+        d.mm = std::max(d.mm, distance_mm(was.position(t_s), is.position(t_s)));
+        d.intensity = std::max(d.intensity, std::abs(was.intensity(t_s) - is.intensity(t_s)));
+    }
+    return d;
+}
+
+// Collects what a file lacks, and of which strokes.
+class omissions {
+public:
+    explicit omissions(std::span<const stroke> strokes) : strokes_(strokes) {}
+
+    void add(bool lacking, std::string_view what)
+    {
+        const auto known = std::find_if(all_.begin(), all_.end(), [&](auto& o) { return o.first == what; });
+        if (lacking && known == all_.end())
+            all_.push_back({std::string(what), {at_}});
+        else if (lacking)
+            known->second.push_back(at_);
+    }
+
+    void compare_next(const stroke& is)
+    {
+        const stroke& was = strokes_[at_];
+        const auto differs = [](const auto& a, const auto& b) { return a && a != b; };
+        const stroke_choices& c = was.choices;
+        add(was.name != is.name && !was.name.empty(), "the name");
+        add(was.note != is.note, "the note that it is reconstructed");
+        add(differs(was.start_s, is.start_s) && (*was.start_s != 0.0 || at_ != 0), "the start");
+        add(differs(was.sound.carrier_hz, is.sound.carrier_hz), "the carrier");
+        add(was.sound.carrier_profile != is.sound.carrier_profile, "the carrier profile");
+        add(differs(was.sound.wave, is.sound.wave), "the waveform");
+        add(differs(was.sound.am, is.sound.am), "the amplitude modulation");
+        add(differs(c.algorithm, is.choices.algorithm), "the algorithm");
+        add(differs(c.phantom, is.choices.phantom), "the phantom model");
+        add(differs(c.faces, is.choices.faces), "the faces");
+        add(differs(c.soa_s, is.choices.soa_s), "the SOA");
+        add(differs(c.burst_s, is.choices.burst_s), "the duration of bursts");
+        add(c.level_db != is.choices.level_db, "the level relative to other strokes");
+        add(was.fit != is.fit, "the fit to the array");
+        const difference d = compare(was.motion, is.motion);
+        add(d.duration_s > 1e-9, "the duration");
+        if (d.mm > 1e-6)
+            add(true, fmt::format("the exact movement (up to {:.2g} mm away)", d.mm));
+        if (d.intensity > 1e-9)
+            add(true, fmt::format("the changes of intensity (up to {:.2g} away)", d.intensity));
+        ++at_;
+    }
+
+    std::vector<std::string> texts(const detail::stroke_format& to) const
+    {
+        std::vector<std::string> texts;
+        for (const auto& [what, at] : all_) {
+            std::string of = at.size() > 1 ? " of " + counted(at.size(), "stroke") : "";
+            if (at.size() == 1 && strokes_.size() > 1)
+                of = fmt::format(" of stroke {}", at.front() + 1);
+            texts.push_back(fmt::format("{} cannot hold {}{}", to.title, what, of));
+        }
+        return texts;
+    }
+
+private:
+    std::span<const stroke> strokes_;
+    std::size_t at_ = 0;
+    std::vector<std::pair<std::string, std::vector<std::size_t>>> all_;
+};
+
+} // namespace
+
+std::vector<stroke> list_plan_strokes(const files::piece& planned)
+{
+    std::vector<stroke> all = planned.strokes;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double level_db = all[i].choices.level_db;
+        all[i].choices = read_method(planned.plans[i].plan);
+        all[i].choices.level_db = level_db;
+        all[i].start_s = planned.plans[i].start_s;
+        all[i].anchor = planned.plans[i].anchor;
+    }
+    return all;
+}
+
+void count_from_piece(std::vector<stroke>& strokes, const detail::stroke_format& to, const start_finder& find)
+{
+    const auto lacks = [&to](const stroke& k) { return lacks_start(k, to); };
+    if (std::none_of(strokes.begin(), strokes.end(), lacks))
+        return;
+    const std::vector<double> starts_s = find(strokes);
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        if (lacks(strokes[i])) {
+            strokes[i].start_s = starts_s[i];
+            strokes[i].anchor = {};
+        }
+}
+
+void put_options(std::vector<stroke>& strokes, const options::option_values& o)
+{
+    for (stroke& k : strokes)
+        put_options(k, o);
+}
+
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
+{
+    detail::start_times times;
+    for (const stroke& k : strokes) {
+        times.start(k.start_s, k.anchor);
+        times.lasts(k.motion.duration_s());
+    }
+    return std::move(times).all();
+}
+
+written_strokes write_strokes(std::span<const stroke> strokes, const detail::stroke_format& to,
+                              const std::string& name)
+{
+    if (strokes.empty())
+        throw error(error_kind::bad_input, name, "there is no stroke to write", "give one");
+    if (to.only_points && strokes.size() != 1)
+        throw error(error_kind::bad_input, name,
+                    fmt::format("a {} file has one stroke, but there are {}", to.title, strokes.size()),
+                    "write a TOML file");
+    written_strokes made{to.write(strokes)};
+    // A recording is a file that the text names, and a text is read without a folder.
+    const std::filesystem::path here;
+    const std::vector<stroke> again = to.parse({made.text, name, 1.0, &here});
+    omissions lacking(strokes);
+    for (const stroke& k : again)
+        lacking.compare_next(k);
+    made.left_out = lacking.texts(to);
+    return made;
+}
+
+const detail::stroke_format& find_written_format(const std::string& file,
+                                                 std::vector<std::string_view> others)
+{
+    const detail::stroke_format* const found = detail::find_format_by_extension(file);
+    if (found != nullptr && found->write != nullptr)
+        return *found;
+    std::vector<std::string_view> known;
+    for (const detail::stroke_format* f : detail::stroke_formats())
+        if (f->write != nullptr)
+            known.push_back(f->extensions.front());
+    known.insert(known.end(), others.begin(), others.end());
+    throw error(error_kind::bad_input, file, "tactor writes no file with this extension",
+                fmt::format("end the name in one of {}", fmt::join(known, ", ")));
+}
+
+std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std::string& file, bool force,
+                                      detail::owner_kind writer)
+{
+    const detail::stroke_format& to = find_written_format(file);
+    written_strokes made = write_strokes(strokes, to, file);
+    detail::write_text(file, made.text, to.comment, force, writer);
+    return std::move(made.left_out);
+}
+
+} // namespace tactor::session
