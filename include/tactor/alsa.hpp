@@ -93,6 +93,7 @@ struct pcm_info {
     std::string name = {};
     std::string description = {}; ///< one line, from the card and device or from ALSA; may be empty
     bool hardware = false;        ///< a card's own device, without conversion
+    std::string preset = {};      ///< name of the built-in array for this kind of card; empty: none
     bool wanted = false;          ///< the PCM that the caller of list_pcms() wants
     bool opened = false;
     /// Reason why list_pcms() did not open this PCM, and what to do. list_pcms() never tries a PCM that would

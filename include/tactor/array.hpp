@@ -90,7 +90,7 @@ struct grid_lines {
 [[nodiscard]] TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
                                          double pitch_y_mm);
 
-/// Returns the names of the built-in arrays: "palm-3x3" (Park et al. 2016), "palm-2x4".
+/// Returns the names of the built-in arrays: "palm-3x3" (the paper's), "palm-2x4", "dualsense", "usb-7.1".
 [[nodiscard]] TACTOR_API const std::vector<std::string>& array_presets();
 
 /// Returns a built-in array by name.

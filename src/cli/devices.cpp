@@ -75,6 +75,7 @@ std::string pcm_text(const pcm_info& p, const session::device_list& d)
         fmt::format("\n  {}{}\n", p.name, p.wanted && d.pcm_is_configured ? "   <- the configured one" : "");
     if (!p.description.empty())
         s += wrapped("    ", p.description);
+    s += row("preset", p.preset.empty() ? "" : fmt::format("{} (--array {})", p.preset, p.preset));
     s += row("held by", process_names(p.holders));
     if (!p.can)
         return s + row("cannot", p.error);

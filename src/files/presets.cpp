@@ -65,11 +65,14 @@ struct preset {
     unsigned rows;
     unsigned columns;
     double pitch_mm;
+    unsigned first_channel = 0;
 };
 
 constexpr preset presets[] = {
-    {"palm-3x3", 3, 3, 20.0}, // Park et al. 2016, section 3
-    {"palm-2x4", 2, 4, 20.0}, // as many tactors as an eight-channel card drives
+    {"palm-3x3", 3, 3, 20.0},      // Park et al. 2016, section 3
+    {"palm-2x4", 2, 4, 20.0},      // as many tactors as an eight-channel card drives
+    {"dualsense", 1, 2, 100.0, 2}, // the grips of a Sony DualSense; its channels 0 and 1 are a loudspeaker's
+    {"usb-7.1", 2, 4, 20.0},       // a USB card whose channels are FL FR FC LFE RL RR SL SR
 };
 
 template <class... Lists>
@@ -141,8 +144,12 @@ const std::vector<std::string>& array_presets()
 array preset_array(std::string_view name)
 {
     for (const preset& p : presets)
-        if (p.name == name)
-            return make_grid(std::string(name), p.rows, p.columns, p.pitch_mm, p.pitch_mm);
+        if (p.name == name) {
+            array a = make_grid(std::string(name), p.rows, p.columns, p.pitch_mm, p.pitch_mm);
+            for (tactor_spec& t : a.tactors)
+                t.channel += p.first_channel;
+            return a;
+        }
     throw error(error_kind::bad_input, "array", fmt::format("there is no preset {}", detail::quoted(name)),
                 detail::preset_hint(name, array_presets()));
 }

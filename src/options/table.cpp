@@ -212,7 +212,7 @@ constexpr std::array table{
            .to = reach([](auto& w) -> auto& { return w.speed_mm_s; })},
 
     option{.name = "array", .what = kind::text, .shown = "NAME|FILE", .in = group::place,
-           .help = "palm-3x3 (default), palm-2x4, or an array file",
+           .help = "palm-3x3 (default), palm-2x4, dualsense, usb-7.1, or an array file",
            .where = shown_first | with_array,
            .to = reach([](auto& w) -> auto& { return w.array_name; })},
     option{.name = "config", .what = kind::text, .shown = "FILE", .in = group::place,

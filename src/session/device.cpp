@@ -83,6 +83,8 @@ void pcm_members(Io& io, const pcm_info& p, bool is_configured)
     io.or_null("description", omit_empty(p.description),
                {"what the driver or the ALSA configuration calls it; else null"});
     io("hardware", p.hardware, {"whether it is a card's own"});
+    io.or_null("preset", omit_empty(p.preset),
+               {"name of the built-in array for this kind of card; else null"});
     io("configured", p.wanted && is_configured, {"whether -D or the configuration names it"});
     io("tried", p.tried, {"whether an attempt was made to open it"});
     io("opened", p.opened, {"whether the attempt succeeded"});
@@ -235,7 +237,8 @@ std::string find_fit(alsa_options o, const array& a)
                                    : "";
     std::multimap<unsigned, std::string> by_channels;
     for (const std::string& name : array_presets())
-        by_channels.emplace(preset_array(name).channels(), name);
+        if (name.starts_with("palm")) // the others belong to one kind of card
+            by_channels.emplace(preset_array(name).channels(), name);
     for (auto one = by_channels.rbegin(); one != by_channels.rend(); ++one)
         if (one->first < needed && opens(one->first))
             return fmt::format("the array {} fits", one->second);

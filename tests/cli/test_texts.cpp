@@ -117,6 +117,14 @@ GPIO chips
 )");
 }
 
+TEST_CASE("a card's built-in array is named with its option")
+{
+    session::device_list d = studio();
+    CHECK(devices_text(d).find("preset") == std::string::npos);
+    d.pcms[0].preset = "usb-7.1";
+    CHECK(devices_text(d).find("    preset    usb-7.1 (--array usb-7.1)\n") != std::string::npos);
+}
+
 TEST_CASE("rates between the usual ones are a range")
 {
     session::device_list d = studio();

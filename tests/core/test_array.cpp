@@ -52,15 +52,31 @@ TEST_CASE("palm-2x4 has two rows of four")
     REQUIRE(a.tactors.size() == 8);
     CHECK(a.tactors[3].position == point{60.0, 0.0});
     CHECK(a.tactors[4].position == point{0.0, 20.0});
-    CHECK(array_presets() == std::vector<std::string>{"palm-3x3", "palm-2x4"});
+    CHECK(array_presets() == std::vector<std::string>{"palm-3x3", "palm-2x4", "dualsense", "usb-7.1"});
+}
+
+TEST_CASE("presets of cards drive the channels of their card")
+{
+    const array grips = preset_array("dualsense");
+    REQUIRE(grips.tactors.size() == 2);
+    CHECK((grips.tactors[0].channel == 2 && grips.tactors[1].channel == 3 && grips.channels() == 4));
+    CHECK(grips.tactors[0].position.x_mm < grips.tactors[1].position.x_mm);
+    const array wide = preset_array("usb-7.1");
+    const array palm = preset_array("palm-2x4");
+    REQUIRE(wide.tactors.size() == 8);
+    for (std::size_t i = 0; i < 8; ++i)
+        CHECK((wide.tactors[i].position == palm.tactors[i].position && wide.tactors[i].channel == i));
+    validate(grips);
+    validate(wide);
 }
 
 TEST_CASE("an unknown preset lists the presets")
 {
     CHECK(caught_message([] { return preset_array("palm-4x4"); }) ==
-          "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4)");
+          "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4, "
+          "dualsense, usb-7.1)");
     CHECK(caught_message([] { return preset_array("glove"); }) ==
-          "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4)");
+          "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4, dualsense, usb-7.1)");
 }
 
 TEST_CASE("make_grid refuses impossible grids, and names the field")

@@ -134,7 +134,7 @@ class Array(_Value):
 
     @classmethod
     def preset(cls, name: str) -> Array:
-        """Returns a built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
+        """Returns a built-in array: "palm-3x3", "palm-2x4", "dualsense" or "usb-7.1" (`array_presets`)."""
         _need(name, str, "name")
         return cls._wrap(_tactor.Array.preset(name))
 

@@ -50,7 +50,7 @@ export function seconds_text(s) {
 export const number_text = (v, digits = 1) => v.toFixed(digits).replace("-", "−");
 // Writes an identifier as words: "tactile-brush" becomes "Tactile brush".
 export const plain_name = id => (id.charAt(0).toUpperCase() + id.slice(1)).replace(/[-_]/g, " ");
-export const array_name = a => ({"palm-3x3": "Palm, 3 × 3", "palm-2x4": "Palm, 2 × 4"})[a?.name]
+export const array_name = a => ({"palm-3x3": "Palm, 3 × 3", "palm-2x4": "Palm, 2 × 4", dualsense: "DualSense", "usb-7.1": "USB 7.1"})[a?.name]
   ?? (a?.name ? plain_name(a.name) : "Array");
 
 const SHORT_HINT = 80; // most characters of a hint; a file has room for no more

@@ -52,6 +52,25 @@ std::string field(const fs::path& file, std::string_view key)
     return {};
 }
 
+// Returns the built-in array that is made for a USB card, by its USB id or by the channel map of a playback
+// device; empty for none.
+std::string find_preset(const system_root& root, unsigned card, unsigned device)
+{
+    const fs::path folder = root / fmt::format("proc/asound/card{}", card);
+    const std::vector<std::string> id = read_lines(folder / "usbid");
+    if (!id.empty() && trimmed(id.front()) == "054c:0ce6")
+        return "dualsense";
+    bool plays = false;
+    for (const std::string& line : read_lines(folder / fmt::format("stream{}", device))) {
+        const std::string text = trimmed(line);
+        if (text == "Playback:" || text == "Capture:")
+            plays = text == "Playback:";
+        if (plays && text == "Channel map: FL FR FC LFE RL RR SL SR")
+            return "usb-7.1";
+    }
+    return {};
+}
+
 // Returns the entries of a folder, in no order.
 std::vector<fs::path> entries(const fs::path& folder)
 {
@@ -323,6 +342,7 @@ std::vector<pcm_info> card_devices(const system_root& root)
             all.push_back({.name = fmt::format("hw:CARD={},DEV={}", c.id, d.number),
                            .description = joined(c.name, d.name),
                            .hardware = true,
+                           .preset = find_preset(root, c.index, d.number),
                            .holders = playback_holders(root, {c.index, d.number})});
     return all;
 }

@@ -163,6 +163,41 @@ TEST_CASE("a card's device that cannot be opened says why and stays in the list"
     CHECK(p.error.find("PCM \"") == std::string::npos);
 }
 
+TEST_CASE("a card names the built-in array that is made for it, by its USB id or its channel map")
+{
+    const test::fake_system s;
+    s.write("proc/asound/cards", " 0 [Controller     ]: USB-Audio - DualSense Wireless Controller\n"
+                                 " 1 [Wide           ]: USB-Audio - USB Sound Device\n"
+                                 " 2 [Other          ]: USB-Audio - Other\n"
+                                 " 3 [PCI            ]: HDA-Intel - HDA\n");
+    s.write("proc/asound/pcm", "00-00: USB Audio : USB Audio : playback 1 : capture 1\n"
+                               "01-00: USB Audio : USB Audio : playback 1\n"
+                               "01-01: USB Audio #1 : USB Audio #1 : playback 1\n"
+                               "02-00: USB Audio : USB Audio : playback 1 : capture 1\n"
+                               "03-00: ALC : ALC : playback 1\n");
+    s.write("proc/asound/card0/usbid", "054c:0ce6\n");
+    s.write("proc/asound/card0/stream0", "Playback:\n  Channel map: FL FR RL RR\n");
+    s.write("proc/asound/card1/usbid", "0d8c:0102\n");
+    s.write("proc/asound/card1/stream0", "USB Sound Device at usb-1, full speed : USB Audio\n\nPlayback:\n"
+                                         "  Status: Stop\n  Interface 1\n    Altset 1\n    Channels: 2\n"
+                                         "    Channel map: FL FR\n  Interface 1\n    Altset 2\n"
+                                         "    Channels: 8\n    Channel map: FL FR FC LFE RL RR SL SR\n");
+    s.write("proc/asound/card1/stream1", "Playback:\n    Channel map: FL FR FC LFE SL SR RL RR\n");
+    s.write("proc/asound/card2/usbid", "054c:0ce7\n");
+    s.write("proc/asound/card2/stream0", "Playback:\n    Channel map: FL FR\n\nCapture:\n"
+                                         "    Channel map: FL FR FC LFE RL RR SL SR\n");
+    const auto all = alsa::list(s.root(), {});
+    for (const auto& [name, preset] : {std::pair("hw:CARD=Controller,DEV=0", "dualsense"),
+                                       {"hw:CARD=Wide,DEV=0", "usb-7.1"},
+                                       {"hw:CARD=Wide,DEV=1", ""},
+                                       {"hw:CARD=Other,DEV=0", ""},
+                                       {"hw:CARD=PCI,DEV=0", ""},
+                                       {"null", ""}}) {
+        CAPTURE(name);
+        CHECK(named(all, name).preset == preset);
+    }
+}
+
 TEST_CASE("the wanted PCM is found under any of its names, and listed where nothing else lists it")
 {
     const test::fake_system s;
