@@ -23,7 +23,7 @@ NO_CLIENT = {
     "spread-place-mm": "a comparison is the tool's",
 }
 # Options of a client that no option of a method is.
-NO_METHOD = {"intensity-max": "a key of the method's own file, as of a motion's"}
+NO_METHOD = dict.fromkeys(("intensity-max", "position"), "a key of the method's own file, as of a motion's")
 # Options that a stroke file may give for one stroke. The other options of planning hold for the piece: its strokes share one
 # clock and one array.
 IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "soa", "burst", "waveform", "noise-seed", "texture", "texture-mm", "fit"}

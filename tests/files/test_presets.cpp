@@ -138,7 +138,7 @@ TEST_CASE("strokes that are written as TOML are the same when they are read agai
 {
     std::size_t tried = 0;
     for (const fs::path& f : files_in(source / "examples/strokes")) {
-        if (f.extension() == ".wav")
+        if (f.extension() == ".wav" || f.extension() == ".tact") // its places are parts of an array
             continue;
         CAPTURE(f.string());
         std::vector<stroke> all = load_strokes(f);

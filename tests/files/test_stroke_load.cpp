@@ -126,7 +126,7 @@ TEST_CASE("each format is told by its name, its extensions and what it writes")
         CHECK(length(tactor::load_strokes(f.write(fmt::format("b{}", k->extensions.back()), text))) == 6.0);
         CHECK(length(tactor::parse_strokes(text, "-")) == 6.0);
     }
-    CHECK(titles == "TOML CSV SVG ");
+    CHECK(titles == "TOML CSV SVG TACT ");
     CHECK(detail::list_stroke_formats() == "TOML, CSV, SVG or TACT");
     CHECK(detail::find_format_by_name("json") == nullptr);
     CHECK(detail::find_format_by_extension("a.json") == nullptr);

@@ -82,7 +82,7 @@ def test_the_record_is_the_tool_s(tool, tmp_path, palm, arguments, options):
 def test_options_have_the_names_of_the_tools(tool):
     said = {name.replace("-", "_") for command in ("plan", "compare") for name in re.findall(r"--([a-z][a-z-]+)", tool(command, "--help-all"))}
     not_ours = {"help", "help_all", "path", "array", "config", "format", "sample_format", "algorithms", "phantoms", "output", "width", "dpi",
-                "shape", "title", "force", "version", "intensity_max"}  # objects and arguments of this package
+                "shape", "title", "force", "version", "intensity_max", "position"}  # objects and arguments of this package
     own = {"channels", "marker_channel", "marker_s", "power_dbfs", "max_drive_s", "drive_window_s",  # a score's, from files and `play`
            "usual_speed",  # from [defaults] speed
            "slope", "intercept", "min_duration", "sigma_v_mm_s", "stevens_exponent", "spread_seed",  # the tool's from files

@@ -62,6 +62,8 @@ TEST_CASE("a recording of a motion may have intensities of another scale")
     const experiment_definition d = with("file = \"r.csv\"\nintensity_max = 255\n");
     CHECK(d.motions[0].strokes[0].motion.intensity(0.5) == doctest::Approx(0.2));
     has(caught_message([&] { with("file = \"r.csv\"\n"); }), "intensity_max");
+    has(caught_message([&] { with("file = \"r.csv\"\nintensity_max = 255\nposition = \"Left\"\n"); }),
+        "has strokes for one place only");
     has(caught_message([&] { with("preset = \"park2016-1\"\nintensity_max = 255\n"); }),
         "[[motion]] has no file");
 }

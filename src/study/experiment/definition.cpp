@@ -80,14 +80,15 @@ std::vector<stroke> read_file_strokes(const toml_table& t, const std::filesystem
 {
     const double intensity_max = t.number("intensity_max", detail::bounds_of::intensity_max).value_or(1.0);
     return at_key(t, "file", [&] {
-        std::vector<stroke> all = load_strokes(folder / *t.text("file"), intensity_max); // may be relative
+        std::vector<stroke> all = load_strokes(folder / *t.text("file"), intensity_max,
+                                               t.text("position").value_or("")); // may be relative
         start_at_once(all);
         return all;
     });
 }
 
-// Keys of a stroke: its three sources, and the scale of a recording's intensities.
-constexpr std::array<std::string_view, 4> stroke_keys{"preset", "path", "file", "intensity_max"};
+// Keys of a stroke: its three sources, and two keys about a file.
+constexpr std::array<std::string_view, 5> stroke_keys{"preset", "path", "file", "intensity_max", "position"};
 
 std::vector<stroke> along_path(const toml_table& t, std::optional<double> duration_s,
                                std::optional<double> speed_mm_s)
@@ -103,9 +104,10 @@ std::vector<stroke> along_path(const toml_table& t, std::optional<double> durati
 std::vector<stroke> read_strokes(const toml_table& t, const std::filesystem::path& folder,
                                  std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
-    if (!t.has("file") && t.has("intensity_max"))
-        t.fail("intensity_max", fmt::format("{} has no file", t.title()),
-               "add file, or leave out intensity_max");
+    for (const char* key : {"intensity_max", "position"})
+        if (!t.has("file") && t.has(key))
+            t.fail(key, fmt::format("{} has no file", t.title()),
+                   fmt::format("add file, or leave out {}", key));
     const std::vector<std::string_view> kinds(stroke_keys.begin(), stroke_keys.begin() + 3);
     if (std::none_of(kinds.begin(), kinds.end(), [&t](std::string_view key) { return t.has(key); }))
         return {};
@@ -329,7 +331,7 @@ bool is_mirrored(const toml_table& motion)
 motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
 {
     t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
-            "intensity_max", "mirror"});
+            "intensity_max", "position", "mirror"});
     static_cast<void>(t.one_of({"preset", "path", "file"})); // throws without a stroke
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
