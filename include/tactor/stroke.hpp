@@ -162,12 +162,23 @@ struct carrier_part {
     friend bool operator==(const carrier_part&, const carrier_part&) = default;
 };
 
+/// Carrier frequency at a time.
+struct carrier_time {
+    double t_s = 0.0;  ///< from the start of the stroke
+    double hz = 250.0; ///< 1 to 384000
+
+    friend bool operator==(const carrier_time&, const carrier_time&) = default;
+};
+
 /// Sound of one stroke. It replaces the sound that all strokes share.
 struct stroke_sound {
     std::optional<double> carrier_hz = {};
     /// Carrier frequency along the path, in place of carrier_hz: linear between parts, which ascend. The
     /// phase is continuous through every change.
     std::vector<carrier_part> carrier_profile = {};
+    /// Carrier frequency over time, in place of both: linear between times, which do not descend; the first
+    /// holds before its time, and the last one after it.
+    std::vector<carrier_time> carrier_times = {};
     std::optional<waveform> wave = {};
     std::optional<modulation> am = {};
 };
@@ -189,7 +200,7 @@ struct stroke_fit {
 struct stroke_places {
     source_place choices = {}; ///< choices.soa_s, or else choices.burst_s
     source_place start = {};   ///< a start_s below 0
-    source_place carrier = {}; ///< carrier_hz or carrier_profile
+    source_place carrier = {}; ///< carrier_hz, carrier_profile or carrier_times
     source_place wave = {};
 };
 

@@ -38,13 +38,14 @@ std::string default_name(const std::string& argument)
 // at fault. It names the place in the stroke's file, or else the stroke.
 error about_own(const error& x, const stroke& s)
 {
-    const bool has_carrier = s.sound.carrier_hz || !s.sound.carrier_profile.empty();
+    const bool over_time = !s.sound.carrier_times.empty();
+    const bool has_carrier = s.sound.carrier_hz || !s.sound.carrier_profile.empty() || over_time;
     const bool carrier = has_carrier && (x.field() == "carrier_hz" || x.field() == "carrier_profile");
     const bool wave = s.sound.wave && x.field() == "waveform";
     if (!carrier && !wave && x.field() != "start_s")
         return x;
     const source_place& at = carrier ? s.places.carrier : wave ? s.places.wave : s.places.start;
-    const std::string why = fmt::format("{}: {}", x.field(), x.why());
+    const std::string why = fmt::format("{}: {}", carrier && over_time ? "carrier_hz" : x.field(), x.why());
     if (at.line != 0)
         return x.reworded(at.text(), why, x.hint()).with_place(at);
     return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;

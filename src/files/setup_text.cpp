@@ -254,8 +254,10 @@ void add_path(lines& out, const stroke& s, const trajectory::impl& i, const draw
 
 void add_sound(lines& out, const stroke& s)
 {
-    if (s.sound.carrier_profile.empty())
+    if (s.sound.carrier_profile.empty() && s.sound.carrier_times.empty())
         out.add("carrier_hz", s.sound.carrier_hz);
+    out.add_rows("carrier_hz", s.sound.carrier_times,
+                 [](const carrier_time& p) { return fmt::format("{}, {}", p.t_s, p.hz); });
     out.add_rows("carrier_profile", s.sound.carrier_profile,
                  [](const carrier_part& p) { return fmt::format("{}, {}", p.part, p.hz); });
     if (s.sound.wave) {

@@ -121,6 +121,24 @@ std::vector<carrier_point> profile_course(const trajectory& motion, const std::v
     return course;
 }
 
+/// Returns the carrier over time, from 0 to the end of the stroke and on.
+std::vector<carrier_point> times_course(const std::vector<carrier_time>& times)
+{
+    std::vector<carrier_point> course;
+    if (times.front().t_s > 0.0)
+        course.push_back({0.0, times.front().hz});
+    for (const carrier_time& p : times) {
+        if (!(p.t_s >= (course.empty() ? 0.0 : course.back().t_s) && p.t_s <= longest_stroke_s))
+            throw detail::bad_field("carrier_hz", fmt::format("time {} s is out of order or range", p.t_s),
+                                    "give times in seconds from 0, ascending");
+        if (!bounds_of::carrier_hz.holds(p.hz))
+            throw detail::bad_field("carrier_hz", fmt::format("{} Hz is not a carrier", p.hz),
+                                    "give 1 to 384000 Hz");
+        course.push_back({p.t_s, p.hz});
+    }
+    return course;
+}
+
 void check_profile(const std::vector<carrier_part>& profile)
 {
     double before = -1.0;
@@ -162,6 +180,8 @@ std::vector<carrier_point> make_course(const stroke& s, const waveform& w)
     check_profile(s.sound.carrier_profile);
     if (w.kind == waveform_kind::recording && w.texture == texture_kind::length)
         return texture_course(s.motion, w.texture_mm);
+    if (!s.sound.carrier_times.empty())
+        return times_course(s.sound.carrier_times);
     if (!s.sound.carrier_profile.empty())
         return profile_course(s.motion, s.sound.carrier_profile);
     return {};

@@ -338,6 +338,17 @@ plan_options apply_choices(plan_options common, const stroke_choices& c)
     return common;
 }
 
+namespace {
+
+std::optional<double> first_carrier_hz(const stroke_sound& s)
+{
+    return !s.carrier_times.empty()     ? s.carrier_times.front().hz
+           : !s.carrier_profile.empty() ? s.carrier_profile.front().hz
+                                        : s.carrier_hz;
+}
+
+} // namespace
+
 plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& common,
                     const burst_taker& take)
 {
@@ -359,8 +370,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     p.faces = faces_used(o);
     p.stroke_duration_s = s.motion.duration_s();
     p.stroke_length_mm = s.motion.length_mm();
-    p.carrier_hz = check_carrier(s.sound.carrier_profile.empty() ? s.sound.carrier_hz.value_or(o.carrier_hz)
-                                                                 : s.sound.carrier_profile.front().hz);
+    p.carrier_hz = check_carrier(first_carrier_hz(s.sound).value_or(o.carrier_hz));
     p.overlap = o.overlap;
     p.wave = s.sound.wave.value_or(o.wave);
     p.am = s.sound.am.value_or(o.am);

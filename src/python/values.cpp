@@ -45,6 +45,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(movement, easing, speed_mm_s, intensity, rest
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(recording, file, rate_hz, samples, sha256, missing)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(modulation, hz, depth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_part, part, hz)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_time, t_s, hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_choices, algorithm, phantom, faces, soa_s, burst_s, level_db)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_fit, margin_mm, group, unit_square)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(start_anchor, from, back)
@@ -122,7 +123,7 @@ namespace tactor {
 inline namespace v0 {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(waveform, kind, low_hz, high_hz, seed, recorded, texture, texture_mm)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_sound, carrier_hz, carrier_profile, wave, am)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_sound, carrier_hz, carrier_profile, carrier_times, wave, am)
 
 inline void to_json(nlohmann::json& j, const trajectory& t)
 {
@@ -456,7 +457,7 @@ void bind_stroke(py::module_& m)
         .def("reversed",
              [](stroke s) {
                  s.motion = s.motion.reversed();
-                 s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
+                 s.sound = detail::reversed(std::move(s.sound), s.motion.duration_s());
                  return s;
              })
         .def("with_intensity",

@@ -124,7 +124,10 @@ net::reply_json keys_json(const stroke& k)
     put("burst_s", k.choices.burst_s);
     if (k.choices.level_db != 0.0)
         keys["level_db"] = k.choices.level_db;
-    put("carrier_hz", k.sound.carrier_profile.empty() ? k.sound.carrier_hz : std::nullopt);
+    if (k.sound.carrier_profile.empty() && k.sound.carrier_times.empty())
+        put("carrier_hz", k.sound.carrier_hz);
+    for (const carrier_time& p : k.sound.carrier_times)
+        keys["carrier_hz"].push_back({p.t_s, p.hz});
     for (const carrier_part& p : k.sound.carrier_profile)
         keys["carrier_profile"].push_back({p.part, p.hz});
     if (k.sound.wave) {

@@ -54,7 +54,7 @@ void put_options(stroke& k, const options::option_values& o)
     put(k.choices.faces, "faces", p.faces, usual.faces);
     put(k.choices.soa_s, "soa", p.soa_s, usual.soa_s);
     put(k.choices.burst_s, "burst", p.burst_s, usual.burst_s);
-    if (k.sound.carrier_profile.empty())
+    if (k.sound.carrier_profile.empty() && k.sound.carrier_times.empty())
         put(k.sound.carrier_hz, "carrier", p.carrier_hz, usual.carrier_hz);
     if (p.wave.kind != waveform_kind::recording || o.place != options::by_client) // no names of files
         put(k.sound.wave, "waveform", p.wave, usual.wave);

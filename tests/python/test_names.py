@@ -47,7 +47,7 @@ HAS_NOT = {
     "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",
     "load_samples": "SciPy and others read WAV files",
     "least_noise_hz most_cycle_samples most_recording_samples most_own_bytes max_pcm_channels": "bounds, which messages say",
-    "stroke_fit stroke_sound stroke_places carrier_part carrier_point":
+    "stroke_fit stroke_sound stroke_places carrier_part carrier_time carrier_point":
         "of stroke files: Stroke.load(), and the record of a plan: Plan.to_dict()",
     "threshold_point threshold_at": "Tactor.thresholds; a Score uses them",
     "score_builder": "a Score is made from plans that are there; the tool plans strokes while it places them",

@@ -57,6 +57,17 @@ std::vector<Point> from_the_end(std::vector<Point> points)
     return points;
 }
 
+/// Returns the sound of a stroke that goes backwards. Carriers that would come before its start are those at
+/// its start.
+inline stroke_sound reversed(stroke_sound s, double duration_s)
+{
+    s.carrier_profile = from_the_end(std::move(s.carrier_profile));
+    std::reverse(s.carrier_times.begin(), s.carrier_times.end());
+    for (carrier_time& p : s.carrier_times)
+        p.t_s = std::max(duration_s - p.t_s, 0.0);
+    return s;
+}
+
 } // namespace tactor::detail
 
 namespace tactor {

@@ -173,6 +173,34 @@ void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke
     s.places.carrier = t.where("carrier_profile");
 }
 
+/// Reads carrier_hz: a number, or frequencies over time.
+void read_carrier(const toml_table& t, stroke& s)
+{
+    constexpr std::string_view shape = "[[seconds, Hz], ...]";
+    if (!t.has("carrier_hz"))
+        return;
+    s.places.carrier = t.where("carrier_hz");
+    if (!t.node("carrier_hz")->is_array()) {
+        s.sound.carrier_hz = t.number("carrier_hz", bounds_of::carrier_hz);
+        return;
+    }
+    double before_s = 0.0;
+    for (const toml::node& node : *t.list("carrier_hz", shape)) {
+        const toml::array* entry = node.as_array();
+        if (!entry || entry->size() != 2)
+            fail_at(t.where(node), fmt::format("an entry of carrier_hz is {}", shown(node)),
+                    fmt::format("give {}", shape));
+        const double t_s = t.to_number((*entry)[0], "a time of carrier_hz", {0.0, longest_stroke_s});
+        if (t_s < before_s)
+            fail_at(t.where(node), fmt::format("time {} of carrier_hz is before {}", t_s, before_s),
+                    "put times in ascending order");
+        before_s = t_s;
+        s.sound.carrier_times.push_back({t_s, t.to_number((*entry)[1], "carrier_hz", bounds_of::carrier_hz)});
+    }
+    if (s.sound.carrier_times.empty())
+        t.fail("carrier_hz", "carrier_hz is an empty list", fmt::format("give {}", shape));
+}
+
 /// Reads fit and fit_margin_mm; nothing if the stroke is not to be fitted.
 std::optional<stroke_fit> read_fit(const toml_table& t)
 {
@@ -359,9 +387,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
         t.one_of({kind, "stroke"}); // throws for two
     const pace_keys keys = read_pace(t);
     stroke s{.name = t.text("name").value_or(std::move(name)), .speed_mm_s = keys.speed_mm_s};
-    s.sound.carrier_hz = t.number("carrier_hz", bounds_of::carrier_hz);
-    if (s.sound.carrier_hz)
-        s.places.carrier = t.where("carrier_hz");
+    read_carrier(t, s);
     if (kind == "timed") {
         if (!keys.uneven.empty())
             t.fail(keys.uneven,
@@ -506,7 +532,7 @@ file_entry read_one(const toml_table& t, std::string name, const stroke_file_tex
     read_sound(t, r.folder, s);
     if (t.boolean("reverse").value_or(false)) {
         s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
-        s.sound.carrier_profile = from_the_end(s.sound.carrier_profile);
+        s.sound = reversed(std::move(s.sound), s.motion.duration_s());
     }
     place_stroke(t, s);
     return repeat_entry(t, {.strokes = {std::move(s)}});

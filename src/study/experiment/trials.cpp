@@ -109,6 +109,7 @@ std::vector<stroke> choose_strokes(const motion_definition& motion, const method
         if (method.options.gives("carrier")) {
             s.sound.carrier_hz.reset();
             s.sound.carrier_profile.clear();
+            s.sound.carrier_times.clear();
         }
         if (method.options.gives("waveform"))
             s.sound.wave.reset();
