@@ -13,6 +13,7 @@
 #include <tactor/api.hpp>
 #include <tactor/array.hpp>
 #include <tactor/lines.hpp>
+#include <tactor/waveform.hpp>
 
 namespace tactor {
 inline namespace v0 {
@@ -124,6 +125,7 @@ struct setup {
     std::optional<sync_settings> sync = {};
     std::optional<limit_settings> limits = {};
     std::optional<calibration_origin> calibration = {};
+    std::optional<actuator_numbers> texture = {}; ///< [texture]
     /// [defaults]: each name once; values of an included file come first.
     std::vector<written_value> defaults = {};
     /// [serve]: in the order of the file; values of an included file come first.

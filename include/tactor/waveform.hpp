@@ -32,6 +32,59 @@ TACTOR_KIND(waveform_kind);
 enum class texture_kind { cycle, time, length };
 TACTOR_KIND(texture_kind);
 
+/// Value at a time.
+struct timed_value {
+    double t_s = 0.0;
+    double value = 0.0;
+
+    friend bool operator==(const timed_value&, const timed_value&) = default;
+};
+
+/// Short event that stands out of a vibration.
+struct emphasis {
+    double t_s = 0.0;
+    double amplitude = 1.0; ///< 0 to 1
+    double frequency = 0.5; ///< 0 to 1: from emphasis_low to emphasis_high of actuator_numbers
+
+    friend bool operator==(const emphasis&, const emphasis&) = default;
+};
+
+/// Meaning of the frequencies 0 to 1 of a vibration on an actuator. The default is that of the generic
+/// actuator that the .haptic format publishes.
+struct actuator_numbers {
+    double gain = 1.0;      ///< of the vibration, 0 to 1
+    double ducking = 0.5;   ///< factor of the vibration during an emphasis, 0 to 1
+    double low_hz = 55.0;   ///< frequency 0
+    double high_hz = 200.0; ///< frequency 1
+    double emphasis_gain = 1.0;
+    double fade_out = 0.0; ///< part by which an emphasis gets weaker up to its end, 0 to 1
+    double emphasis_low_hz = 55.0;
+    double emphasis_high_hz = 130.0;
+    double emphasis_low_s = 0.027;
+    double emphasis_high_s = 0.020;
+    /// Shapes of an emphasis of frequency 0 and 1: sine, square, triangle or sawtooth. Between them it is a
+    /// mixture of both.
+    waveform_kind emphasis_low_wave = waveform_kind::sine;
+    waveform_kind emphasis_high_wave = waveform_kind::square;
+
+    friend bool operator==(const actuator_numbers&, const actuator_numbers&) = default;
+};
+
+/// A vibration as .haptic and AHAP files describe it. Values are linear between their times, which do not
+/// descend from 0 on; the first holds before its time, and the last one after it.
+struct vibration {
+    double duration_s = 0.0;
+    std::vector<timed_value> amplitude = {}; ///< 0 to 1
+    std::vector<timed_value> frequency = {}; ///< 0 to 1: from low_hz to high_hz
+    std::vector<emphasis> emphases = {};     ///< in order of time; one ends where the next begins
+    actuator_numbers actuator = {};
+    bool own_actuator = false; ///< `actuator` belongs to the format: no other replaces it
+    /// Parts of the file that were left out. make_plan() passes them on to plan::warnings.
+    std::vector<std::string> notes = {};
+
+    friend bool operator==(const vibration&, const vibration&) = default;
+};
+
 /// Samples of one channel.
 struct recording {
     std::string file = {};    ///< file of origin, for messages
@@ -44,6 +97,9 @@ struct recording {
     /// Number of samples that the file's header announces but the file does not have, because it was cut
     /// short.
     std::uint64_t missing = 0;
+    /// The vibration from which the samples were made, if any. It plays instead of them, at the rate of the
+    /// stream and with its own amplitudes; along a path by its length, its frequencies stay.
+    std::optional<vibration> source = {};
 
     friend bool operator==(const recording&, const recording&) = default;
 };

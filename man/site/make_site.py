@@ -27,7 +27,7 @@ SHAPES = ["line", "circle", "eight", "spiral"]
 ON_ARRAY = {"arm-line-4": '--path "M 0 0 L 120 0"', "lra-row-3": '--path "M 0 0 H 60" --sl 12 --carrier 170'}
 PYTHON = "python-reference/index"
 EXAMPLES = [f"examples/{folder}/README" for folder in ("python", "jspsych", "octave", "psychopy", "systemd")]
-SECTIONS = {"Start": ["start", "safety", "studio", "how-to", "study", "worked-study", "drawings", "examples/experiments/README", "runners", "psychportaudio", "files", "cpp", "python", "parts", "machines", "examples/rtp/README", "questions", "trouble", "glossary"],
+SECTIONS = {"Start": ["start", "safety", "studio", "how-to", "study", "worked-study", "drawings", "examples/experiments/README", "runners", "psychportaudio", "files", "content", "cpp", "python", "parts", "machines", "examples/rtp/README", "questions", "trouble", "glossary"],
             "Understand": ["method", "predictions", "performance", "compared", "architecture"],
             "Reference": ["manuals", "cpp-reference", PYTHON, "schemas", "gallery", *EXAMPLES, "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
 

@@ -116,10 +116,11 @@ std::string asked_of_stream(const settings& s)
 
 void add_strokes(command_line& line, int most, const std::string& name)
 {
-    auto* strokes = line.app.add_option(
-        name, line.values.strokes,
-        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
-        "file (.toml, .csv, .svg, .tact; .json: a plan), or - for such a file on standard input");
+    auto* strokes =
+        line.app.add_option(name, line.values.strokes,
+                            "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
+                            "file (.toml, .csv, .svg, .tact, .haptic, .ahap; .json: a plan), or - for such a "
+                            "file on standard input");
     strokes->type_name("");
     strokes->expected(1, most)->allow_extra_args(most > 1);
 }

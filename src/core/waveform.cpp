@@ -13,6 +13,7 @@
 #include "core/kind_names.hpp"
 #include "core/refused.hpp"
 #include "core/split.hpp"
+#include "core/vibration.hpp"
 #include "core/words.hpp"
 
 namespace tactor {
@@ -53,7 +54,10 @@ void check_recording(const waveform& w)
         throw error(error_kind::bad_input, "waveform", "the recording has no samples",
                     "give them as recorded")
             .with_field("waveform");
-    check_samples(*w.recorded);
+    if (w.recorded->source)
+        detail::check_vibration(*w.recorded->source, recording_name(*w.recorded));
+    else
+        check_samples(*w.recorded);
     if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
         throw error(
             error_kind::bad_input, recording_name(*w.recorded),

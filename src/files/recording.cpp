@@ -26,6 +26,7 @@
 #include "core/words.hpp"
 #include "files/sound_file.hpp"
 #include "files/text_file.hpp"
+#include "files/vibration_file.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -313,6 +314,8 @@ own_samples load_samples(const std::filesystem::path& file)
 recording load_recording(const std::filesystem::path& file)
 {
     refuse_pipe(file);
+    if (detail::names_vibration(file))
+        return detail::load_vibration(file);
     const detail::whole_text bytes = detail::read_text_file(file, max_file_bytes);
     return detail::parse_recording(bytes, file.string());
 }
@@ -337,8 +340,9 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
         return w;
     }
     if (!waveform_names_file(text))
-        throw error(error_kind::bad_input, "waveform", fmt::format("{} is unknown", detail::quoted(text)),
-                    "use one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav")
+        throw error(
+            error_kind::bad_input, "waveform", fmt::format("{} is unknown", detail::quoted(text)),
+            "use one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav, FILE.haptic, FILE.ahap")
             .with_field("waveform");
     w.kind = waveform_kind::recording;
     w.recorded = std::make_shared<const recording>(load_recording(folder / std::filesystem::path(text)));

@@ -22,6 +22,7 @@
 #include "files/setup_layers.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
+#include "files/vibration_file.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -617,8 +618,8 @@ located_setup read_setup(std::string_view text, const setup_source& source)
     const toml_table root(document, "the file", source.name);
     if (root.has("stroke"))
         root.fail("stroke", "this is a stroke file, not an array or configuration", "give it as the STROKE");
-    root.only(
-        {"array", "tactor", "output", "amplifier", "sync", "limits", "serve", "defaults", "calibration"});
+    root.only({"array", "tactor", "output", "amplifier", "sync", "limits", "serve", "defaults", "calibration",
+               "texture"});
 
     located_setup out;
     read_array(root, source, out);
@@ -632,6 +633,8 @@ located_setup read_setup(std::string_view text, const setup_source& source)
         if (const auto t = root.table(name, title, title))
             read(*t, out);
     }
+    if (const auto t = root.table("texture", "[texture]", "[texture]"))
+        out.contents.texture = read_texture(*t, source.folder);
 
     if (out.contents.array)
         validate(*out.contents.array);

@@ -23,6 +23,7 @@ struct stroke_file_text {
     double intensity_max = 1.0;                    ///< value of an intensity that means 1
     const std::filesystem::path* folder = nullptr; ///< of files that it names; null: it must not name any
     std::string_view position = {};                ///< place on the body; empty: the first in the text
+    const actuator_numbers* actuator = nullptr;    ///< of vibrations; null: that of the format
 };
 
 /// A format of stroke files.
@@ -49,6 +50,10 @@ struct stroke_format {
 /// Reads a text. \throws error (bad_input), also for a position that the format does not have.
 std::vector<stroke> read_stroke_text(const stroke_format& f, const stroke_file_text& s);
 
+/// Reads a file, as load_strokes() does. \throws error (bad_input).
+std::vector<stroke> load_stroke_file(const std::filesystem::path& file, double intensity_max,
+                                     std::string_view position, const actuator_numbers* actuator);
+
 /// Returns all formats. The first, TOML, is for texts of no known format: its reader explains the fault.
 std::span<const stroke_format* const> stroke_formats() noexcept;
 
@@ -64,7 +69,7 @@ const stroke_format* find_format_by_content(std::string_view text);
 /// Returns the format of a text with strokes: by the extension of its file, else by its content, else TOML.
 const stroke_format* find_stroke_format(std::string_view text, const std::filesystem::path& file);
 
-/// Returns "TOML, CSV, SVG or TACT": the titles of all formats.
+/// Returns "TOML, CSV, SVG, TACT, HAPTIC or AHAP": the titles of all formats.
 std::string list_stroke_formats();
 
 } // namespace tactor::detail

@@ -69,6 +69,7 @@ struct option_values {
     std::optional<double> usual_speed_mm_s = {};   ///< speed of strokes that have neither a time nor a speed
     std::optional<double> intensity_max = {};      ///< value in a recording that means intensity 1
     std::optional<std::string> position = {};      ///< place on the body whose touches a file plays
+    std::optional<actuator_numbers> actuator = {}; ///< [texture] of a file
     bool fit = false;
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate = {};

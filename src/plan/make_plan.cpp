@@ -144,12 +144,16 @@ void warn_of_faces(const layout& l, const plan_options& o, detail::missed_places
         p.warnings.push_back(std::move(text));
 }
 
-/// Warns of missing samples: a recorder that was switched off leaves a file that is shorter than its header
-/// says.
+/// Warns of missing samples, and of parts of a vibration that were left out. A recorder that was switched off
+/// leaves a file that is shorter than its header says.
 void warn_of_missing_samples(plan& p)
 {
     const std::shared_ptr<const recording>& r = p.wave.recorded;
-    if (p.wave.kind == waveform_kind::recording && r->missing > 0)
+    if (p.wave.kind != waveform_kind::recording)
+        return;
+    if (r->source)
+        p.warnings.insert(p.warnings.end(), r->source->notes.begin(), r->source->notes.end());
+    if (r->missing > 0)
         p.warnings.push_back(fmt::format("{}: the recording is incomplete: it has {} of {}",
                                          recording_name(*r), r->samples.size(),
                                          counted(r->samples.size() + r->missing, "sample")));
@@ -374,6 +378,9 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     p.overlap = o.overlap;
     p.wave = s.sound.wave.value_or(o.wave);
     p.am = s.sound.am.value_or(o.am);
+    if (p.wave.recorded && p.wave.recorded->source &&
+        (p.wave.texture == texture_kind::cycle || s.motion.length_mm() == 0.0))
+        p.wave.texture = texture_kind::time; // it is no cycle, and a touch that rests has no length
     validate(p.wave);
     validate(p.am);
     p.course = make_course(s, p.wave);

@@ -42,7 +42,14 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(point, x_mm, y_mm)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(profile_point, part, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(rest, part, time_s, intensity)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(movement, easing, speed_mm_s, intensity, rests)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(recording, file, rate_hz, samples, sha256, missing)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(timed_value, t_s, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(emphasis, t_s, amplitude, frequency)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(actuator_numbers, gain, ducking, low_hz, high_hz, emphasis_gain, fade_out,
+                                   emphasis_low_hz, emphasis_high_hz, emphasis_low_s, emphasis_high_s,
+                                   emphasis_low_wave, emphasis_high_wave)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(vibration, duration_s, amplitude, frequency, emphases, actuator,
+                                   own_actuator, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(recording, file, rate_hz, samples, sha256, missing, source)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(modulation, hz, depth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_part, part, hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_time, t_s, hz)

@@ -17,6 +17,7 @@
 #include "files/text_file.hpp"
 #include "options/resolve.hpp"
 #include "rt/system_files.hpp"
+#include "session/piece.hpp"
 #include "session/process.hpp"
 #include "session/say.hpp"
 
@@ -68,6 +69,7 @@ void use_array_file(setup& config, const setup& file)
     prefer(config.output.period_frames, file.output.period_frames);
     prefer(config.output.periods, file.output.periods);
     prefer(config.amplifier, file.amplifier);
+    prefer(config.texture, file.texture);
     prefer(config.sync, file.sync);
     config.limits = detail::join_limits(config.limits, file.limits);
     static_cast<void>(
@@ -256,6 +258,8 @@ environment read_environment(settings& s)
     if (planned != nullptr)
         use_plan_sound(*planned, s);
     options::resolve(s);
+    s.actuator = e.config.texture;
+    use_actuator(s.plan.wave, s.actuator);
     check_sync_channel(e);
     if (!e.array_doubt.empty())
         say(stderr, "tactor: warning: {}\n", e.array_doubt);

@@ -143,9 +143,12 @@ source make_source(std::string_view name, const std::string& text)
     return format_text{detail::find_format_by_name(name), text};
 }
 
-stroke path_stroke(const std::string& data, std::optional<double> duration_s, double speed_mm_s)
+stroke path_stroke(const std::string& data, std::optional<double> duration_s, double speed_mm_s,
+                   std::optional<double> rest_s)
 {
     const path p = path::from_svg(data);
+    if (!duration_s && p.length_mm() == 0.0)
+        duration_s = rest_s;
     stroke s{.name = "path", .motion = trajectory::along(p, duration_s.value_or(p.length_mm() / speed_mm_s))};
     s.speed_mm_s = speed_mm_s;
     return s;
@@ -161,10 +164,34 @@ stroke points_stroke(const std::string& name, std::span<const timed_point> point
     return {.name = name, .motion = motion, .warnings = recorded.warnings()};
 }
 
+namespace {
+
+// Returns the duration of the vibration that the options name as waveform.
+std::optional<double> vibration_s(const options::option_values& o)
+{
+    const auto& recorded = o.plan.wave.recorded;
+    return recorded && recorded->source ? std::optional(recorded->source->duration_s) : std::nullopt;
+}
+
+// Makes a touch that rests as long as its vibration. It has no bursts, which would end later.
+std::vector<stroke> last_as_vibration(stroke s, const options::option_values& o)
+{
+    const std::optional<double> own_s = vibration_s(o);
+    if (own_s && !o.duration_s && s.motion.length_mm() == 0.0) {
+        s.motion = s.motion.with_duration(*own_s);
+        if (!o.gives("algorithm"))
+            s.choices.algorithm = algorithm_kind::continuous;
+    }
+    return std::vector{std::move(s)};
+}
+
+} // namespace
+
 std::vector<stroke> read_strokes(source from, const std::string& named, const options::option_values& o)
 {
     const double intensity_max = o.intensity_max.value_or(1.0);
     const std::string position = o.position.value_or("");
+    const actuator_numbers* const actuator = o.actuator ? &*o.actuator : nullptr;
     if (!position.empty() && !std::holds_alternative<format_text>(from) &&
         !std::holds_alternative<stroke_file>(from) && !std::holds_alternative<std::vector<stroke>>(from))
         throw error(error_kind::bad_input, "position", fmt::format("{} has no positions", named),
@@ -173,15 +200,20 @@ std::vector<stroke> read_strokes(source from, const std::string& named, const op
     const double speed_mm_s = o.speed_mm_s.value_or(o.usual_speed_mm_s.value_or(default_speed_mm_s));
     return std::visit(
         overloaded{
-            [](const stroke_name& s) { return std::vector{named_stroke(s.name)}; },
-            [&](const path_data& s) { return std::vector{path_stroke(s.data, o.duration_s, speed_mm_s)}; },
+            [&](const stroke_name& s) { return last_as_vibration(named_stroke(s.name), o); },
+            [&](const path_data& s) {
+                return last_as_vibration(path_stroke(s.data, o.duration_s, speed_mm_s, vibration_s(o)), o);
+            },
             [&](const std::vector<timed_point>& s) {
                 return std::vector{points_stroke("points", s, intensity_max)};
             },
             [&](const format_text& s) {
-                return detail::read_stroke_text(*s.format, {s.text, named, intensity_max, nullptr, position});
+                return detail::read_stroke_text(*s.format,
+                                                {s.text, named, intensity_max, nullptr, position, actuator});
             },
-            [&](const stroke_file& s) { return load_strokes(s.file, intensity_max, position); },
+            [&](const stroke_file& s) {
+                return detail::load_stroke_file(s.file, intensity_max, position, actuator);
+            },
             [](std::vector<stroke>& s) { return std::move(s); },
             [](piece& s) { return std::move(s.strokes); },
             [](const samples_file&) { return std::vector<stroke>(); },
@@ -189,9 +221,21 @@ std::vector<stroke> read_strokes(source from, const std::string& named, const op
         from);
 }
 
+void use_actuator(waveform& w, const std::optional<actuator_numbers>& a)
+{
+    if (!a || !w.recorded || !w.recorded->source || w.recorded->source->own_actuator)
+        return;
+    recording on_it = *w.recorded;
+    on_it.source->actuator = *a;
+    w.recorded = std::make_shared<const recording>(std::move(on_it));
+}
+
 void place_strokes(piece& p, const layout& faces, const options::option_values& o)
 {
     fit_by_file(p, faces);
+    for (stroke& k : p.strokes)
+        if (k.sound.wave)
+            use_actuator(*k.sound.wave, o.actuator);
     if (o.fit) {
         fitted_strokes fitted = fit_strokes(p.strokes, faces, o.fit_margin_mm);
         p.strokes = std::move(fitted.strokes);
@@ -206,6 +250,8 @@ piece read_piece(source from, std::string name, const layout& faces, const optio
 {
     if (auto* planned = std::get_if<piece>(&from)) {
         planned->name = std::move(name);
+        for (placed_plan& made : planned->plans)
+            use_actuator(made.plan.wave, o.actuator);
         return std::move(*planned);
     }
     piece p{.name = std::move(name)};

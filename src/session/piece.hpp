@@ -66,15 +66,21 @@ source make_source(std::string_view name, const std::string& text);
 /// \throws error (bad_input).
 std::vector<stroke> read_strokes(source from, const std::string& named, const options::option_values& o);
 
-/// Returns a stroke along a path; without a duration it moves at `speed_mm_s`.
+/// Returns a stroke along a path; without a duration it moves at `speed_mm_s`, or rests for `rest_s` if the
+/// path is a single place.
 /// \throws error (bad_input).
-stroke path_stroke(const std::string& data, std::optional<double> duration_s, double speed_mm_s);
+stroke path_stroke(const std::string& data, std::optional<double> duration_s, double speed_mm_s,
+                   std::optional<double> rest_s = {});
 
 /// Returns a stroke of points as a recorder delivers them, with warnings of oddities.
 /// \throws error (bad_input).
 stroke points_stroke(const std::string& name, std::span<const timed_point> points, double intensity_max);
 
-/// Fits the strokes that request it, and all together if the options do; then sets their paces.
+/// Makes the vibration of a waveform, if it is one without numbers of its own, that of an actuator.
+void use_actuator(waveform& w, const std::optional<actuator_numbers>& a);
+
+/// Sets the actuator of vibrations. Fits the strokes that request it, and all together if the options do;
+/// then sets their paces.
 /// \throws error (bad_input).
 void place_strokes(piece& p, const layout& faces, const options::option_values& o);
 

@@ -104,6 +104,7 @@ public:
         add(differs(was.start_s, is.start_s) && (*was.start_s != 0.0 || at_ != 0), "the start");
         add(differs(was.sound.carrier_hz, is.sound.carrier_hz), "the carrier");
         add(was.sound.carrier_profile != is.sound.carrier_profile, "the carrier profile");
+        add(was.sound.carrier_times != is.sound.carrier_times, "the carrier over time");
         add(differs(was.sound.wave, is.sound.wave), "the waveform");
         add(differs(was.sound.am, is.sound.am), "the amplitude modulation");
         add(differs(c.algorithm, is.choices.algorithm), "the algorithm");

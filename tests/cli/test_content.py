@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Content of other programs: bHaptics' .tact files."""
+"""Content of other programs: .tact, .haptic and AHAP files."""
 import json
 import math
 
-from harness import Wav, main
+from harness import ToolTest, Wav, main
 from serving import ServeTest
 
 SOA_S = 0.07
@@ -201,6 +201,202 @@ class Tact(ServeTest):
         with open(self.dir / "long.tact", "wb") as f:
             f.truncate(500 << 20)
         self.refused(2, "plan", "long.tact", says=["longer than 16 MB"])
+
+
+RATE = 48000
+LEVEL = ("--level-dbfs", "0")
+POINT = ("--path", "M 20 20")
+
+
+def haptic(amplitude, frequency=None, version=1):
+    def points(name, pairs):
+        return [{"time": p[0], name: p[1]} | ({"emphasis": {"amplitude": p[2], "frequency": p[3]}} if len(p) > 2 else {}) for p in pairs]
+    envelopes = {"amplitude": points("amplitude", amplitude)} | ({} if frequency is None else {"frequency": points("frequency", frequency)})
+    return json.dumps({"version": {"major": version, "minor": 0, "patch": 0}, "metadata": {"author": "by hand"}, "signals": {"continuous": {"envelopes": envelopes}}})
+
+
+def ahap(*pattern, **more):
+    return json.dumps({"Version": 1.0, "Pattern": list(pattern)} | more)
+
+
+def event(kind, time, duration=None, intensity=None, sharpness=None):
+    values = [{"ParameterID": f"Haptic{n}", "ParameterValue": v} for n, v in (("Intensity", intensity), ("Sharpness", sharpness)) if v is not None]
+    return {"Event": {"Time": time, "EventType": kind, "EventParameters": values} | ({} if duration is None else {"EventDuration": duration})}
+
+
+def curve(name, time, *points):
+    return {"ParameterCurve": {"ParameterID": name, "Time": time, "ParameterCurveControlPoints": [{"Time": t, "ParameterValue": v} for t, v in points]}}
+
+
+class Vibrations(ToolTest):
+    def render(self, *args):
+        """The samples of the middle tactor of palm-3x3."""
+        self.ok("render", *args, *LEVEL, "--force", "-o", "v.wav", "--attack", "0", "--release", "0")
+        return [frame[4] for frame in Wav(self.dir / "v.wav").samples()]
+
+    def texture(self, text, *args, name="t.haptic"):
+        self.write(name, text)
+        return self.render(*POINT, "--waveform", name, *args)
+
+    def peak(self, samples, at_s, window_s=0.02):
+        return max(map(abs, samples[round(at_s * RATE):round((at_s + window_s) * RATE)]))
+
+    def hertz(self, samples, from_s, to_s):
+        """Frequency by the places where the samples rise through 0, between two of them."""
+        part = samples[round(from_s * RATE):round(to_s * RATE)]
+        rises = [i + a / (a - b) for i, (a, b) in enumerate(zip(part, part[1:])) if a < 0 <= b]
+        return (len(rises) - 1) * RATE / (rises[-1] - rises[0])
+
+    def test_amplitude_and_frequency_are_linear_and_the_last_point_is_the_end(self):
+        x = self.texture(haptic([(0, 0.2), (0.5, 0.6), (0.5, 0.1), (1.0, 0.3)], [(0, 0), (0.5, 0), (0.5, 1), (0.8, 1)]))
+        self.assertEqual(len(x), RATE)
+        for at, wanted in ((0.1, 0.28), (0.4, 0.52), (0.6, 0.14), (0.9, 0.26)):
+            self.assertAlmostEqual(self.peak(x, at - 0.01), wanted, delta=0.012)
+        self.assertAlmostEqual(self.hertz(x, 0.02, 0.48), 55, delta=0.05)
+        self.assertAlmostEqual(self.hertz(x, 0.52, 0.98), 200, delta=0.2)
+        for missing in (None, []):
+            self.assertAlmostEqual(self.hertz(self.texture(haptic([(0, 1), (1, 1)], missing)), 0, 1), 127.5, delta=0.1)
+
+    def test_an_emphasis_is_the_published_one_and_ducks_the_rest(self):
+        for frequency, hz, lasts in ((0.0, 55, 0.027), (1.0, 130, 0.020), (0.5, 92.5, 0.0235)):
+            x = self.texture(haptic([(0, 0), (0.3, 0, 0.8, frequency), (0.6, 0)]))
+            sounding = [n / RATE for n, v in enumerate(x) if abs(v) > 1e-6]
+            self.assertAlmostEqual(sounding[0], 0.3, delta=2e-4)
+            self.assertAlmostEqual(sounding[-1], 0.3 + lasts, delta=3e-4)
+            for n, v in enumerate(x[round(0.3 * RATE):round((0.3 + lasts) * RATE)]):
+                turns = hz * n / RATE % 1
+                if min(turns, abs(turns - 0.5), 1 - turns) > 0.01:  # beside the steps of the square
+                    self.assertAlmostEqual(v, 0.8 * ((1 - frequency) * math.sin(2 * math.pi * turns) + frequency * (1 if turns < 0.5 else -1)), delta=2e-4)
+        x = self.texture(haptic([(0, 0.6), (0.3, 0.6, 0, 0), (0.6, 0.6)]))
+        self.assertAlmostEqual(self.peak(x, 0.302, 0.022), 0.3, delta=0.002)
+        self.assertAlmostEqual(self.peak(x, 0.33), 0.6, delta=0.002)
+        loud = self.texture(haptic([(0, 1), (0.3, 1, 1, 0), (0.6, 1)]))
+        self.assertLessEqual(max(map(abs, loud)), 1.0)
+        self.assertAlmostEqual(max(map(abs, loud)), 1.0, delta=0.001)
+
+    def test_an_actuators_own_numbers_replace_them(self):
+        text = haptic([(0, 1), (0.3, 1, 0, 1), (0.6, 1)], [(0, 0), (0.3, 0), (0.3, 1), (0.6, 1)])
+        self.write("c.toml", "[texture]\nlow_hz = 100\nhigh_hz = 300\nducking = 0.25\nemphasis_high_s = 0.05\n")
+        self.write("a.acf", """{ // of somebody's device
+            metadata: { version: "1.0.0", device: 'It\\'s', },
+            continuous: { gain: 0.5, emphasis_ducking: 0.25, frequency_min: 100.0, frequency_max: 300, },
+            emphasis: { gain: 1.0, fade_out_percent: 0.0, frequency_min: { output_frequency: 60, duration_ms: 30, shape: 'sine' },
+                        frequency_max: { output_frequency: 120, duration_ms: 50, shape: "saw" } } }""")
+        self.write("f.toml", '[texture]\nacf = "a.acf"\n')
+        for config, gain in (("c.toml", 1.0), ("f.toml", 0.5)):
+            x = self.texture(text, "--config", config)
+            self.assertAlmostEqual(self.hertz(x, 0.01, 0.29), 100, delta=0.1)
+            self.assertAlmostEqual(self.hertz(x, 0.36, 0.59), 300, delta=0.5)
+            self.assertAlmostEqual(self.peak(x, 0.31, 0.035), 0.25 * gain, delta=0.003)
+            self.assertAlmostEqual(self.peak(x, 0.355), gain, delta=0.003)
+        self.write("bad.toml", '[texture]\nacf = "none.acf"\n')
+        self.refused(2, "plan", "park2016-1", "--config", "bad.toml", says=["none.acf"])
+        self.write("bad.toml", "[texture]\ngain = 2\n")
+        self.refused(2, "plan", "park2016-1", "--config", "bad.toml", says=["gain"])
+
+    def test_along_a_stroke_by_time_and_by_length(self):
+        """By length the envelope follows the way, and the frequency stays."""
+        self.write("t.haptic", haptic([(0, 0), (0.25, 1), (0.5, 0)], [(0, 0), (0.5, 0)]))
+        line = ("--path", "M 0 20 L 40 20", "--duration", "2", "--algorithm", "continuous", "--phantom", "barycentric", "--waveform", "t.haptic", "--texture")
+        energy = {}
+        for how in ("time", "length"):
+            self.ok("render", *line, how, *LEVEL, "--force", "-o", "v.wav")
+            frames = Wav(self.dir / "v.wav").samples()
+            energy[how] = [math.sqrt(max(sum(v * v for v in f) for f in frames[n:n + RATE // 50])) for n in range(0, 2 * RATE, RATE // 50)]
+        for k, (by_time, by_length) in enumerate(zip(energy["time"], energy["length"])):
+            t = k / 50 + 0.01
+            self.assertAlmostEqual(by_time, 1 - abs(4 * (t % 0.5) - 1), delta=0.06)
+            self.assertAlmostEqual(by_length, 1 - abs(t - 1), delta=0.03)
+        middle = [f[4] for f in frames]  # of the second, by length
+        self.assertAlmostEqual(self.hertz(middle, 0.8, 1.2), 55, delta=0.1)
+
+    def test_a_plan_plays_as_its_stroke(self):
+        self.write("t.haptic", haptic([(0, 0), (0.25, 1, 1, 0.3), (0.5, 0)]))
+        self.write("c.toml", "[texture]\nhigh_hz = 300\n")
+        for how in ("time", "length"):
+            stroke = ("park2016-1", "--waveform", "t.haptic", "--texture", how)
+            self.write("p.json", self.ok("plan", *stroke, "--format", "json", "--config", "c.toml").stdout)
+            sounds = []
+            for args in (stroke, ("p.json",)):
+                self.ok("render", *args, "--config", "c.toml", "--force", "-o", "v.wav")
+                sounds.append(Wav(self.dir / "v.wav").data)
+            self.assertTrue(sounds[0] == sounds[1] and any(sounds[0]), how)
+
+    def test_a_file_is_a_stroke_too(self):
+        self.write("k.haptic", haptic([(0, 0.2), (0.3, 0.6, 0.8, 0.5), (0.6, 0.6)], [(0, 0), (0.6, 1)]))
+        plans = self.plan("k.haptic")["plans"]
+        self.assertEqual([(p["start_s"], round(p["stroke"]["duration_s"], 6)) for p in plans], [(0, 0.6), (0.3, 0.0235), (0.3, 0.0235)])
+        self.assertEqual([p["stroke"].get("waveform", "sine") for p in plans], ["sine", "sine", "square"])
+        self.assertEqual([c["hz"] for c in plans[0]["stroke"]["course"]], [55, 200])
+        self.assertEqual({(round(b["x_mm"], 9), round(b["y_mm"], 9)) for p in plans for b in p["continuous"]["points"]}, {(20, 20)})
+        at = {round(b["t_s"], 3): b["intensity"] for b in plans[0]["continuous"]["points"]}
+        for t, v in ((0.0, 0.2), (0.15, 0.4), (0.31, 0.3), (0.4, 0.6)):
+            self.assertAlmostEqual(at[t], v, 6)
+
+    def test_ahap_is_quadratic_with_its_own_actuator(self):
+        def render(*pattern):
+            return self.texture(ahap(*pattern), name="a.ahap")
+        x = render(event("HapticContinuous", 0, 0.5, 0.5, 0), event("HapticContinuous", 0.5, 0.5), event("HapticTransient", 1.2, None, 0.8, 1))
+        self.assertEqual(len(x), round(1.222 * RATE))
+        self.assertAlmostEqual(self.peak(x, 0.2), 0.25, delta=0.002)
+        self.assertAlmostEqual(self.hertz(x, 0.01, 0.49), 65, delta=0.1)
+        self.assertAlmostEqual(self.peak(x, 0.7), 1.0, delta=0.002)
+        self.assertAlmostEqual(self.hertz(x, 0.51, 0.99), 182.5, delta=0.3)
+        self.assertAlmostEqual(max(map(abs, x[round(1.01 * RATE):round(1.19 * RATE)])), 0)
+        self.assertAlmostEqual(self.peak(x, 1.2), 0.64, delta=0.002)
+        self.assertAlmostEqual(self.hertz(x, 1.2, 1.222), 300, delta=1)
+        x = render(event("HapticContinuous", 0, 1, 0.8, 0.5), curve("HapticIntensityControl", 0.5, (0, 1), (0.5, 0.5)), curve("HapticSharpnessControl", 0.5, (0, 0.5), (0.1, 0.5)))
+        self.assertAlmostEqual(self.peak(x, 0.4), 0.64, delta=0.002)
+        self.assertAlmostEqual(self.peak(x, 0.74), (0.8 * 0.75) ** 2, delta=0.02)
+        self.assertAlmostEqual(self.hertz(x, 0.52, 0.98), 300, delta=1)
+        # Curves hold for transients, too; control points with the curve's own time are absolute.
+        x = render(event("HapticTransient", 0.6, None, 1, 0), curve("HapticIntensityControl", 0.5, (0.5, 1), (0.7, 0)))
+        self.assertAlmostEqual(self.peak(x, 0.6), 0.25, delta=0.002)
+
+    def test_ahap_tells_what_it_leaves_out(self):
+        self.write("n.ahap", ahap(event("AudioCustom", 0), event("HapticTransient", 0, None, 3, -1), curve("AudioVolumeControl", 0, (0, 1)),
+                                  curve("HapticIntensityControl", 0.5, (0.5, 1)), Metadata={}, Extra=1)[:-1] + ",} // the end")
+        r = self.ok("plan", "n.ahap", "--format", "csv").stderr
+        for word in ("'AudioCustom' is left out", "'AudioVolumeControl' is left out", "'Extra' is left out", "from the start of the file"):
+            self.assertEqual(r.count(word), 1, r)
+        self.assertNotIn("Metadata", r)
+        self.assertIn("left out", self.ok("plan", *POINT, "--waveform", "n.ahap").stdout)
+
+    def test_carriers_over_time(self):
+        self.write("c.toml", '[stroke]\npath = "M 20 20"\nduration_s = 1\nalgorithm = "continuous"\ncarrier_hz = [[0.2, 100], [0.5, 100], [0.5, 300], [0.7, 200]]\n')
+        x = self.render("c.toml")
+        for from_s, to_s, hz in ((0.01, 0.49, 100), (0.72, 0.99, 200)):
+            self.assertAlmostEqual(self.hertz(x, from_s, to_s), hz, delta=0.2)
+        self.assertAlmostEqual(self.hertz(x, 0.5, 0.7), 250, delta=3)
+        for wrong in ("[]", "[[0]]", "[[1, 100], [0, 100]]", "[[-1, 100]]", "[[0, 0]]", "[[0, 30000]]"):
+            self.write("w.toml", f'[stroke]\npath = "M 0 0 L 40 0"\ncarrier_hz = {wrong}\n')
+            self.refused(2, "render", "w.toml", "--force", "-o", "w.wav", says=["carrier_hz"])
+
+    def test_what_is_no_vibration_is_refused(self):
+        for name, text, says in (
+                ("two.haptic", haptic([(0, 1), (1, 1)], version=2), "version 2 is not supported"), ("none.haptic", '{"signals": {}}', "version"),
+                ("one.haptic", haptic([(0, 1)]), "at least two"), ("now.haptic", haptic([(0, 1), (0, 0)]), "all its times are 0"),
+                ("back.haptic", haptic([(1, 1), (0, 0)]), "ascending"), ("early.haptic", haptic([(-1, 1), (1, 0)]), "time"),
+                ("loud.haptic", haptic([(0, 2), (1, 0)]), "amplitude"), ("late.haptic", haptic([(0, 1), (1e9, 0)]), "time"),
+                ("nan.haptic", haptic([(0, math.nan), (1, 0)]), "it is not JSON"), ("deep.haptic", '{"a":' * 100, "nested"),
+                ("curves.ahap", ahap({"ParameterCurves": {}}), "ParameterCurve"), ("empty.ahap", ahap(), "no haptic event"),
+                ("time.ahap", ahap(event("HapticTransient", "soon")), "Time"), ("long.ahap", ahap(event("HapticContinuous", 0, 1e6)), "EventDuration"),
+                ("open.ahap", ahap(event("HapticContinuous", 0)), "EventDuration"), ("big.ahap", ahap(*[event("HapticTransient", 0)] * 10001), "10000 events")):
+            self.write(name, text)
+            self.refused(2, "plan", name, says=[name, says])
+            self.refused(2, "plan", *POINT, "--waveform", name, says=[name, says])
+        self.write("silent.haptic", haptic([(0, 0), (1, 0)], []))
+        self.assertEqual({b["intensity"] for b in self.plan("silent.haptic")["continuous"]["points"]}, {0})
+
+    def test_extremes_stay_under_the_level(self):
+        """Every tactor stays below the level, whatever a file says."""
+        loud = [(t / 100, 1, 1, t % 2) for t in range(100)]
+        self.write("x.haptic", haptic(loud, [(0, 1)]))
+        self.write("x.ahap", ahap(*[event("HapticContinuous", 0, 1, 9, 9)] * 20, *[event("HapticTransient", t / 100, None, 9, 9) for t in range(100)]))
+        self.write("x.tact", tact(*[effect(0, 1000, VestFront=mode("DOT_MODE", touches=[dots(0, 1000, *[(i, 1) for i in range(20)])]))] * 10))
+        for args in (("x.haptic",), ("x.ahap",), ("x.tact",), (*POINT, "--waveform", "x.haptic"), ("park2016-1", "--waveform", "x.ahap", "--texture", "length")):
+            self.ok("render", *args, "--level-dbfs", "-20", "--force", "-o", "x.wav")
+            self.assertLessEqual(max(abs(v) for f in Wav(self.dir / "x.wav").samples() for v in f), 0.1 * (1 + 1e-5), args)
 
 
 if __name__ == "__main__":

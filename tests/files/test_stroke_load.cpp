@@ -126,8 +126,8 @@ TEST_CASE("each format is told by its name, its extensions and what it writes")
         CHECK(length(tactor::load_strokes(f.write(fmt::format("b{}", k->extensions.back()), text))) == 6.0);
         CHECK(length(tactor::parse_strokes(text, "-")) == 6.0);
     }
-    CHECK(titles == "TOML CSV SVG TACT ");
-    CHECK(detail::list_stroke_formats() == "TOML, CSV, SVG or TACT");
+    CHECK(titles == "TOML CSV SVG TACT HAPTIC AHAP ");
+    CHECK(detail::list_stroke_formats() == "TOML, CSV, SVG, TACT, HAPTIC or AHAP");
     CHECK(detail::find_format_by_name("json") == nullptr);
     CHECK(detail::find_format_by_extension("a.json") == nullptr);
     CHECK(detail::find_format_by_content("{\"plans\": []}") == nullptr); // plans
@@ -145,7 +145,10 @@ TEST_CASE("what is no stroke file is named for what it is")
                            "ftypheic\0\0\0\0",
                            16);
     for (const char* name : {"a.csv", "a.svg", "a.toml", "a"})
-        CHECK(said(name, heic).find(": it is a HEIC or AVIF picture, not text (use TOML, CSV, SVG or TACT") == 0);
+        CHECK(
+            said(name, heic)
+                .find(": it is a HEIC or AVIF picture, not text (use TOML, CSV, SVG, TACT, HAPTIC or AHAP") ==
+            0);
     CHECK(said("b.csv", std::string("\1\2\0\3\4,5", 7)).find(":1:1: it is binary, not text (") == 0);
     CHECK(said("c.svg", " \n").find(": it is empty (") == 0);
     CHECK(said("d.csv", svg).find(":1:1: it is SVG, or other XML (") == 0);

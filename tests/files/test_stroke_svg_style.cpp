@@ -281,7 +281,7 @@ TEST_CASE("rules and styles that do not end, end")
 TEST_CASE("faults of an SVG file are named by line and column")
 {
     const refused_text samples[] = {
-        {"", "a.svg: it is empty (use TOML, CSV, SVG or TACT"},
+        {"", "a.svg: it is empty (use TOML, CSV, SVG, TACT, HAPTIC or AHAP"},
         {"t_s,x_mm,y_mm\n0,1,2\n", "a.svg:1:1: it is a table (CSV)"},
         {"<svg>", "a.svg:1:5: Start-end tags mismatch"},
         {"<svg>\n <g></svg>", "a.svg:2:"},

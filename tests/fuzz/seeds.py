@@ -16,6 +16,8 @@ SOURCES = {
     "stroke_csv": (["examples/strokes/*.csv"], ["files/test_stroke_csv.cpp"]),
     "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_style.cpp"]),
     "stroke_tact": (["examples/strokes/*.tact"], ["files/test_stroke_tact.cpp"]),
+    "stroke_haptic": (["examples/strokes/*.haptic"], ["files/test_vibration.cpp"]),
+    "stroke_ahap": (["examples/strokes/*.ahap"], ["files/test_vibration.cpp"]),
     "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp"]),
     "study_table": ([], ["study/test_study_files.cpp"]),
     "pcm_name": ([], ["sink/alsa/test_devices.cpp"]),

@@ -44,7 +44,7 @@ HAS_NOT = {
     "monotonic_time": "seconds, as time.monotonic() has them",
     "resolve_start_s": "Score does it for its plans",
     "parse_envelope envelope_text": "envelope and tukey_part of a Score",
-    "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",
+    "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording timed_value emphasis actuator_numbers vibration": "plan(waveform=..., am=...) read texts and files",
     "load_samples": "SciPy and others read WAV files",
     "least_noise_hz most_cycle_samples most_recording_samples most_own_bytes max_pcm_channels": "bounds, which messages say",
     "stroke_fit stroke_sound stroke_places carrier_part carrier_time carrier_point":

@@ -243,6 +243,20 @@ def test_files_are_loaded_like_by_the_tool(root):
     assert len(tactor.load(root / "examples/strokes/drawing.svg")) >= 1
 
 
+def test_files_of_other_programs_are_loaded_for_one_place_and_fill_the_array(root, palm, tmp_path):
+    file = root / "examples/strokes/swipe.tact"
+    (front,) = tactor.load(file)
+    assert "VestBack" in front.warnings[0] and front.position(0.9) == (1.0, 0.2)
+    assert [s.start for s in tactor.parse(file.read_text(), position="VestBack")] == [0.3, 0.3]
+    with pytest.raises(tactor.InputError, match="position"):
+        tactor.load(file, position="Neck")
+    (fitted,) = tactor.apply_fits([front], palm)
+    assert np.allclose(fitted.position([0.0, 0.45, 0.9]), [(0, 8), (20, 32), (40, 8)]) and fitted.intensity(0.45) == 0.5
+    assert pickle.loads(pickle.dumps(front)) == front
+    plan = tactor.plan(palm, tactor.Stroke.shape("tap"), waveform=str(root / "examples/strokes/knock.haptic"))
+    assert pickle.loads(pickle.dumps(plan)) == plan
+
+
 def test_strokes_are_fitted(palm, stroke):
     far = tactor.Stroke.along(tactor.Path.svg("M 1000 1000 L 1100 1050"), duration=1.0)
     (fitted,), placed = tactor.fit_strokes([far], palm, 2.0)

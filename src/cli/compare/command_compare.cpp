@@ -337,9 +337,9 @@ int run_compare(command_line& line)
     CLI::App& c = line.app;
     add_strokes(line);
     settings& s = add_options(line, options::on_compare);
-    c.get_option("STROKE")->description(
-        "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), file (.toml, .csv, .svg, .tact), "
-        "or - for such a file on standard input; not a plan");
+    c.get_option("STROKE")->description("preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on "
+                                        "palm-2x4), file (.toml, .csv, .svg, .tact, .haptic, .ahap), "
+                                        "or - for such a file on standard input; not a plan");
     auto* algorithms = add_text(
         c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
         [&o](const std::string& t) { o.choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });

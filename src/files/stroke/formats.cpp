@@ -18,10 +18,13 @@ extern const stroke_format toml_strokes;
 extern const stroke_format csv_strokes;
 extern const stroke_format svg_strokes;
 extern const stroke_format tact_strokes;
+extern const stroke_format haptic_strokes;
+extern const stroke_format ahap_strokes;
 
 namespace {
 
-constexpr const stroke_format* formats[] = {&toml_strokes, &csv_strokes, &svg_strokes, &tact_strokes};
+constexpr const stroke_format* formats[] = {&toml_strokes, &csv_strokes,    &svg_strokes,
+                                            &tact_strokes, &haptic_strokes, &ahap_strokes};
 
 template <class Is>
 const stroke_format* find_format(Is is)
@@ -72,6 +75,16 @@ std::vector<stroke> read_stroke_text(const stroke_format& f, const stroke_file_t
     return f.parse(s);
 }
 
+std::vector<stroke> load_stroke_file(const std::filesystem::path& file, double intensity_max,
+                                     std::string_view position, const actuator_numbers* actuator)
+{
+    const whole_text text = read_text_file(file, max_stroke_bytes);
+    const std::string name = file.string();
+    const std::filesystem::path folder = file.parent_path();
+    return read_stroke_text(*find_stroke_format(text, file),
+                            {text, name, intensity_max, &folder, position, actuator});
+}
+
 std::string list_stroke_formats()
 {
     std::string all;
@@ -99,11 +112,7 @@ std::vector<stroke> parse_strokes(std::string_view text, const std::string& name
 std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max,
                                  std::string_view position)
 {
-    const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
-    const std::string name = file.string();
-    const std::filesystem::path folder = file.parent_path();
-    return detail::read_stroke_text(*detail::find_stroke_format(text, file),
-                                    {text, name, intensity_max, &folder, position});
+    return detail::load_stroke_file(file, intensity_max, position, nullptr);
 }
 
 std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max,

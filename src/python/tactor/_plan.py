@@ -477,13 +477,13 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
         Frequency of the vibration (default 250). 1 to 384000 Hz.
     waveform : str
         Shape at the carrier's frequency, noise between two frequencies, or recording (default sine). As
-        "sine|square|triangle|sawtooth|noise:LO-HI|FILE.wav".
+        "sine|square|triangle|sawtooth|noise:LO-HI|FILE".
     am : float or str
         Amplitude modulation, depth 0 to 1 (default: none; depth 1). As "HZ[:DEPTH]".
     noise_seed : int
         noise: seed of its samples (default 1). 0 to 9007199254740992.
     texture : str
-        FILE.wav: play it as the carrier's cycle (default), at its own rate, or along the path. One of "cycle", "time", "length".
+        FILE: play it as the carrier's cycle (default), at its own rate, or along the path. One of "cycle", "time", "length".
     texture_mm : float
         texture="length": length of path for the whole file (default: the whole path). 0 to 1000000 mm.
     phase : str

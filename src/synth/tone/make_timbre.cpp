@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
+#include "core/vibration.hpp"
 #include "core/words.hpp"
 #include "synth/wave/oscillator.hpp"
 
@@ -332,6 +334,81 @@ wave_samples recorded_loop(const recording& r, unsigned rate)
     return x;
 }
 
+/// Returns a wave with all its harmonics, for the few cycles of an emphasis. Each begins where it crosses
+/// zero upwards.
+double plain_wave(waveform_kind shape, double turns)
+{
+    const double cycle = turns - std::floor(turns);
+    switch (shape) {
+    case waveform_kind::square:
+        return cycle < 0.5 ? 1.0 : -1.0;
+    case waveform_kind::triangle:
+        return 1.0 - std::abs(2.0 - std::abs(3.0 - 4.0 * cycle));
+    case waveform_kind::sawtooth:
+        return 2.0 * (cycle < 0.5 ? cycle : cycle - 1.0);
+    case waveform_kind::sine:
+    case waveform_kind::noise:
+    case waveform_kind::recording:
+        break;
+    }
+    return sincos_turns(turns).sin;
+}
+
+/// Returns a vibration at the rate of the stream. Without a course it takes its own time; with one, the
+/// course is the rate, in vibrations a second, at which it is passed through for `frames`.
+wave_samples vibration_loop(const vibration& v, const std::vector<carrier_point>& course, std::size_t frames,
+                            unsigned rate)
+{
+    wave_samples loop(frames);
+    double turns = 0.0;  // of the carrier
+    double rounds = 0.0; // at the begin of the stretch of the course
+    std::size_t stretch = 0;
+    double before = 0.0;
+    std::optional<std::size_t> sounding;
+    std::size_t since = 0; // first frame of the emphasis
+    float peak = 1.0F;
+    for (std::size_t n = 0; n < frames; ++n) {
+        const double t_s = static_cast<double>(n) / rate;
+        double at_s = t_s;
+        if (!course.empty()) {
+            while (stretch + 1 < course.size() && course[stretch + 1].t_s <= t_s) {
+                rounds += course[stretch].hz * (course[stretch + 1].t_s - course[stretch].t_s);
+                ++stretch;
+            }
+            const double part = rounds + course[stretch].hz * (t_s - course[stretch].t_s);
+            // The path's end is the vibration's end, not its start.
+            at_s = v.duration_s * (part <= 1.0 + 1e-9 ? std::min(part, 1.0) : part - std::floor(part));
+        }
+        const std::optional<std::size_t> now = detail::last_emphasis(v, at_s);
+        if (now != sounding || at_s < before) {
+            sounding = now;
+            since = n;
+        }
+        before = at_s;
+        const double age_s = static_cast<double>(n - since) / rate;
+        const bool stands_out = sounding && age_s < detail::emphasis_s(v, *sounding);
+        const double hz =
+            detail::carrier_hz(v.actuator, detail::value_at(v.frequency, at_s, detail::usual_frequency));
+        double x = v.actuator.gain * detail::value_at(v.amplitude, at_s, 1.0) * sincos_turns(turns).sin;
+        if (stands_out) {
+            const emphasis& e = v.emphases[*sounding];
+            const double own = age_s * detail::emphasis_hz(v.actuator, e.frequency);
+            const double fade = 1.0 - v.actuator.fade_out * age_s / detail::emphasis_s(v, *sounding);
+            x = v.actuator.ducking * x + v.actuator.emphasis_gain * e.amplitude * fade *
+                                             std::lerp(plain_wave(v.actuator.emphasis_low_wave, own),
+                                                       plain_wave(v.actuator.emphasis_high_wave, own),
+                                                       e.frequency);
+        }
+        loop[n] = static_cast<float>(x);
+        peak = std::max(peak, std::abs(loop[n]));
+        turns += hz / rate;
+        turns -= std::floor(turns);
+    }
+    for (float& x : loop)
+        x /= peak; // an emphasis and the vibration together may exceed 1
+    return loop;
+}
+
 /// Returns twice the mean square, but at least 1.
 double wave_power(const wave_samples& x) noexcept
 {
@@ -435,9 +512,8 @@ void refuse_displacement(const timbre& t, const plan& p)
     }
 }
 
-void check_length(const recording& r, unsigned rate)
+void check_length(double frames, const recording& r, unsigned rate)
 {
-    const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
     if (frames > most_loop_frames) {
         throw error(
             error_kind::bad_input, recording_name(r),
@@ -469,12 +545,26 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
     const waveform& w = p.wave;
     const double am_hz = p.am.depth > 0.0 ? p.am.hz : 0.0;
     const bool timed = w.kind == waveform_kind::recording && w.texture == texture_kind::time;
-    if (w.kind == waveform_kind::noise) {
+    if (w.kind == waveform_kind::recording && w.recorded->source) {
+        const vibration& v = *w.recorded->source;
+        const actuator_numbers& a = v.actuator;
+        const bool in_time = w.texture != texture_kind::length || p.course.empty();
+        check_free_place("waveform", std::max({a.low_hz, a.high_hz, a.emphasis_low_hz, a.emphasis_high_hz}),
+                         am_hz, rate);
+        const double frames = std::ceil((in_time ? v.duration_s : p.total_s) * rate);
+        check_length(frames, *w.recorded, rate);
+        t.form = timbre::form_kind::loop;
+        t.course.clear();
+        t.samples = std::make_shared<const wave_samples>(
+            vibration_loop(v, in_time ? std::vector<carrier_point>() : p.course,
+                           static_cast<std::size_t>(std::max(frames, 2.0)), rate));
+    } else if (w.kind == waveform_kind::noise) {
         check_free_place("waveform", w.high_hz, am_hz, rate);
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(noise_loop(w.low_hz, w.high_hz, w.seed, rate));
     } else if (timed) {
-        check_length(*w.recorded, rate);
+        check_length(static_cast<double>(w.recorded->samples.size()) * rate / w.recorded->rate_hz,
+                     *w.recorded, rate);
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(recorded_loop(*w.recorded, rate));
     } else {

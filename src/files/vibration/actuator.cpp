@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// The numbers of an actuator: the table [texture], and actuator files (ACF), which are JSON5.
+#include "files/vibration_file.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
+#include "core/bounds.hpp"
+#include "core/suggest.hpp"
+#include "files/json/json_value.hpp"
+#include "files/text_file.hpp"
+
+namespace tactor::detail {
+namespace {
+
+using files::json_value;
+
+constexpr bounds emphasis_times_s{0.0, 1.0, true};
+constexpr bounds emphasis_times_ms{0.0, 1000.0, true};
+
+struct actuator_key {
+    std::string_view name;
+    bounds range;
+    double actuator_numbers::*number;
+};
+
+constexpr std::array actuator_keys{
+    actuator_key{"gain", bounds_of::part, &actuator_numbers::gain},
+    actuator_key{"ducking", bounds_of::part, &actuator_numbers::ducking},
+    actuator_key{"low_hz", bounds_of::carrier_hz, &actuator_numbers::low_hz},
+    actuator_key{"high_hz", bounds_of::carrier_hz, &actuator_numbers::high_hz},
+    actuator_key{"emphasis_low_hz", bounds_of::carrier_hz, &actuator_numbers::emphasis_low_hz},
+    actuator_key{"emphasis_high_hz", bounds_of::carrier_hz, &actuator_numbers::emphasis_high_hz},
+    actuator_key{"emphasis_low_s", emphasis_times_s, &actuator_numbers::emphasis_low_s},
+    actuator_key{"emphasis_high_s", emphasis_times_s, &actuator_numbers::emphasis_high_s}};
+
+waveform_kind read_shape(const json_value& v)
+{
+    constexpr std::array<std::string_view, 4> names{"sine", "square", "triangle", "saw"};
+    constexpr std::array kinds{waveform_kind::sine, waveform_kind::square, waveform_kind::triangle,
+                               waveform_kind::sawtooth};
+    const std::string name = v.need_text();
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (name == names[i])
+            return kinds[i];
+    v.refuse(fmt::format("{} is unknown", detail::quoted(name)), choice_hint(name, names));
+}
+
+actuator_numbers read_actuator_file(const std::filesystem::path& file)
+{
+    const std::string name = file.string();
+    const auto document = files::read_foreign_object(read_text_file(file, max_setup_bytes), name, true);
+    const json_value root(document, name, "give an actuator file (ACF)");
+    actuator_numbers a;
+    const json_value c = root["continuous"];
+    const json_value e = root["emphasis"];
+    a.gain = c["gain"].need_number(bounds_of::part);
+    a.ducking = c["emphasis_ducking"].need_number(bounds_of::part);
+    a.low_hz = c["frequency_min"].need_number(bounds_of::carrier_hz);
+    a.high_hz = c["frequency_max"].need_number(bounds_of::carrier_hz);
+    a.emphasis_gain = e["gain"].need_number(bounds_of::part);
+    a.fade_out = e["fade_out_percent"].need_number(bounds_of::part);
+    const json_value low = e["frequency_min"];
+    const json_value high = e["frequency_max"];
+    a.emphasis_low_hz = low["output_frequency"].need_number(bounds_of::carrier_hz);
+    a.emphasis_high_hz = high["output_frequency"].need_number(bounds_of::carrier_hz);
+    a.emphasis_low_s = low["duration_ms"].need_number(emphasis_times_ms) / 1e3;
+    a.emphasis_high_s = high["duration_ms"].need_number(emphasis_times_ms) / 1e3;
+    a.emphasis_low_wave = read_shape(low["shape"]);
+    a.emphasis_high_wave = read_shape(high["shape"]);
+    return a;
+}
+
+} // namespace
+
+actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& folder)
+{
+    std::vector<std::string_view> known{"acf"};
+    for (const actuator_key& k : actuator_keys)
+        known.push_back(k.name);
+    t.only(known);
+    actuator_numbers a;
+    if (const auto file = t.text("acf"))
+        a = t.at_key("acf", [&] { return read_actuator_file(folder / *file); });
+    for (const actuator_key& k : actuator_keys)
+        a.*k.number = t.number(k.name, k.range).value_or(a.*k.number);
+    return a;
+}
+
+} // namespace tactor::detail

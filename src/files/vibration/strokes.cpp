@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Vibrations of files as recordings, and as strokes that rest.
+#include "files/vibration_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/sha256.hpp"
+#include "core/vibration.hpp"
+#include "core/words.hpp"
+#include "files/text_file.hpp"
+
+namespace tactor::detail {
+namespace {
+
+/// Time in which a step of the envelope happens: points of a stroke ascend.
+constexpr double step_s = 1e-6;
+
+// Returns a stroke that rests in the middle of the array.
+stroke rest_in_middle(std::vector<timed_point> points, double start_s)
+{
+    return {.motion = trajectory::timed(std::move(points)),
+            .start_s = start_s,
+            .fit = stroke_fit{},
+            .choices = {.algorithm = algorithm_kind::continuous}};
+}
+
+// Returns the envelope with the ducking of each emphasis.
+std::vector<timed_point> make_envelope(const vibration& v)
+{
+    std::vector<double> times{0.0, v.duration_s};
+    const auto add = [&](double t_s) {
+        for (const double t : {t_s - step_s, t_s})
+            if (t > 0.0 && t < v.duration_s)
+                times.push_back(t);
+    };
+    for (const timed_value& p : v.amplitude)
+        add(p.t_s);
+    for (std::size_t i = 0; i < v.emphases.size(); ++i) {
+        add(v.emphases[i].t_s);
+        add(emphasis_end_s(v, i));
+    }
+    std::sort(times.begin(), times.end());
+    std::vector<timed_point> points;
+    for (const double t : times)
+        if (points.empty() || t - points.back().t_s >= 0.5 * step_s) {
+            const auto i = find_emphasis(v, t);
+            points.push_back(
+                {t, {}, v.actuator.gain * value_at(v.amplitude, t, 1.0) * (i ? v.actuator.ducking : 1.0)});
+        }
+    points.back().t_s = v.duration_s;
+    return points;
+}
+
+} // namespace
+
+bool names_vibration(const std::filesystem::path& file)
+{
+    const std::string extension = in_small_letters(file.extension().string());
+    return extension == ".haptic" || extension == ".ahap";
+}
+
+recording load_vibration(const std::filesystem::path& file)
+{
+    const whole_text text = read_text_file(file, max_stroke_bytes);
+    const bool haptic = in_small_letters(file.extension().string()) == ".haptic";
+    const std::string name = file.string();
+    return {.file = name,
+            .sha256 = sha256_text(text),
+            .source = haptic ? read_haptic(text, name) : read_ahap(text, name)};
+}
+
+std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string& name)
+{
+    stroke envelope = rest_in_middle(make_envelope(v), 0.0);
+    for (const timed_value& p : v.frequency)
+        envelope.sound.carrier_times.push_back({p.t_s, carrier_hz(v.actuator, p.value)});
+    if (v.frequency.empty())
+        envelope.sound.carrier_hz = carrier_hz(v.actuator, usual_frequency);
+    std::vector<stroke> all;
+    const bool sounds = std::any_of(v.amplitude.begin(), v.amplitude.end(),
+                                    [](const timed_value& p) { return p.value > 0.0; });
+    if (sounds || v.emphases.empty())
+        all.push_back(std::move(envelope));
+    for (std::size_t i = 0; i < v.emphases.size(); ++i) {
+        const emphasis& e = v.emphases[i];
+        const double lasts_s = emphasis_end_s(v, i) - e.t_s;
+        const double shares[] = {1.0 - e.frequency, e.frequency};
+        const waveform_kind kinds[] = {v.actuator.emphasis_low_wave, v.actuator.emphasis_high_wave};
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double strength = v.actuator.emphasis_gain * e.amplitude *
+                                    (kinds[0] != kinds[1] ? shares[k]
+                                     : k == 0             ? 1.0
+                                                          : 0.0);
+            if (!(strength > 0.0 && lasts_s > step_s))
+                continue;
+            const double end = strength * (1.0 - v.actuator.fade_out * lasts_s / emphasis_s(v, i));
+            all.push_back(rest_in_middle({{0.0, {}, strength}, {lasts_s, {}, end}}, e.t_s));
+            all.back().sound.carrier_hz = emphasis_hz(v.actuator, e.frequency);
+            all.back().sound.wave = waveform{.kind = kinds[k]};
+        }
+    }
+    if (all.empty())
+        all.push_back(std::move(envelope));
+    const std::string called = stem(name);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i].name = all.size() == 1 ? called : fmt::format("{}-{}", called, i + 1);
+    all.front().warnings = v.notes;
+    return all;
+}
+
+} // namespace tactor::detail
