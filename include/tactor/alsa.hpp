@@ -71,7 +71,7 @@ struct count_range {
 
 /// Abilities of a PCM, each considered alone: some devices do not support every combination.
 struct pcm_abilities {
-    /// Channel counts, ascending, as ranges without gaps. A range that ends at 1024 may extend beyond 1024.
+    /// Channel counts, ascending, as ranges without gaps. Counts above max_pcm_channels are not tested.
     std::vector<count_range> channels = {};
     count_range rates_hz = {};
     std::vector<unsigned> usual_rates_hz = {}; ///< supported rates, of the usual ones from 8 to 768 kHz
@@ -111,9 +111,9 @@ struct pcm_info {
 /// is disturbed.
 ///
 /// With `wanted`, the list also says which PCMs support exactly the channels, rate and format of `wanted`, as
-/// open_alsa() would request them. The wanted PCM is in the list even if ALSA does not list it. If a PCM
-/// cannot be opened, the list gives the reason, even if ALSA cannot read its configuration. Blocks for some
-/// milliseconds. Any thread may call this, but only one at a time.
+/// open_alsa() would request them. If neither a card nor the configuration lists the wanted PCM, the function
+/// adds that PCM. If a PCM cannot be opened, the list gives the reason, even if ALSA cannot read its
+/// configuration. Blocks for some milliseconds. Any thread may call this, but only one at a time.
 /// \throws error (bad_input) for numbers in `wanted` that no PCM can have.
 /// \throws error (runtime) if the process has no descriptors left; so do all functions below.
 [[nodiscard]] TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});

@@ -100,8 +100,8 @@ struct fitting {
     point to = {};
     double scale = 1.0;
     double margin_mm = 0.0;
-    /// Unit vector along an array whose tactors are in one line. The picture keeps only its extent along this
-    /// line.
+    /// Unit vector along the array if all tactors lie in one line. operator() then projects the picture onto
+    /// this line.
     std::optional<point> line = {};
 
     /// Returns the new place of a point of the picture.
@@ -129,8 +129,8 @@ struct fitted_strokes {
 /// of the array, as in fit_strokes(strokes, layout(a)).
 ///
 /// If all tactors lie in one line, within a tenth of their pitch, that line is the array. The picture is then
-/// fitted by its extent along the line, and loses its extent across the line. A picture without extent (a
-/// timed stroke that rests) moves to the middle.
+/// projected onto the line, and fitted by its extent along the line. A picture without extent (a timed stroke
+/// that rests) moves to the middle.
 ///
 /// Strokes with a speed (stroke::speed_mm_s) keep that speed. The other strokes keep their duration, whatever
 /// their new length is. Starts, intensities and carriers do not change. A pure function; any thread. O(n log

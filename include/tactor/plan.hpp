@@ -150,7 +150,7 @@ public:
     /// Returns the time of sample k: k steps, at most the duration.
     [[nodiscard]] double time_s(std::uint64_t k) const noexcept;
 
-    /// Replaces `out` by sample k as a burst without duration. If k is size() or more, uses the last sample.
+    /// Replaces `out` by sample k as a burst without duration, or by the last sample if k is size() or more.
     void sample(std::uint64_t k, burst& out) const;
     /// Replaces `out` by the values at a time, which is clamped to 0 ... duration_s. Interpolates linearly
     /// between the neighbouring samples.

@@ -186,7 +186,7 @@ public:
     /// In a continuous stroke, the weights change from those of the last point to those of this point. The
     /// change begins with the next period that is written and takes one period, but at least
     /// continuous_step_s. The delay of the buffer adds to this time. In a stroke of bursts, the next burst
-    /// has this place; it starts at most one SOA later. With live_options::smooth_s, both kinds of stroke
+    /// plays at the new place, and starts within one SOA. With live_options::smooth_s, both kinds of stroke
     /// only begin to move to the point at these times.
     ///
     /// `at` is the time of the touch, from which stroke_report::delay counts. None: now. `at` does not change
@@ -497,8 +497,8 @@ public:
     [[nodiscard]] std::vector<double> drive_levels_s() const;
     /// Returns why the drive time may be incomplete; empty if it is complete. If the file of drive times
     /// cannot be written, the next run does not know the drive time of this run. If the file cannot be read
-    /// as a whole, or another program keeps it locked for 0.2 s, each tactor counts as driven for as long as
-    /// allowed. Keeps the first reason, which player_options::log also receives.
+    /// as a whole, or another program keeps it locked for 0.2 s, the drive time of each tactor begins at
+    /// drive_limits::max_drive_s. Keeps the first reason, which player_options::log also receives.
     [[nodiscard]] std::string drive_time_doubt() const;
     [[nodiscard]] player_stats stats() const;
 

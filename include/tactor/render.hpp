@@ -124,10 +124,11 @@ public:
     score(const array& a, Plan p, const render_options& o = {}) : score(a, alone(std::move(p)), o)
     {
     }
-    /// Makes a score of your own samples, which play exactly as they are, from frame 0 on. Neither gain_db,
-    /// polarity and rise_s of the tactors nor phase, ramp and envelope of `o` change the samples; only limits
-    /// do. A format of fewer bits rounds the samples; a negative zero becomes zero. A channel without a
-    /// tactor plays, too, up to full scale. The whole score counts as one stroke.
+    /// Makes a score of your own samples, which play exactly as they are, from frame 0 on. gain_db, polarity
+    /// and rise_s of the tactors have no effect on the samples. The same is true of phase, ramp and envelope
+    /// of `o`. Only limits can change the samples. A format of fewer bits rounds the samples; a negative zero
+    /// becomes zero. A channel without a tactor plays, too, up to full scale. The whole score counts as one
+    /// stroke.
     ///
     /// For the limits on power and drive time, the envelope of a channel comes from its samples within the 10
     /// to 20 ms before and after. It is their peak or, if that is greater, the amplitude of a sine with their

@@ -86,21 +86,21 @@ public:
     /// Makes a touch that rests at (0, 0) mm for a second.
     trajectory();
 
-    /// Moves along a path at constant speed for `duration_s`. If the path is a single place, the touch rests
-    /// there.
+    /// Makes a touch that moves along a path at constant speed for `duration_s`. If the path is a single
+    /// place, the touch rests there.
     /// \throws error (bad_input) unless 0 < duration_s <= 86400.
     [[nodiscard]] static trajectory along(path p, double duration_s, double intensity = 1.0);
 
-    /// Moves along a path as `m` describes: in the duration of `m`, or else at its speeds. Without a duration
-    /// and speeds, the speed is default_speed_mm_s.
+    /// Makes a touch that moves along a path as `m` describes. If `m` has no duration, the duration follows
+    /// from the speeds of `m`. If `m` has no speeds either, the speed is default_speed_mm_s.
     /// \throws error (bad_input) for parts that do not ascend from 0 to 1, speeds that are not above 0, and
     ///         rests that take the whole duration or more.
     /// \throws error (bad_input) for a path that is a single place if `m` has no duration, or has rests or an
     ///         intensity profile.
     [[nodiscard]] static trajectory along(path p, const movement& m, double intensity = 1.0);
 
-    /// Moves linearly between timed points: at least two, times strictly ascending from 0, all numbers
-    /// finite.
+    /// Makes a touch that moves linearly between timed points: at least two, times strictly ascending from
+    /// 0, all numbers finite.
     /// \throws error (bad_input) that names the point, counted from 1.
     [[nodiscard]] static trajectory timed(std::vector<timed_point> points);
 
@@ -128,7 +128,7 @@ public:
     [[nodiscard]] trajectory with_intensity(double factor) const;
 
     /// Returns the times, ascending, at which the target meets the line x = x_mm (or y = y_mm), as
-    /// path::meets_x() defines it. A target that rests on the line meets it when it arrives.
+    /// path::meets_x() defines it. If the target rests on the line, the result is the time of its arrival.
     [[nodiscard]] std::vector<double> meets_x(double x_mm) const;
     [[nodiscard]] std::vector<double> meets_y(double y_mm) const;
 
@@ -249,8 +249,8 @@ struct stroke {
 /// `intensity_max`, here and below, is the number that means intensity 1 in CSV and in timed points of TOML,
 /// such as 255. Greater numbers are refused.
 ///
-/// `position`, here and below, is the place on the body whose touches are read from a format that has several.
-/// Empty: the first place, with a warning that names the others.
+/// `position`, here and below, is the place on the body whose touches are read from a format that has
+/// several. Empty: the first place, with a warning that names the others.
 /// \throws error (bad_input) with file, line and column.
 [[nodiscard]] TACTOR_API std::vector<stroke>
 load_strokes(const std::filesystem::path& file, double intensity_max = 1.0, std::string_view position = {});

@@ -148,8 +148,8 @@ class Score(_Value):
         Returns
         -------
         Score
-            Without plans. No gain_db, polarity or rise of a tactor changes it; limits do. A channel without a tactor plays, too, up to
-            full scale.
+            Without plans. gain_db, polarity and rise_s of the tactors have no effect on the samples; limits do. A channel without a
+            tactor plays, too, up to full scale.
 
         Raises
         ------
