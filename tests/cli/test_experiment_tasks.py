@@ -8,8 +8,8 @@ import random
 import re
 import statistics
 
+from experiments import DESK, ExperimentTest, contents  # before error_rates, whose folder it adds to the path
 import error_rates
-from experiments import DESK, ExperimentTest, contents
 from harness import ROOT, main
 from pictures import Svg
 from studies import measures, toml

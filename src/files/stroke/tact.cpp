@@ -273,12 +273,11 @@ private:
     static point place(const json_value& p)
     {
         const auto coordinate = [&p](const char* name) {
-            constexpr double rounding = 1e-3;
+            constexpr double rounding = 1e-3 + 1e-9;
             const double v = p[name].need_number({-max_mm, max_mm}, true);
-            for (const double third : {1.0 / 3.0, 2.0 / 3.0})
-                if (std::abs(v - third) <= rounding)
-                    return third;
-            return v;
+            return std::abs(v - 0.333) <= rounding   ? 1.0 / 3.0
+                   : std::abs(v - 0.667) <= rounding ? 2.0 / 3.0
+                                                     : v;
         };
         return {coordinate("x"), coordinate("y")};
     }
