@@ -155,7 +155,7 @@ class Options(ToolTest):
         part = re.search(r"^\.Ss Methods\n(.*?)^\.Ss ", page, re.M | re.S)[1]
         keys = {key.replace("_", "-") for line in re.findall(r"^\.It Cm (.*)$", part, re.M) for key in line.split(" , ")}
         by_method = {name for name in self.every() if "[[method]]" in self.about(name)}
-        self.assertEqual(keys - {"name", "preset", "path", "file", "intensity-max"}, by_method)
+        self.assertEqual(keys - {"name", "preset", "path", "file", "intensity-max", "position"}, by_method)
         clients = {name for name in self.every() if "JSON-RPC" in self.about(name)}
         self.assertEqual(clients - by_method, set(NO_METHOD))
 
