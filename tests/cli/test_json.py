@@ -30,7 +30,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "weakened_db", "meets", "render.together", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova", "runs{}.methods", "runs{}.sessions"}}
+            "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova", "runs{}.methods", "runs{}.sessions", "runs{}.time_order"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
