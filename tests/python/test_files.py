@@ -162,7 +162,7 @@ def test_keys_that_no_plan_has_are_refused(palm, stroke, tmp_path, keys, hint):
 
 
 def test_strokes_are_saved_in_every_format_as_the_tool_converts_them(tool, tmp_path, palm, stroke):
-    two = [stroke, tactor.Stroke.timed([0, 0.5, 1], [0, 20, 40], [0, 40, 0], name="timed", start=0.25)]
+    two = [stroke, tactor.Stroke.timed([0, 0.3, 1], [0, 20, 40], [0, 40, 0], name="timed", start=0.25)]
     tactor.save(two, tmp_path / "two.toml")
     assert [(s.name, s.start) for s in tactor.load(tmp_path / "two.toml")] == [(s.name, s.start) for s in two]
     with pytest.warns(UserWarning, match="SVG cannot hold the exact movement .* of stroke 2"):
