@@ -91,6 +91,8 @@ struct peer_handlers {
     /// Lines: called before the connection closes for any fault but `gone`; send() still works.
     std::function<void(connection_fault)> fault = {};
 
+    /// Browsers: true if a WebSocket need not send a first message.
+    bool may_only_read = false;
     /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
     /// Bearer".
     std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get = {};

@@ -137,6 +137,17 @@ rpc_message refused(rpc_refusal why, const json& batch)
 
 } // namespace
 
+std::optional<json> parse_json(std::string_view text, std::size_t most_nesting)
+{
+    parsed_text p;
+    try {
+        parse(p, text, most_nesting);
+    } catch (const json::exception&) {
+        return {};
+    }
+    return p.too_deep ? std::nullopt : std::optional(std::move(p.value));
+}
+
 rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
 {
     const auto too_deep = [&] {

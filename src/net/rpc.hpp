@@ -63,6 +63,9 @@ struct rpc_message {
     bool has_stop = false; ///< the refused message contains a stop, which is obeyed
 };
 
+/// Parses JSON; nothing for another text, and for one that nests deeper.
+std::optional<json> parse_json(std::string_view text, std::size_t most_nesting);
+
 /// Parses a message: a request, or a batch of at most 64. Never throws because of the text: faults are in the
 /// parts. A stop is accepted in any form: with any params, id and version.
 rpc_message parse_rpc(std::string_view text, std::size_t most_nesting = 64);

@@ -58,7 +58,8 @@ class web_connection final : public connection {
 public:
     using socket_type = asio::ip::tcp::socket;
 
-    web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts);
+    web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts,
+                   std::string_view socket_path);
 
     void finish() override;
     /// Closes with status 1008.
@@ -80,6 +81,7 @@ private:
     void say_farewell() override;
 
     std::vector<std::string> allowed_;
+    std::string_view socket_path_;
     std::string local_;
     socket_type socket_;
     asio::steady_timer later_; ///< delays a reply
@@ -93,9 +95,11 @@ private:
     bool is_reading_ = false; ///< a part of a message is being read
 };
 
-web_connection::web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts)
+web_connection::web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts,
+                               std::string_view socket_path)
     : connection(s.get_executor(), l),
       allowed_(std::move(hosts)),
+      socket_path_(socket_path),
       local_(local_address(s.native_handle())),
       socket_(std::move(s)),
       later_(socket_.get_executor())
@@ -151,9 +155,9 @@ void web_connection::answer_request()
         return respond({405, "text/plain", "only GET and HEAD\n", ""});
     if (parser_.chunked() || parser_.content_length().value_or(0) > 0)
         return respond({413, "text/plain", "too much\n", ""});
-    if (to.path == "/rpc" && websocket::is_upgrade(request))
+    if (to.path == socket_path_ && websocket::is_upgrade(request))
         return upgrade();
-    if (to.path == "/rpc")
+    if (to.path == socket_path_)
         return respond({426, "text/plain", "a WebSocket\n", ""});
     respond(calls().get(to.path, to.host, bearer_token(view(request[http::field::authorization]))));
 }
@@ -224,7 +228,8 @@ void web_connection::upgrade()
         if (e)
             return close();
         buffer_.consume(buffer_.size());
-        arm(limits().message_s);
+        if (!calls().may_only_read)
+            arm(limits().message_s);
         may_write(true);
         read();
         write_on();
@@ -338,7 +343,8 @@ void web_connection::shut()
 
 std::shared_ptr<connection> connect_browser(asio::io_context& io,
                                             asio::generic::stream_protocol::socket accepted,
-                                            const message_limits& l, std::vector<std::string> allowed_hosts)
+                                            const message_limits& l, std::vector<std::string> allowed_hosts,
+                                            std::string_view socket_path)
 {
     boost::system::error_code failed;
     const bool old = accepted.local_endpoint(failed).protocol().family() == AF_INET;
@@ -352,7 +358,7 @@ std::shared_ptr<connection> connect_browser(asio::io_context& io,
         return nullptr;
     }
     stream.set_option(asio::ip::tcp::no_delay(true), failed);
-    return std::make_shared<web_connection>(std::move(stream), l, std::move(allowed_hosts));
+    return std::make_shared<web_connection>(std::move(stream), l, std::move(allowed_hosts), socket_path);
 }
 
 web_reply make_page(const page_document& document, std::string_view host)

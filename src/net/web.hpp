@@ -24,9 +24,11 @@ namespace tactor::net {
 
 /// Makes a connection of an accepted socket, which then sends small messages without delay. Returns null if
 /// the peer is gone. The connection runs in the context's thread. `allowed_hosts`: as in host_is_ours().
+/// `socket_path`: path of the WebSocket, a literal.
 std::shared_ptr<connection> connect_browser(boost::asio::io_context& io,
                                             boost::asio::generic::stream_protocol::socket accepted,
-                                            const message_limits& l, std::vector<std::string> allowed_hosts);
+                                            const message_limits& l, std::vector<std::string> allowed_hosts,
+                                            std::string_view socket_path = "/rpc");
 
 /// A document for browsers, made by bundle.py. Its texts are never freed.
 struct page_document {

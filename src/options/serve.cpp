@@ -136,6 +136,7 @@ const std::array keys{
     key{"tcp", &serve_settings::tcp, {}, read_address},
     key{"osc", &serve_settings::osc, {}, read_address},
     key{"http", &serve_settings::http, {}, read_address},
+    key{"bhaptics", &serve_settings::bhaptics, {}, read_address},
     key{"token_file", &serve_settings::token_file},
     key{"allow_hosts", &serve_settings::allow_hosts, {}, read_host},
     key{"osc_peers", &serve_settings::osc_peers, {}, read_prefix},

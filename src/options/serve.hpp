@@ -31,9 +31,10 @@ struct serve_limits {
 /// Addresses and limits of a service. An absent value is the service's default.
 struct serve_settings {
     std::optional<std::string> socket = {}; ///< path of the Unix socket
-    std::optional<std::string> tcp = {};    ///< "[HOST:]PORT", as for osc and http
+    std::optional<std::string> tcp = {};    ///< "[HOST:]PORT", as for the next three
     std::optional<std::string> osc = {};
     std::optional<std::string> http = {};
+    std::optional<std::string> bhaptics = {};
     std::optional<std::string> token_file = {};
     std::vector<std::string> allow_hosts = {};
     std::vector<std::string> osc_peers = {};

@@ -107,13 +107,14 @@ void client_list::send_levels(client_number number)
 client& client_list::add(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
     const bool is_local = k == client_kind::local;
+    const bool has_token = k == client_kind::network || k == client_kind::web;
     // The origin of a WebSocket was checked, and datagrams come only from accepted peers.
     client c{.number = ++last_,
              .link = std::move(link),
              .kind = k,
              .from = is_local ? "this computer" : std::move(from),
              .greeted = k != client_kind::network,
-             .admitted = is_local || k == client_kind::datagram || options_.token.empty(),
+             .admitted = !has_token || options_.token.empty(),
              .levels_timer = boost::asio::steady_timer(io_)};
     return *all_.emplace(last_, std::make_unique<client>(std::move(c))).first->second;
 }

@@ -54,7 +54,13 @@ struct allowance {
 using client_link = net::peer;
 
 /// Kind of connection of a client.
-enum class client_kind { local, network, web, datagram };
+enum class client_kind {
+    local,
+    network,
+    web,
+    datagram,
+    bhaptics, ///< a program whose protocol has no token
+};
 
 /// A client, and counts of what it has requested.
 struct client {

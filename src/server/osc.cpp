@@ -22,6 +22,7 @@
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "net/access.hpp"
+#include "server/bhaptics.hpp"
 #include "server/faults.hpp"
 #include "session/live_remarks.hpp"
 
@@ -240,6 +241,8 @@ double find_intensity_max(const net::json& params)
     return v.is_number() ? v.get<double>() : 1.0;
 }
 
+constexpr std::string_view avatar_root = "/avatar/";
+constexpr double longest_touch_s = 10.0; // VRChat sends only changes
 constexpr double silent_dbfs = -200.0;
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::size_t most_words = 1000; // longest text of an error, bytes
@@ -322,6 +325,8 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     if (is_servers_own(m.address))
         return;
     try {
+        if (m.address.starts_with(avatar_root))
+            return touch(m, from);
         if (!m.fault.empty() && m.address != osc_stop) // a stop is valid with any values
             bad_param("values", m.fault, "send an address, types and values, as OSC 1.0 requires");
         osc_request r = read_osc(m);
@@ -336,6 +341,34 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     } catch (...) {
         refuse(from, m.address, net::fault_text(current_fault("values")));
     }
+}
+
+// Handles a touch of an avatar of VRChat: 0 and false end it, other values are its intensity. VRChat sends
+// all other values of the avatar, too, and expects no answer.
+void osc_clients::touch(const osc_message& m, const endpoint& from)
+{
+    const std::optional<vrchat_motor> motor = read_vrchat(m.address, service_.tactors());
+    value_list v(m);
+    if (!motor || !m.fault.empty() || !v.has_more())
+        return;
+    const auto is_drawn = [&] {
+        const sender* const s = find(from);
+        return s != nullptr && s->drawn_as.contains(motor->number);
+    };
+    if (v.released()) {
+        if (is_drawn())
+            move({.method = "end", .number = motor->number}, from);
+        return;
+    }
+    const double intensity = v.next_is_number() ? std::clamp(v.number("intensity"), 0.0, 1.0) : 1.0;
+    if (!is_drawn())
+        draw({.method = "begin", .params = {{"timeout_s", longest_touch_s}}, .number = motor->number}, {},
+             from);
+    if (is_drawn()) // not if the service refused the stroke
+        move({.method = "to",
+              .params = {{"x_mm", motor->place.x_mm}, {"y_mm", motor->place.y_mm}, {"intensity", intensity}},
+              .number = motor->number},
+             from);
 }
 
 // Reads the clocks for a packet. Keeps their offset unless it has changed, so that messages for the same

@@ -111,6 +111,7 @@ private:
     };
 
     void take(const net::osc_message& m, const endpoint& from);
+    void touch(const net::osc_message& m, const endpoint& from);
     void stop(const endpoint& from);
     void subscribe(const osc_request& r, const endpoint& from);
     void move(osc_request r, const endpoint& from);

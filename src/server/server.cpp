@@ -41,6 +41,7 @@
 #include "net/osc.hpp"
 #include "net/web.hpp"
 #include "rt/clock.hpp"
+#include "server/bhaptics.hpp"
 #include "server/osc.hpp"
 
 namespace tactor::server {
@@ -59,6 +60,7 @@ constexpr net::page_document studio_page =
     ;
 
 constexpr auto farewell = std::chrono::seconds(2); // time to send the last messages
+constexpr std::string_view bhaptics_path = "/v2/feedbacks";
 constexpr std::size_t short_visits = 32; // most simultaneous requests of browsers, in addition to clients
 
 // Returns an error -32001 that does not answer a request.
@@ -202,6 +204,7 @@ public:
           limits_(o.limits),
           message_limits_{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
           allow_hosts_(at.allow_hosts),
+          peers_(at.osc_peers),
           service_(io, std::move(o), std::move(s)),
           farewell_(io),
           watchdog_(io)
@@ -217,6 +220,10 @@ public:
             listeners_.push_back(std::make_unique<listener>(
                 io, at.http.get(), net::no_descriptors_for_browsers(),
                 [this](socket_type c) { take_browser(std::move(c)); }, [this] { log_full(); }));
+        if (at.bhaptics)
+            listeners_.push_back(std::make_unique<listener>(
+                io, at.bhaptics.get(), net::no_descriptors_for_browsers(),
+                [this](socket_type c) { take_program(std::move(c)); }, [this] { log_full(); }));
         if (at.osc)
             osc_.emplace(io, at.osc.get(), service_, at.osc_peers);
         service_.clients().on_all_sent([this](client_number n) { finish(n); });
@@ -322,36 +329,99 @@ private:
     void take_browser(socket_type s)
     {
         const std::string from = net::peer_address(s.native_handle());
-        if (visitors_.size() >= limits_.max_clients + short_visits) {
-            service_.clients().log_refusal(from, "a browser without a free place");
-            return net::turn_away(s.native_handle()); // the socket closes at the end of the scope
-        }
-        const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
+        const auto c = visit(std::move(s), from, "/rpc");
         if (!c)
             return;
-        ++open_;
-        visitors_.insert(c);
         const auto n = std::make_shared<client_number>(0);
         net::peer_handlers h = handlers(n);
-        h.closed = [this, n, weak = std::weak_ptr(c)] {
-            visitors_.erase(weak.lock());
-            closed(*n);
-        };
+        h.closed = leave(c, n);
         h.get = [this, from](std::string_view path, std::string_view host, std::string_view token) {
             return page(path, host, token, from);
         };
         h.refused = [this, from](const std::string& why) { service_.clients().log_refusal(from, why); };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
-            if (!service_.clients().has_place(client_kind::web)) {
-                service_.clients().log_refusal(from, "a browser without a free place");
+            if (!has_place(client_kind::web, from))
                 return false;
-            }
             const auto link = weak.lock();
             *n = service_.connect(link, client_kind::web, from);
             links_.emplace(*n, link);
             return true;
         };
         c->start(std::move(h));
+    }
+
+    // Accepts a program for the bHaptics player, by its WebSocket.
+    void take_program(socket_type s)
+    {
+        const std::string from = net::peer_address(s.native_handle());
+        boost::system::error_code gone;
+        const auto address = asio::ip::make_address(from, gone);
+        if (gone || !net::is_accepted(address, peers_))
+            return service_.clients().log_refusal(from, "a program that osc_peers does not list");
+        const auto c = visit(std::move(s), from, bhaptics_path);
+        if (!c)
+            return;
+        const auto n = std::make_shared<client_number>(0);
+        const auto program = std::make_shared<std::weak_ptr<bhaptics_program>>();
+        const auto receive = [program](std::string text, std::function<void(bool)> done) {
+            if (const auto p = program->lock())
+                p->receive(std::move(text), std::move(done));
+        };
+        net::peer_handlers h{
+            .message = [receive](std::string_view text) { return receive(std::string(text), {}), true; },
+            .closed = leave(c, n),
+            .large = receive};
+        h.may_only_read = true;
+        h.get = [](std::string_view, std::string_view, std::string_view) {
+            return net::web_reply{404, "text/plain", fmt::format("there is {}\n", bhaptics_path), ""};
+        };
+        h.refused = [this, from](const std::string& why) { service_.clients().log_refusal(from, why); };
+        h.upgrade = [this, n, from, program, weak = std::weak_ptr(c)] {
+            if (!has_place(client_kind::bhaptics, from))
+                return false;
+            const auto p =
+                std::make_shared<bhaptics_program>(io_, service_, weak.lock(), limits_.max_nesting);
+            *program = p;
+            *n = service_.connect(p, client_kind::bhaptics, from);
+            links_.emplace(*n, p);
+            p->begin(*n);
+            return true;
+        };
+        c->start(std::move(h));
+    }
+
+    // Returns the connection of a browser, or of a program that speaks like one; null if there is no place.
+    std::shared_ptr<net::connection> visit(socket_type s, const std::string& from, std::string_view path)
+    {
+        if (visitors_.size() >= limits_.max_clients + short_visits) {
+            service_.clients().log_refusal(from, "a browser without a free place");
+            net::turn_away(s.native_handle()); // the socket closes at the end of the scope
+            return nullptr;
+        }
+        auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_, path);
+        if (c) {
+            ++open_;
+            visitors_.insert(c);
+        }
+        return c;
+    }
+
+    // Returns the handler of the end of such a connection.
+    std::function<void()> leave(const std::shared_ptr<net::connection>& c,
+                                const std::shared_ptr<client_number>& n)
+    {
+        return [this, n, weak = std::weak_ptr(c)] {
+            visitors_.erase(weak.lock());
+            closed(*n);
+        };
+    }
+
+    bool has_place(client_kind kind, const std::string& from)
+    {
+        const bool has = service_.clients().has_place(kind);
+        if (!has)
+            service_.clients().log_refusal(from, "a browser without a free place");
+        return has;
     }
 
     net::web_reply page(std::string_view path, std::string_view host, std::string_view token,
@@ -399,6 +469,7 @@ private:
     service_limits limits_;
     net::message_limits message_limits_;
     std::vector<std::string> allow_hosts_;
+    std::vector<net::address_prefix> peers_;
     service service_;
     std::optional<osc_endpoint> osc_;
     std::vector<std::unique_ptr<listener>> listeners_;
@@ -422,6 +493,7 @@ constexpr std::array known{
     inheritable{"socket", &endpoints::socket, net::is_unix_listener, "it is not a listening Unix socket"},
     inheritable{"tcp", &endpoints::tcp, net::is_tcp_listener, "it is not a listening TCP socket"},
     inheritable{"http", &endpoints::http, net::is_tcp_listener, "it is not a listening TCP socket"},
+    inheritable{"bhaptics", &endpoints::bhaptics, net::is_tcp_listener, "it is not a listening TCP socket"},
     inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is not a UDP socket with a port"},
 };
 
@@ -524,7 +596,7 @@ endpoints open_endpoints(const endpoint_options& o)
             std::find_if(known.begin(), known.end(), [&n = name](const auto& x) { return x.name == n; });
         if (k == known.end())
             throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", "it is unknown",
-                        "set FileDescriptorName=socket, tcp, http or osc");
+                        "set FileDescriptorName=socket, tcp, http, osc or bhaptics");
         if (!k->fits(fd.get()))
             throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", k->otherwise,
                         "see the .socket unit");
@@ -550,6 +622,8 @@ endpoints open_endpoints(const endpoint_options& o)
             e.tcp = net::listen_tcp(*o.tcp, "tcp");
         if (!e.http && o.http)
             e.http = net::listen_tcp(*o.http, "http");
+        if (!e.bhaptics && o.bhaptics)
+            e.bhaptics = net::listen_tcp(*o.bhaptics, "bhaptics");
         if (!e.osc && o.osc) {
             if (!net::osc_is_built())
                 no_osc("osc");
@@ -559,8 +633,9 @@ endpoints open_endpoints(const endpoint_options& o)
         remove_socket(e);
         throw;
     }
-    for (const auto& [fd, address] : {std::pair(&e.tcp, &e.tcp_address), std::pair(&e.http, &e.http_address),
-                                      std::pair(&e.osc, &e.osc_address)})
+    for (const auto& [fd, address] :
+         {std::pair(&e.tcp, &e.tcp_address), std::pair(&e.http, &e.http_address),
+          std::pair(&e.osc, &e.osc_address), std::pair(&e.bhaptics, &e.bhaptics_address)})
         if (*fd)
             *address = net::local_address(fd->get());
     return e;

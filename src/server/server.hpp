@@ -25,6 +25,7 @@ struct endpoint_options {
     std::optional<net::host_and_port> tcp = {};
     std::optional<net::host_and_port> http = {};
     std::optional<net::host_and_port> osc = {};
+    std::optional<net::host_and_port> bhaptics = {};
     std::vector<std::string> allow_hosts = {};
     std::vector<std::string> osc_peers = {}; ///< prefixes
 };
@@ -41,9 +42,12 @@ struct endpoints {
     std::string http_address; ///< empty: off
     net::owned_fd osc;
     std::string osc_address; ///< empty: off
+    net::owned_fd bhaptics;
+    std::string bhaptics_address; ///< empty: off
     /// HTTP: other names of this server, and of pages that may use it.
     std::vector<std::string> allow_hosts = {};
-    std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines whose packets are accepted
+    /// OSC and bHaptics: other machines that are accepted.
+    std::vector<net::address_prefix> osc_peers = {};
 };
 
 /// Returns the text of token_file without its line end; empty without such a file.

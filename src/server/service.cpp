@@ -215,6 +215,21 @@ void service::receive_large(client_number number, std::string text, std::functio
                    .quick = true});
 }
 
+void service::aside(client_number number, const std::function<void()>& work, std::function<void()> done)
+{
+    planners_.add({.client = number,
+                   .work =
+                       [work] {
+                           try {
+                               work();
+                           } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): see above
+                           }
+                       },
+                   .done = std::move(done),
+                   .drop = [](bool) {},
+                   .quick = true});
+}
+
 // Returns the small blocks of large messages to the system. Waits until no large message has come for a
 // while, because trimming blocks the heap for all threads.
 void service::give_memory_back_when_quiet()

@@ -82,6 +82,9 @@ public:
     /// Handles a large message, which another thread parses. Calls `done` with the result in this
     /// thread.
     void receive_large(client_number number, std::string text, std::function<void(bool)> done);
+    /// Does a client's work on a planner's thread, then calls `done` in this thread unless the client has
+    /// gone. Work for which memory runs out counts as done.
+    void aside(client_number number, const std::function<void()>& work, std::function<void()> done);
     /// Ends the live and held strokes of a client that sends no more. Returns true if it has been sent all
     /// its messages.
     bool input_ended(client_number number);
@@ -94,6 +97,7 @@ public:
 
     client_list& clients() noexcept { return clients_; }
     stream& output() noexcept { return stream_; }
+    const array& tactors() const noexcept { return options_.plans.tactors; }
     /// Returns the result of `status`.
     net::reply_json status_now();
 

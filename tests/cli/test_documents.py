@@ -189,7 +189,7 @@ SOMEBODY = [(r"^((?:build/src/cli/)?tactor calibrate .*)-D hw:CARD=Tactor", r"\1
             (r"^((?:build/src/cli/)?tactor experiment (?!.*--check-noise).*)-D hw:CARD=Tactor", r"\1--simulate seed=1", "there is nobody to answer"),
             (r" --page 4004$", "", "and nobody to look at a page")]
 INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUIDE)],
-                        SOMEBODY + [(r"--(http|osc) 400\d", r"--\1 0", "the port may be somebody else's")]) | {
+                        SOMEBODY + [(r"--(http|osc|bhaptics) (400\d|9001|15881)", r"--\1 0", "the port may be somebody else's")]) | {
     "man/tactor-calibrate.1": [*SOMEBODY, (r" --array P07.toml(?= -o P07-again)", "", "P07.toml is made by a later example")],
     "man/tactor-experiment.1": SOMEBODY,
     "tactor calibrate --help": SOMEBODY,
@@ -250,7 +250,7 @@ class Documents(ToolTest):
         """Runs a command without an end until it says where it listens."""
         process = subprocess.Popen(["sh", "-ec", "exec " + command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.dir,
                                    env=self.env | {"XDG_RUNTIME_DIR": str(self.dir)})
-        wanted = {"http": "listening: http://", "osc": "listening: osc "}
+        wanted = {"http": "listening: http://", "osc": "listening: osc ", "bhaptics": "listening: ws://"}
         missing = {"listening: socket "} | {text for option, text in wanted.items() if f"--{option} " in command}
         while missing:
             line = process.stdout.readline()

@@ -23,6 +23,7 @@ TEST_CASE("[serve]: all keys, and none")
     const key all[] = {
         {"socket = '/run/x.sock'", [](const settings& s) { return s.socket == "/run/x.sock"; }},
         {"tcp = 4001", [](const settings& s) { return s.tcp == "4001"; }},
+        {"bhaptics = 15881", [](const settings& s) { return s.bhaptics == "15881"; }},
         {"osc = '0.0.0.0:4002'", [](const settings& s) { return s.osc == "0.0.0.0:4002"; }},
         {"http = '[::1]:4003'", [](const settings& s) { return s.http == "[::1]:4003"; }},
         {"token_file = '/etc/t'", [](const settings& s) { return s.token_file == "/etc/t"; }},

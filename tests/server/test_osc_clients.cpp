@@ -438,6 +438,40 @@ TEST_CASE("what one sender may keep waiting has an end")
     CHECK_FALSE(rig.osc.next_ns().has_value());
 }
 
+TEST_CASE("touches of an avatar of VRChat are live strokes, and its other values get no answer")
+{
+    osc_rig rig([](auto& o, auto&) { o.limits.max_live_strokes = 2; });
+    const auto avatar = rig.at(9001);
+    const auto strokes = [&] { return rig.all->status_now()["strokes"].size(); };
+    rig.say(avatar, "/avatar/parameters/bOSC_v1_VestFront_0", {0.5});
+    rig.say(avatar, "/avatar/parameters/bOSC/v2/VestFront/19", {std::int64_t{1}});
+    CHECK(rig.next(avatar).ends_with("started"));
+    CHECK(rig.next(avatar).ends_with("started"));
+    CHECK(strokes() == 2);
+    // A touch that goes on is no other stroke.
+    rig.say(avatar, "/avatar/parameters/bOSC_v1_VestFront_0", {0.7});
+    rig.io.poll();
+    CHECK(strokes() == 2);
+    for (const char* other :
+         {"/avatar/change", "/avatar/parameters/GestureLeft", "/avatar/parameters/bOSC",
+          "/avatar/parameters/bOSC_v1_VestFront_20", "/avatar/parameters/bOSC_v1_VestBack_3",
+          "/avatar/parameters/bOSC_v1_VestFront_-1", "/avatar/", "/avatar/parameters/bOSC__"})
+        rig.say(avatar, other, {1.0});
+    CHECK(rig.silent(avatar));
+    CHECK(strokes() == 2);
+    // The limit of live strokes.
+    rig.say(avatar, "/avatar/parameters/bOSC_v1_VestFront_7", {1.0});
+    CHECK(has(rig.next(avatar), "you have 2 live strokes already"));
+    CHECK(rig.silent(avatar)); // one error, not another for its place
+    for (const char* motor : {"bOSC_v1_VestFront_0", "bOSC/v2/VestFront/19"})
+        rig.say(avatar, "/avatar/parameters/"s + motor, {0.0});
+    CHECK(rig.next(avatar).ends_with("finished"));
+    CHECK(rig.next(avatar).ends_with("finished"));
+    rig.say(avatar, "/avatar/parameters/bOSC_v1_VestFront_0", {0.0});
+    rig.io.poll();
+    CHECK(rig.osc.count() == 0);
+}
+
 TEST_CASE("places are for those of whom something goes on")
 {
     osc_rig rig([](auto& o, auto&) {

@@ -68,6 +68,7 @@ options::serve_settings settle_serve(const options::serve_settings& o, options::
     prefer(s.tcp, o.tcp);
     prefer(s.osc, o.osc);
     prefer(s.http, o.http);
+    prefer(s.bhaptics, o.bhaptics);
     prefer(s.idle_stop_s, o.idle_stop_s);
     return s;
 }
@@ -113,7 +114,7 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
     server::endpoint_options e;
     e.allow_hosts = s.allow_hosts;
     e.osc_peers = s.osc_peers;
-    e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
+    e.socket = [given = s.socket, others = s.tcp || s.osc || s.http || s.bhaptics] {
         return given ? *given : default_socket(others);
     };
     if (serves_system()) {
@@ -129,6 +130,8 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
         e.http = net::parse_host(*s.http, "--http");
     if (s.osc)
         e.osc = net::parse_host(*s.osc, "--osc");
+    if (s.bhaptics)
+        e.bhaptics = net::parse_host(*s.bhaptics, "--bhaptics");
     return e;
 }
 
@@ -194,13 +197,17 @@ server::planning make_planning(const settings& s, const environment& e, double c
 void warn_of_access(const server::endpoints& at, const std::string& token)
 {
     const bool has_peers = !at.osc_peers.empty();
-    if (!at.osc_address.empty() && !has_peers && !net::is_loopback(at.osc.get()))
-        throw error(error_kind::bad_input, "osc " + at.osc_address,
-                    "other machines can reach it, and osc_peers lists none",
-                    "set osc_peers under [serve] in the configuration, or listen on 127.0.0.1");
-    if (!at.osc_address.empty())
-        say(stderr, "tactor: warning: osc {}: every user of this machine can draw through it{}\n",
-            at.osc_address, has_peers ? ", and anybody who sends with an address in osc_peers" : "");
+    for (const auto& [kind, address, fd] :
+         {std::tuple("osc", &at.osc_address, &at.osc), {"bhaptics", &at.bhaptics_address, &at.bhaptics}}) {
+        if (address->empty())
+            continue;
+        if (!has_peers && !net::is_loopback(fd->get()))
+            throw error(error_kind::bad_input, fmt::format("{} {}", kind, *address),
+                        "other machines can reach it, and osc_peers lists none",
+                        "set osc_peers under [serve] in the configuration, or listen on 127.0.0.1");
+        say(stderr, "tactor: warning: {} {}: every user of this machine can draw through it{}\n", kind,
+            *address, has_peers ? ", and anybody who sends with an address in osc_peers" : "");
+    }
     constexpr std::size_t least_token = 16;
     for (const auto& [kind, address, fd] :
          {std::tuple("tcp", &at.tcp_address, &at.tcp), std::tuple("http", &at.http_address, &at.http)}) {
@@ -228,17 +235,21 @@ void warn_of_access(const server::endpoints& at, const std::string& token)
 void print_endpoints(const server::endpoints& at, const session::ceiling& highest, const std::string& format)
 {
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
+    const std::string bhaptics =
+        at.bhaptics_address.empty() ? "" : fmt::format("ws://{}/v2/feedbacks", at.bhaptics_address);
     if (format == "json") {
-        const nlohmann::ordered_json all{
-            {"event", "listening"},           {"socket", or_null(at.socket_path)},
-            {"tcp", or_null(at.tcp_address)}, {"osc", or_null(at.osc_address)},
-            {"http", or_null(http)},          {"max_level_dbfs", highest.dbfs}};
+        nlohmann::ordered_json all{{"event", "listening"},           {"socket", or_null(at.socket_path)},
+                                   {"tcp", or_null(at.tcp_address)}, {"osc", or_null(at.osc_address)},
+                                   {"http", or_null(http)},          {"max_level_dbfs", highest.dbfs}};
+        if (!bhaptics.empty())
+            all["bhaptics"] = bhaptics;
         fmt::print("{}\n", net::json_line(all));
     } else {
         for (const auto& [kind, address] : {std::pair("socket ", &at.socket_path),
                                             {"tcp ", &at.tcp_address},
                                             {"osc ", &at.osc_address},
-                                            {"", &http}})
+                                            {"", &http},
+                                            {"", &bhaptics}})
             if (!address->empty())
                 say(stdout, "listening: {}{}\n", kind, *address);
         say(stdout, "ceiling: {}\n", session::ceiling_text(highest));
@@ -335,6 +346,9 @@ int run_serve(command_line& line)
     c.add_option("--osc", o.osc, "receive OSC on this UDP port; 0 selects a free one")
         ->type_name("[HOST:]PORT");
     c.add_option("--http", o.http, "serve a page to draw on, and WebSockets, on this port")
+        ->type_name("[HOST:]PORT");
+    c.add_option("--bhaptics", o.bhaptics,
+                 "play for programs made for the bHaptics player, which expect port 15881")
         ->type_name("[HOST:]PORT");
     add_text(c, "--idle-stop", "S", "stop the stream after this time without a stroke (default: never)",
              [&o](const std::string& t) {
