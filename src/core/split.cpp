@@ -5,9 +5,6 @@
 #include <limits>
 #include <system_error>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-
 namespace tactor::detail {
 namespace {
 
@@ -60,22 +57,6 @@ std::optional<double> scan_number(std::string_view text, std::size_t& at) noexce
         value = -value;
     at = static_cast<std::size_t>(end - text.data());
     return value;
-}
-
-std::optional<unsigned> prefix_bits(std::string_view text)
-{
-    const auto slash = text.find('/');
-    const std::string address(text.substr(0, slash));
-    in6_addr bytes{}; // large enough for either family
-    const bool v4 = ::inet_pton(AF_INET, address.c_str(), &bytes) == 1;
-    if (!v4 && ::inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &bytes) != 1)
-        return {};
-    const unsigned most = v4 ? 32 : 128;
-    if (slash == std::string_view::npos)
-        return most;
-    text.remove_prefix(slash + 1);
-    const auto bits = number_in<unsigned>(text);
-    return bits && *bits <= most ? bits : std::nullopt;
 }
 
 } // namespace tactor::detail

@@ -58,8 +58,4 @@ void skip_blanks(std::string_view text, std::size_t& at) noexcept;
 /// is not part of it.
 std::optional<double> scan_number(std::string_view text, std::size_t& at) noexcept;
 
-/// Returns the number of bits that count in "192.168.1.0/24", "fd00::/8", or an address alone, such as
-/// fe80::1%eth0. Returns nothing for other texts.
-std::optional<unsigned> prefix_bits(std::string_view text);
-
 } // namespace tactor::detail

@@ -8,9 +8,6 @@
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/network_v4.hpp>
 #include <boost/asio/ip/network_v6.hpp>
-#include <fmt/format.h>
-
-#include <tactor/error.hpp>
 
 #include "core/split.hpp"
 #include "core/words.hpp"
@@ -87,16 +84,12 @@ ip::address plain(const ip::address& a)
     return a;
 }
 
-address_prefix parse_prefix(const std::string& text, const std::string& what)
+address_prefix parse_prefix(const std::string& text)
 {
-    const auto bits = detail::prefix_bits(text);
-    boost::system::error_code failed;
-    const ip::address address = ip::make_address(text.substr(0, text.find('/')), failed);
-    if (!bits || failed)
-        throw error(error_kind::bad_input, what,
-                    fmt::format("\"{}\" is neither an address nor a prefix", text),
-                    "give one such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
-    return {address, *bits};
+    const auto slash = text.find('/');
+    const ip::address address = ip::make_address(text.substr(0, slash));
+    const unsigned all = address.is_v4() ? 32 : 128;
+    return {address, slash == text.npos ? all : detail::number_in<unsigned>(text.substr(slash + 1)).value()};
 }
 
 bool is_accepted(const ip::address& from, const std::vector<address_prefix>& peers)

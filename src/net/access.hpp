@@ -21,8 +21,8 @@ struct address_prefix {
     unsigned bits = 0;
 };
 
-/// Reads "192.168.1.0/24", "fd00::/8", or an address alone. \throws error (bad_input) that names `what`.
-address_prefix parse_prefix(const std::string& text, const std::string& what);
+/// Reads "192.168.1.0/24", "fd00::/8", or an address alone. \pre options::read_serve() has accepted it.
+address_prefix parse_prefix(const std::string& text);
 
 /// Returns true for this machine's own loopback addresses, and those of `peers`. An IPv4 address within IPv6
 /// counts as IPv4.

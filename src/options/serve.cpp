@@ -9,6 +9,9 @@
 #include <string_view>
 #include <variant>
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -106,11 +109,26 @@ std::string read_address(const written_value& d)
     return text;
 }
 
+// Returns true for "192.168.1.0/24", "fd00::/8", or an address alone, such as fe80::1%eth0.
+bool is_prefix(std::string_view text)
+{
+    const auto slash = text.find('/');
+    const std::string address(text.substr(0, slash));
+    in6_addr bytes{}; // large enough for either family
+    const bool v4 = ::inet_pton(AF_INET, address.c_str(), &bytes) == 1;
+    if (!v4 && ::inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &bytes) != 1)
+        return false;
+    if (slash == text.npos)
+        return true;
+    const auto bits = detail::number_in<unsigned>(text.substr(slash + 1));
+    return bits && *bits <= (v4 ? 32U : 128U);
+}
+
 // Returns a range of addresses; each sender is compared with it later.
 std::string read_prefix(const written_value& d)
 {
     std::string text = read_text_value(d);
-    if (!detail::prefix_bits(text))
+    if (!is_prefix(text))
         fail(d, fmt::format("\"{}\" is neither an address nor a prefix", text),
              "give one such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
     return text;

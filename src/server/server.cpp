@@ -590,7 +590,7 @@ endpoints open_endpoints(const endpoint_options& o)
     endpoints e;
     e.allow_hosts = o.allow_hosts;
     for (const std::string& p : o.osc_peers)
-        e.osc_peers.push_back(net::parse_prefix(p, "osc_peers under [serve]"));
+        e.osc_peers.push_back(net::parse_prefix(p));
     for (auto& [name, fd] : net::inherited_sockets()) {
         const auto k =
             std::find_if(known.begin(), known.end(), [&n = name](const auto& x) { return x.name == n; });
