@@ -41,8 +41,6 @@ PUBLIC = {
     "sink": None, "alsa": "sink/alsa", "player": "engine", "asio": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "session", "study"}
-# Folders that still include each other in a ring: tasks, and what they need and what needs them.
-STILL_A_RING = {"study/analysis", "study/data", "study/experiment", "study/results", "study/tasks"}
 # Inner headers of the library that the tool may include: no program that embeds it needs these.
 INSIDE = {
     "cli": {"core/kind_names.hpp", "core/members.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "files/stroke_format.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "rt/system_files.hpp", "rt/thread.hpp", "sink/wav/wav.hpp", "synth/score/score_view.hpp"},
@@ -115,12 +113,6 @@ def complaints(root, file):
                 yield f"{where}: {folder} may not know {owner} ({header})"
 
 
-def folder_below(header):
-    """Returns the folder of a file below src. Those that still form a ring count as one."""
-    name = header.rpartition("/")[0]
-    return "study/tasks" if name in STILL_A_RING else name
-
-
 def find_rings(root, files):
     """Yields a complaint about folders of any depth that include each other in a ring."""
     below = {}
@@ -128,10 +120,11 @@ def find_rings(root, files):
         where = file.relative_to(root).as_posix()
         if not where.startswith("src/"):
             continue
-        own = folder_below(where.removeprefix("src/"))
+        own = where.removeprefix("src/").rpartition("/")[0]
         for header in INCLUDE.findall(file.read_text(encoding="utf-8")):
-            if (root / "src" / header).exists() and folder_below(header) != own:
-                below.setdefault(own, set()).add(folder_below(header))
+            other = header.rpartition("/")[0]
+            if (root / "src" / header).exists() and other != own:
+                below.setdefault(own, set()).add(other)
     try:
         graphlib.TopologicalSorter(below).prepare()
     except graphlib.CycleError as e:

@@ -32,7 +32,7 @@
 #include "files/text_file.hpp"
 #include "options/resolve.hpp"
 #include "session/process.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/experiment/read_definition.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "python/binding.hpp"
 #include "study/analysis/analysis.hpp"
-#include "study/data/dataset.hpp"
-#include "study/results/result_json.hpp"
+#include "study/analysis/result_json.hpp"
+#include "study/bids/dataset.hpp"
 
 namespace tactor::python {
 namespace {

@@ -200,8 +200,8 @@ class Options(ToolTest):
 # The readers of files, and what their lists of keys look like.
 READERS = {
     "files/setup.cpp": r"only\(\s*\{([^}]*)\}", "files/stroke/toml.cpp": r"(?:only\(|(?:_keys|kinds)\[\] = )\{([^}]*)\}",
-    "options/serve.cpp": r"\bkey\{(\"\w+\")", "study/experiment/page_words.cpp": r"page_word\{(\"\w+\")",
-    "study/experiment/questionnaire.cpp": r"only\(\{([^}]*)\}", "study/experiment/definition.cpp": r"only\(\{([^}]*)\}",
+    "options/serve.cpp": r"\bkey\{(\"\w+\")", "study/data/page_words.cpp": r"page_word\{(\"\w+\")",
+    "study/data/questionnaire.cpp": r"only\(\{([^}]*)\}", "study/experiment/read_definition.cpp": r"only\(\{([^}]*)\}",
 }
 
 

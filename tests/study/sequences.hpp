@@ -10,7 +10,7 @@
 
 #include <tactor/array.hpp>
 
-#include "study/experiment/definition.hpp"
+#include "study/experiment/read_definition.hpp"
 
 namespace tactor::study {
 

@@ -8,7 +8,7 @@
 #include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study::test_definition {

@@ -10,8 +10,8 @@
 
 #include <doctest/doctest.h>
 
-#include "study/analysis/drawings.hpp"
 #include "study/data/drawing.hpp"
+#include "study/results/drawings.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study::test_drawings {

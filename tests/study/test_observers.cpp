@@ -22,7 +22,7 @@
 #include <fmt/format.h>
 
 #include "rounds.hpp"
-#include "study/analysis/measures.hpp"
+#include "study/results/measures.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/signal_detection.hpp"
 #include "study/statistics/tests.hpp"

@@ -14,7 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "rounds.hpp"
-#include "study/data/dataset.hpp"
+#include "study/data/trial.hpp"
 #include "study/random/random.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"

@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "rounds.hpp"
-#include "study/analysis/measures.hpp"
 #include "study/random/random.hpp"
+#include "study/results/measures.hpp"
 #include "study/results/result.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/signal_detection.hpp"

@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "rounds.hpp"
-#include "study/data/dataset.hpp"
+#include "study/data/trial.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 

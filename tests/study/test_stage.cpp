@@ -15,7 +15,7 @@
 #include "scores.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 #include "stage_support.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/experiment/trials.hpp"
 
 namespace stage_test {

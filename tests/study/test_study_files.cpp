@@ -19,9 +19,9 @@
 #include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
+#include "study/bids/dataset.hpp"
 #include "study/bids/disk.hpp"
 #include "study/bids/study_folder.hpp"
-#include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
 #include "study/tasks/task.hpp"
 

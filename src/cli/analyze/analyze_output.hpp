@@ -3,6 +3,7 @@
 /// Output of `tactor analyze`, from values.
 #pragma once
 
+#include "study/bids/dataset.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::cli {

@@ -21,7 +21,7 @@
 #include "core/words.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/analysis/levels.hpp"
-#include "study/analysis/measures.hpp"
+#include "study/results/measures.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::cli {

@@ -18,10 +18,10 @@
 #include "plot/paint/output.hpp"
 #include "session/process.hpp"
 #include "study/analysis/analysis.hpp"
+#include "study/analysis/result_json.hpp"
+#include "study/bids/dataset.hpp"
 #include "study/bids/disk.hpp"
-#include "study/data/dataset.hpp"
 #include "study/report/report.hpp"
-#include "study/results/result_json.hpp"
 
 namespace tactor::cli {
 namespace {

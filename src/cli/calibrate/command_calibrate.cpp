@@ -31,7 +31,7 @@
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_files.hpp"
 #include "study/calibrate/person.hpp"
-#include "study/experiment/page_words.hpp"
+#include "study/data/page_words.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/masking/masking.hpp"
 

@@ -22,7 +22,7 @@
 #include "session/piece.hpp"
 #include "session/process.hpp"
 #include "study/bids/session_store.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/person_session.hpp"

@@ -19,7 +19,7 @@
 #include "files/json/schema.hpp"
 #include "files/plan/plan_json.hpp"
 #include "session/device.hpp"
-#include "study/results/result_json.hpp"
+#include "study/analysis/result_json.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 
 #include "core/words.hpp"
 #include "study/analysis/levels.hpp"
-#include "study/analysis/measures.hpp"
+#include "study/results/measures.hpp"
 #include "study/tasks/adaptive.hpp"
 #include "study/tasks/task.hpp"
 

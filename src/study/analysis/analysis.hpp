@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "study/analysis/model.hpp"
+#include "study/bids/dataset.hpp"
+#include "study/results/model.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "study/analysis/cells.hpp"
+#include "study/results/cells.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {

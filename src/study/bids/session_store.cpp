@@ -12,8 +12,8 @@
 
 #include <tactor/error.hpp>
 
+#include "study/bids/dataset.hpp"
 #include "study/bids/disk.hpp"
-#include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

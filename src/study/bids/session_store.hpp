@@ -16,8 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include "study/bids/study_folder.hpp"
-#include "study/data/dataset.hpp"
 #include "study/data/text_table.hpp"
+#include "study/data/trial.hpp"
 #include "study/experiment/trials.hpp"
 
 namespace tactor::study {

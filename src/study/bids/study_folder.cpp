@@ -18,7 +18,7 @@
 
 #include "core/split.hpp"
 #include "core/words.hpp"
-#include "study/data/dataset.hpp"
+#include "study/bids/dataset.hpp"
 #include "study/data/text_table.hpp"
 #include "study/tasks/task.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "study/bids/disk.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 
 namespace tactor::study {
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "study/calibrate/calibration.hpp"
-#include "study/experiment/page_words.hpp"
+#include "study/data/page_words.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/questions.hpp"

@@ -13,10 +13,10 @@
 
 #include <tactor/error.hpp>
 
-#include "study/analysis/measures.hpp"
 #include "study/experiment/observer_text.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
+#include "study/results/measures.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {

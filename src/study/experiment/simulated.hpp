@@ -11,36 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/random/random.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {
-
-struct simulation {
-    std::uint64_t seed = 1;
-    double sigma = 1.0; ///< sd of the noise, in -ln cost (choose, rate) or mm (identify,
-                        ///< locate, trace)
-    double voids = 0.0; ///< share of trials that are void, as after an xrun
-    // True values for tasks that measure: one for all methods, or one for each method of a run.
-    std::vector<double> pse = {}; ///< value felt as equal; if empty, the standard or the middle value
-    std::vector<double> jnd = {}; ///< half the range from 25 to 75 %; default: a tenth of the values' range
-    std::vector<double> dprime = {1.0};
-    std::vector<double> exponent = {1.0}; ///< exponent of estimates; sigma is the noise of their logarithm
-    double lapse = 0.0;                   ///< share of trials answered by a random key
-    // Standard deviations over participants; see simulated_run.
-    double pse_sd = 0.0;
-    double jnd_sd = 0.0;
-    double dprime_sd = 0.0;
-    double exponent_sd = 0.0;
-    double correlation = 1.0; ///< between methods, of the four deviations above
-    double group_d = 0.0;     ///< difference of the last group from the first, in these deviations; groups
-                              ///< between them are evenly apart
-    double method_sd = 0.0;   ///< of the worth of each method, in the unit of sigma (choose, rate)
-
-    friend bool operator==(const simulation&, const simulation&) = default;
-};
 
 /// Reads a text such as "seed=1,sigma=1"; missing keys keep their defaults. \throws error (bad_input).
 simulation parse_simulation(std::string_view text);

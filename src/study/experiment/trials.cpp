@@ -19,6 +19,7 @@
 #include "options/option.hpp"
 #include "options/resolve.hpp"
 #include "session/piece.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/experiment/trial_order.hpp"
 #include "study/experiment/variation.hpp"
 #include "study/random/random.hpp"

@@ -19,24 +19,9 @@
 #include <tactor/render.hpp>
 
 #include "files/plan/plan_json.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 
 namespace tactor::study {
-
-/// A trial before it is played. Motion and methods are indices into the definition's lists.
-struct planned_trial {
-    std::size_t motion = 0;
-    std::size_t method_1 = 0;
-    std::optional<std::size_t> method_2 = {}; ///< missing if the trial has one stimulus
-    std::optional<std::size_t> method_3 = {}; ///< missing if the trial has fewer than three
-    double rest_s = 0.0;                      ///< pause before the trial
-    unsigned track = 0;                       ///< track of an adaptive run, from 1; see set_value()
-
-    /// Lists the methods of the stimuli, in the order in which they play.
-    std::vector<std::size_t> list_methods() const;
-
-    friend bool operator==(const planned_trial&, const planned_trial&) = default;
-};
 
 struct run_sequence {
     std::size_t run = 0;                      ///< index of the run in the definition
@@ -45,16 +30,6 @@ struct run_sequence {
 
     friend bool operator==(const run_sequence&, const run_sequence&) = default;
 };
-
-/// Sets the value of a trial in an adaptive run. `place`: index into the run's values.
-void set_value(planned_trial& t, const run_definition& r, std::size_t place);
-
-/// Returns the place, from 1, of the stimulus that differs from the two others; nothing unless a trial has
-/// three.
-std::optional<unsigned> find_odd(const planned_trial& t);
-
-/// Returns the value of a trial's comparison; nothing if the run varies nothing or the trial has no stimulus.
-std::optional<double> find_value(const experiment_definition& d, const planned_trial& t);
 
 /// Returns the default seed of a participant: the first four bytes of the code's SHA-256.
 std::uint64_t default_seed(std::string_view code);

@@ -17,38 +17,14 @@
 #include "core/words.hpp"
 #include "options/option.hpp"
 #include "options/resolve.hpp"
-#include "study/experiment/trials.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/tasks/task.hpp"
+#include "study/tasks/values.hpp"
 
 namespace tactor::study {
 namespace {
 
 using detail::toml_table;
-
-/// Parameters of a stroke that a run may vary. Other names are options.
-constexpr std::array<std::pair<std::string_view, detail::bounds>, 5> stroke_parameters{{
-    {"x_mm", {-detail::max_mm, detail::max_mm}},
-    {"y_mm", {-detail::max_mm, detail::max_mm}},
-    {"length_mm", {0.0, detail::max_mm, true}},
-    {"apart_mm", {0.0, detail::max_mm, true}},
-    {"rotate_deg", detail::turn_deg},
-}};
-
-const detail::bounds* find_parameter(std::string_view name)
-{
-    const auto* at =
-        std::ranges::find(stroke_parameters, name, &decltype(stroke_parameters)::value_type::first);
-    return at == stroke_parameters.end() ? nullptr : &at->second;
-}
-
-// Finds a numeric option of a method; null for other names.
-const options::option* find_number(std::string_view name)
-{
-    const options::option* o = options::find(name);
-    const bool is_number =
-        o != nullptr && (o->what == options::kind::number || o->what == options::kind::whole);
-    return is_number && (o->where & options::in_method) != 0 ? o : nullptr;
-}
 
 // Returns the middle of the first and last places of all strokes.
 point find_middle(const std::vector<stroke>& all)
@@ -83,15 +59,6 @@ double find_extent_mm(const std::vector<stroke>& all, const std::string& paramet
 }
 
 } // namespace
-
-std::optional<varied> find_varied(std::string_view name)
-{
-    const options::option* option = find_number(name);
-    if (option != nullptr)
-        return varied{option->allowed, option->unit.starts_with("dB")};
-    const detail::bounds* parameter = find_parameter(name);
-    return parameter != nullptr ? std::optional(varied{*parameter, false}) : std::nullopt;
-}
 
 void make_variants(const toml_table& t, run_definition& r, const std::vector<method_definition>& methods,
                    std::vector<method_definition>& more)
@@ -164,46 +131,6 @@ void vary_strokes(std::vector<stroke>& all, const method_definition& m)
         if (s.speed_mm_s && s.motion.length_mm() > 0.0)
             s.motion = s.motion.with_speed(*s.speed_mm_s);
     }
-}
-
-std::vector<std::size_t> planned_trial::list_methods() const
-{
-    std::vector<std::size_t> all{method_1};
-    for (const auto& more : {method_2, method_3})
-        if (more)
-            all.push_back(*more);
-    return all;
-}
-
-std::optional<unsigned> find_odd(const planned_trial& t)
-{
-    if (!t.method_3)
-        return {};
-    return t.method_1 == *t.method_2 ? 3U : t.method_1 == *t.method_3 ? 2U : 1U;
-}
-
-void set_value(planned_trial& t, const run_definition& r, std::size_t place)
-{
-    const auto set = [&](std::size_t& played) {
-        for (const auto& [method, v] : r.variants)
-            for (const std::vector<std::size_t>* all : {&v.values, &v.silences})
-                if (std::ranges::count(*all, played) != 0) {
-                    played = (*all)[place];
-                    return;
-                }
-    };
-    set(t.method_1);
-    for (auto* more : {&t.method_2, &t.method_3})
-        if (*more)
-            set(**more);
-}
-
-std::optional<double> find_value(const experiment_definition& d, const planned_trial& t)
-{
-    const std::vector<std::size_t> all = t.list_methods();
-    const auto compared = std::ranges::find_if(
-        all, [&d](std::size_t method) { return d.methods[method].name != standard_name; });
-    return d.methods[compared != all.end() ? *compared : t.method_1].value;
 }
 
 } // namespace tactor::study

@@ -12,22 +12,9 @@
 #include <tactor/stroke.hpp>
 
 #include "files/toml_reader.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 
 namespace tactor::study {
-
-/// Greatest number of values of a run.
-inline constexpr std::size_t most_values = 401;
-
-/// A number that a run may vary.
-struct varied {
-    detail::bounds allowed;
-    bool on_db_axis = false; ///< true for a level in dB
-};
-
-/// Finds a numeric option of a method or a parameter of a stroke by its name. Returns nothing for other
-/// names.
-std::optional<varied> find_varied(std::string_view name);
 
 /// Adds the methods that the run plays in place of its own to `more`: one for each value, for the standard
 /// and for silence. In the definition `more` comes after `methods`. \throws error (bad_input) if an option

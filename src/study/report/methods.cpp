@@ -21,9 +21,10 @@
 #include "core/split.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
+#include "study/analysis/result_json.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/report/facts.hpp"
-#include "study/results/result_json.hpp"
 #include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 

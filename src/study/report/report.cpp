@@ -15,6 +15,7 @@
 #include "files/output_file.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/data/text_table.hpp"
+#include "study/experiment/read_definition.hpp"
 #include "study/report/facts.hpp"
 
 namespace tactor::study {

@@ -15,8 +15,8 @@
 
 #include "files/json/json_value.hpp"
 #include "options/option.hpp"
-#include "study/data/dataset.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/bids/dataset.hpp"
+#include "study/data/definition.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {

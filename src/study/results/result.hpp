@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "study/data/dataset.hpp"
+#include "study/data/trial.hpp"
 #include "study/statistics/bradley_terry.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/scaling.hpp"

@@ -13,7 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "core/words.hpp"
-#include "study/data/dataset.hpp"
+#include "study/data/outline.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {

@@ -13,7 +13,7 @@
 
 #include <tactor/setup.hpp>
 
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 #include "study/experiment/trials.hpp"
 
 namespace tactor::study {

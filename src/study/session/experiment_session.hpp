@@ -17,7 +17,7 @@
 
 #include "session/environment.hpp"
 #include "study/bids/session_store.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 #include "study/experiment/simulated.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/code_numbers.hpp"

@@ -9,7 +9,7 @@
 #include "files/plan/plan_json.hpp"
 #include "net/rpc.hpp"
 #include "rt/clock.hpp"
-#include "study/data/dataset.hpp"
+#include "study/data/trial.hpp"
 
 namespace tactor::study {
 namespace {

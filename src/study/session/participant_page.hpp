@@ -21,7 +21,7 @@
 #include "net/web.hpp"
 #include "rt/event_fd.hpp"
 #include "study/data/drawing.hpp"
-#include "study/experiment/page_words.hpp"
+#include "study/data/page_words.hpp"
 
 namespace tactor::study {
 

@@ -19,7 +19,7 @@
 #include <tactor/stroke.hpp>
 
 #include "study/bids/session_store.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"

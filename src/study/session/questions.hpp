@@ -13,8 +13,8 @@
 #include <tactor/path.hpp>
 #include <tactor/stroke.hpp>
 
-#include "study/experiment/page_words.hpp"
-#include "study/experiment/questionnaire.hpp"
+#include "study/data/page_words.hpp"
+#include "study/data/questionnaire.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/session/experiment_session.hpp"
 #include "study/session/key_input.hpp"

@@ -10,7 +10,7 @@
 #include <tactor/render.hpp>
 
 #include "core/members.hpp"
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 #include "study/session/experiment_session.hpp"
 
 namespace tactor::study {

@@ -18,8 +18,7 @@
 
 #include "core/suggest.hpp"
 #include "core/words.hpp"
-#include "study/experiment/definition.hpp"
-#include "study/experiment/variation.hpp"
+#include "study/data/definition.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/comparison.hpp"
 

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "study/experiment/definition.hpp"
+#include "study/data/definition.hpp"
 #include "study/statistics/quest.hpp"
 #include "study/statistics/up_down.hpp"
 #include "study/tasks/task.hpp"

@@ -16,10 +16,9 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "study/analysis/measures.hpp"
-#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
-#include "study/experiment/variation.hpp"
+#include "study/results/measures.hpp"
+#include "study/results/model.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "study/analysis/cells.hpp"
-#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
+#include "study/results/cells.hpp"
+#include "study/results/model.hpp"
 #include "study/statistics/bradley_terry.hpp"
 #include "study/tasks/balanced.hpp"
 #include "study/tasks/values.hpp"

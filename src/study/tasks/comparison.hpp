@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "study/analysis/measures.hpp"
-#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
+#include "study/results/measures.hpp"
+#include "study/results/model.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
 

@@ -7,8 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "study/experiment/definition.hpp"
-#include "study/experiment/trials.hpp"
+#include "study/data/definition.hpp"
 #include "study/random/random.hpp"
 
 namespace tactor::study {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
+#include "study/results/model.hpp"
 #include "study/tasks/values.hpp"
 
 namespace tactor::study {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "study/analysis/drawings.hpp"
+#include "study/results/drawings.hpp"
 #include "study/tasks/balanced.hpp"
 
 namespace tactor::study {

@@ -6,11 +6,10 @@
 
 #include "core/split.hpp"
 #include "core/words.hpp"
-#include "study/analysis/cells.hpp"
-#include "study/analysis/measures.hpp"
-#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
-#include "study/experiment/simulated.hpp"
+#include "study/results/cells.hpp"
+#include "study/results/measures.hpp"
+#include "study/results/model.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
 

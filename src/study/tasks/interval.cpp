@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "study/analysis/measures.hpp"
-#include "study/analysis/model.hpp"
 #include "study/data/text_table.hpp"
+#include "study/results/measures.hpp"
+#include "study/results/model.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/adaptive.hpp"
 #include "study/tasks/task.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cstddef>
 
-#include "study/experiment/simulated.hpp"
 #include "study/tasks/drawn.hpp"
 
 namespace tactor::study {

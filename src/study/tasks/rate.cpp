@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/words.hpp"
-#include "study/analysis/cells.hpp"
-#include "study/analysis/model.hpp"
+#include "study/data/questionnaire.hpp"
 #include "study/data/text_table.hpp"
-#include "study/experiment/questionnaire.hpp"
+#include "study/results/cells.hpp"
+#include "study/results/model.hpp"
 #include "study/tasks/balanced.hpp"
 #include "study/tasks/values.hpp"
 

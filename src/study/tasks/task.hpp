@@ -21,18 +21,17 @@
 #include <tactor/path.hpp>
 
 #include "files/toml_reader.hpp"
-#include "study/analysis/cells.hpp"
-#include "study/analysis/measures.hpp"
-#include "study/data/dataset.hpp"
+#include "study/data/definition.hpp"
 #include "study/data/drawing.hpp"
-#include "study/experiment/definition.hpp"
-#include "study/experiment/trials.hpp"
+#include "study/data/text_table.hpp"
+#include "study/data/trial.hpp"
 #include "study/random/random.hpp"
+#include "study/results/cells.hpp"
+#include "study/results/measures.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {
 
-struct simulation;
 struct model_factors;
 
 /// Answers that a participant may give in a trial.
@@ -59,6 +58,31 @@ public:
     virtual void take(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
     /// Returns true if the answers so far have ended a track. \pre it has an answer.
     virtual bool has_ended(unsigned /*track*/) const { return false; }
+};
+
+/// A simulated observer: seed, noise and true values.
+struct simulation {
+    std::uint64_t seed = 1;
+    double sigma = 1.0; ///< sd of the noise, in -ln cost (choose, rate) or mm (identify,
+                        ///< locate, trace)
+    double voids = 0.0; ///< share of trials that are void, as after an xrun
+    // True values for tasks that measure: one for all methods, or one for each method of a run.
+    std::vector<double> pse = {}; ///< value felt as equal; if empty, the standard or the middle value
+    std::vector<double> jnd = {}; ///< half the range from 25 to 75 %; default: a tenth of the values' range
+    std::vector<double> dprime = {1.0};
+    std::vector<double> exponent = {1.0}; ///< exponent of estimates; sigma is the noise of their logarithm
+    double lapse = 0.0;                   ///< share of trials answered by a random key
+    // Standard deviations over participants; see simulated_run.
+    double pse_sd = 0.0;
+    double jnd_sd = 0.0;
+    double dprime_sd = 0.0;
+    double exponent_sd = 0.0;
+    double correlation = 1.0; ///< between methods, of the four deviations above
+    double group_d = 0.0;     ///< difference of the last group from the first, in these deviations; groups
+                              ///< between them are evenly apart
+    double method_sd = 0.0;   ///< of the worth of each method, in the unit of sigma (choose, rate)
+
+    friend bool operator==(const simulation&, const simulation&) = default;
 };
 
 /// Deviations of a simulated person's figures from the mean of all, in standard deviations.
@@ -287,6 +311,9 @@ inline const task& task_in(const run_outline& o) noexcept
 {
     return *o.task;
 }
+
+/// Returns the range of a run's ratings in words: "1 to 5", "0 to 100 on a visual analogue scale".
+std::string rating_range(const run_outline& run);
 
 /// Returns the comparison of a figure with the value `against`, if any.
 main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against);

@@ -11,8 +11,6 @@
 #include <tactor/error.hpp>
 
 #include "study/data/text_table.hpp"
-#include "study/experiment/simulated.hpp"
-#include "study/experiment/variation.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 
 namespace tactor::study {
@@ -21,6 +19,54 @@ namespace {
 using detail::toml_table;
 
 constexpr unsigned most_trials = 10000;
+
+} // namespace
+
+const options::option* find_number(std::string_view name)
+{
+    const options::option* o = options::find(name);
+    const bool is_number =
+        o != nullptr && (o->what == options::kind::number || o->what == options::kind::whole);
+    return is_number && (o->where & options::in_method) != 0 ? o : nullptr;
+}
+
+namespace {
+
+// Greatest number of values of a run.
+inline constexpr std::size_t most_values = 401;
+
+// A number that a run may vary.
+struct varied {
+    detail::bounds allowed;
+    bool on_db_axis = false; ///< true for a level in dB
+};
+
+// Parameters of a stroke that a run may vary. Other names are options.
+constexpr std::array<std::pair<std::string_view, detail::bounds>, 5> stroke_parameters{{
+    {"x_mm", {-detail::max_mm, detail::max_mm}},
+    {"y_mm", {-detail::max_mm, detail::max_mm}},
+    {"length_mm", {0.0, detail::max_mm, true}},
+    {"apart_mm", {0.0, detail::max_mm, true}},
+    {"rotate_deg", detail::turn_deg},
+}};
+
+const detail::bounds* find_parameter(std::string_view name)
+{
+    const auto* at =
+        std::ranges::find(stroke_parameters, name, &decltype(stroke_parameters)::value_type::first);
+    return at == stroke_parameters.end() ? nullptr : &at->second;
+}
+
+// Finds a numeric option of a method or a parameter of a stroke by its name. Returns nothing for other
+// names.
+std::optional<varied> find_varied(std::string_view name)
+{
+    const options::option* option = find_number(name);
+    if (option != nullptr)
+        return varied{option->allowed, option->unit.starts_with("dB")};
+    const detail::bounds* parameter = find_parameter(name);
+    return parameter != nullptr ? std::optional(varied{*parameter, false}) : std::nullopt;
+}
 
 } // namespace
 

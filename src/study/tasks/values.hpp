@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "files/toml_reader.hpp"
-#include "study/experiment/definition.hpp"
-#include "study/experiment/trials.hpp"
+#include "options/option.hpp"
+#include "study/data/definition.hpp"
 #include "study/random/random.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/tasks/task.hpp"
@@ -21,6 +21,8 @@ namespace tactor::study {
 
 /// Reads `trials`, or `trials_per_value` if the run has values.
 void read_trials(const detail::toml_table& t, run_outline& o);
+/// Finds a numeric option of a method; null for other names.
+const options::option* find_number(std::string_view name);
 /// Reads `vary` and the standard. Returns the bounds of the values.
 detail::bounds read_vary(const detail::toml_table& t, run_outline& o);
 /// Reads `values`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/analysis/drawings.hpp"
+#include "study/results/drawings.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/results/result_json.hpp"
+#include "study/analysis/result_json.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/analysis/cells.hpp"
+#include "study/results/cells.hpp"
 
 #include <iterator>
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/experiment/definition.hpp"
+#include "study/experiment/read_definition.hpp"
 
 #include <algorithm>
 #include <array>
@@ -601,47 +601,6 @@ std::string spell_for_definition(std::string_view hint, bool own_level)
 {
     const std::span<const options::own_word> own(own_words);
     return options::spell(hint, {write_choice, options::in_method, own_level ? own.first(1) : own});
-}
-
-std::vector<stroke_span> list_spans(const std::vector<stroke>& strokes)
-{
-    detail::start_times times;
-    std::vector<stroke_span> all;
-    for (const stroke& s : strokes) {
-        const double start_s = times.start(s.start_s, s.anchor);
-        all.push_back({start_s, times.lasts(s.motion.duration_s())});
-    }
-    return all;
-}
-
-double find_duration_s(const std::vector<stroke>& strokes)
-{
-    return std::ranges::max(list_spans(strokes), {}, &stroke_span::end_s).end_s;
-}
-
-std::vector<std::vector<point>> sample_strokes(const std::vector<stroke>& strokes)
-{
-    std::vector<std::vector<point>> all;
-    for (const stroke& s : strokes) {
-        all.emplace_back();
-        for (std::size_t i = 0; i <= path_parts; ++i)
-            all.back().push_back(
-                s.motion.position(s.motion.duration_s() * static_cast<double>(i) / path_parts));
-    }
-    return all;
-}
-
-drawing join_paths(const std::vector<std::vector<point>>& paths, const std::vector<stroke>& strokes)
-{
-    drawing d;
-    double from_s = 0.0;
-    for (std::size_t s = 0; s < paths.size(); ++s) {
-        const double lasts_s = strokes[s].motion.duration_s();
-        for (std::size_t i = 0; i <= path_parts; i += 2)
-            d.push_back({from_s + lasts_s * static_cast<double>(i) / path_parts, paths[s][i]});
-        from_s += lasts_s;
-    }
-    return thin_out(std::move(d));
 }
 
 bool uses_thresholds(const experiment_definition& d)

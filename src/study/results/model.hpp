@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "study/data/dataset.hpp"
+#include "study/data/outline.hpp"
 
 namespace tactor::study {
 

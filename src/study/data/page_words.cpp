@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/experiment/page_words.hpp"
+#include "study/data/page_words.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/analysis/measures.hpp"
+#include "study/results/measures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/analysis/cells.hpp"
+#include "study/results/cells.hpp"
 
 namespace tactor::study {
 namespace {

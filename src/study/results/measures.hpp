@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "study/analysis/cells.hpp"
+#include "study/results/cells.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {

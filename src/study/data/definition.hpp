@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,9 +14,10 @@
 #include <tactor/stroke.hpp>
 
 #include "options/option.hpp"
-#include "study/data/dataset.hpp"
-#include "study/experiment/page_words.hpp"
-#include "study/experiment/questionnaire.hpp"
+#include "study/data/drawing.hpp"
+#include "study/data/outline.hpp"
+#include "study/data/page_words.hpp"
+#include "study/data/questionnaire.hpp"
 #include "study/masking/masking.hpp"
 
 namespace tactor::study {
@@ -150,33 +150,29 @@ std::vector<std::vector<point>> sample_strokes(const std::vector<stroke>& stroke
 /// without pauses. Keeps every second point, and fewer if a drawing has no room for them.
 drawing join_paths(const std::vector<std::vector<point>>& paths, const std::vector<stroke>& strokes);
 
-/// Reads a definition. `name` names the text in messages. File names in the text are relative to `folder`.
-/// \throws error (bad_input) with line and column if the text is not TOML, a key is missing, unknown, of the
-///         wrong type or out of range, a name is unknown or used twice, or a motion cannot be read.
-experiment_definition read_definition(std::string_view toml, const std::string& name,
-                                      const std::filesystem::path& folder);
+/// A trial before it is played. Motion and methods are indices into the definition's lists.
+struct planned_trial {
+    std::size_t motion = 0;
+    std::size_t method_1 = 0;
+    std::optional<std::size_t> method_2 = {}; ///< missing if the trial has one stimulus
+    std::optional<std::size_t> method_3 = {}; ///< missing if the trial has fewer than three
+    double rest_s = 0.0;                      ///< pause before the trial
+    unsigned track = 0;                       ///< track of an adaptive run, from 1; see set_value()
 
-/// Reads the definition that a session keeps. Skips the array and reads only the names of motions, because
-/// their files may have moved. \throws error (bad_input).
-experiment_definition read_design(std::string_view toml, const std::string& name);
+    /// Lists the methods of the stimuli, in the order in which they play.
+    std::vector<std::size_t> list_methods() const;
 
-/// Reads only the parts that the analysis needs, with the bounds of read_definition(). Ignores the rest,
-/// which other programs may write differently. \throws error (bad_input).
-experiment_outline read_outline(std::string_view toml, const std::string& name);
+    friend bool operator==(const planned_trial&, const planned_trial&) = default;
+};
 
-/// Returns true if the level of the experiment or of a method is relative to the tactors' thresholds.
-bool uses_thresholds(const experiment_definition& d);
+/// Sets the value of a trial in an adaptive run. `place`: index into the run's values.
+void set_value(planned_trial& t, const run_definition& r, std::size_t place);
 
-/// Name of the built-in definition.
-inline constexpr const char* shipped_experiment = "park2016";
-/// Returns the text of the built-in definition, which is also one of the examples.
-std::string_view park2016_text() noexcept;
+/// Returns the place, from 1, of the stimulus that differs from the two others; nothing unless a trial has
+/// three.
+std::optional<unsigned> find_odd(const planned_trial& t);
 
-/// Loads the built-in definition by its name, or a file. \throws error (bad_input).
-experiment_definition load_definition(const std::string& name_or_file);
-
-/// Rewrites a hint of the library for a definition: names keys in place of fields, and drops options that a
-/// definition cannot set. `own_level`: the method has its own level.
-std::string spell_for_definition(std::string_view hint, bool own_level = false);
+/// Returns the value of a trial's comparison; nothing if the run varies nothing or the trial has no stimulus.
+std::optional<double> find_value(const experiment_definition& d, const planned_trial& t);
 
 } // namespace tactor::study

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Columns of a run's tables, and conversion of their cells to values.
-#include "study/data/dataset.hpp"
+#include "study/bids/dataset.hpp"
 
 #include <algorithm>
 #include <cmath>

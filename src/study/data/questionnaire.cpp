@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/experiment/questionnaire.hpp"
+#include "study/data/questionnaire.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "study/data/dataset.hpp"
+#include "study/bids/dataset.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::study {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "study/analysis/measures.hpp"
 #include "study/data/drawing.hpp"
+#include "study/results/measures.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::study {

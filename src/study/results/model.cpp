@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/analysis/model.hpp"
+#include "study/results/model.hpp"
 
 #include <cmath>
 #include <vector>
