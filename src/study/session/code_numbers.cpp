@@ -21,7 +21,7 @@ namespace {
 
 constexpr unsigned greatest_number = 255;
 
-/// An event with its settings and the parts that tell its numbers apart by default.
+/// An event with its name, its settings and the parts that determine its number by default.
 struct event_row {
     code_event event;
     std::string_view name;
@@ -53,7 +53,8 @@ const std::array<event_row, code_events>& list_events()
     return rows;
 }
 
-// Returns the intervals (from 1) of an event in the cells of a run; 1 if the event does not occur.
+// Returns the intervals, from 1, in which an event occurs in the cells of a run. Returns only interval 1 if
+// the event does not occur.
 std::vector<unsigned> list_intervals(const experiment_definition& d, const std::vector<planned_trial>& cells,
                                      code_event e)
 {

@@ -26,20 +26,21 @@ inline constexpr std::size_t code_events = 5;
 /// Returns the event's name, as in [sync.codes].
 std::string_view to_string(code_event e) noexcept;
 
-/// Returns the event that a stimulus of this method marks.
+/// Returns the event that marks a stimulus of this method.
 code_event find_event(const method_definition& m) noexcept;
 
-/// An event, with the parts that may determine its number.
+/// An event, with everything that may determine its number.
 struct coded_event {
     code_event event = code_event::stimulus;
     const run_definition* run = nullptr;
-    std::size_t motion = 0;         ///< index in the definition
-    std::size_t method = 0;         ///< index of the stimulus' method; else of the trial's first method
-    unsigned interval = 1;          ///< place of the stimulus in its trial
-    std::string_view response = {}; ///< response of an answer, as in the table
+    std::size_t motion = 0; ///< index in the definition
+    std::size_t method = 0; ///< index of the stimulus's method; for other events, of the trial's first method
+    unsigned interval = 1;  ///< place of the stimulus in its trial, from 1
+    std::string_view response = {}; ///< response as in the run's table; empty if the event is no answer
 };
 
-/// The numbers of all events of a definition. Events that differ in no part listed in `by` share a number.
+/// Numbers of all events of a definition. Two events share a number if they agree in all parts that `by` of
+/// [sync.codes] lists.
 class code_numbers {
 public:
     code_numbers() = default;
@@ -47,7 +48,7 @@ public:
     /// place of [sync] code if a number exceeds 255 or the greatest number that the lines can show.
     code_numbers(const code_settings& c, const experiment_definition& whole);
 
-    /// Returns the number of an event. `d` may be the definition reduced to a group.
+    /// Returns the number of an event. `d`: the definition, or its part for one group.
     unsigned number(const experiment_definition& d, const coded_event& e) const;
     /// Lists the meanings of each number. Each meaning begins with the event's name.
     const std::map<unsigned, std::vector<std::string>>& meanings() const noexcept { return meanings_; }
@@ -55,8 +56,8 @@ public:
 private:
     std::string describe(const experiment_definition& d, const coded_event& e) const;
 
-    std::vector<std::vector<std::string>> by_ = {}; ///< parts that tell numbers apart, by event
-    std::map<std::string, unsigned> numbers_ = {};  ///< numbers by description
+    std::vector<std::vector<std::string>> by_ = {}; ///< parts that determine the number, for each code_event
+    std::map<std::string, unsigned> numbers_ = {};  ///< number of each description
     std::map<unsigned, std::vector<std::string>> meanings_ = {};
 };
 

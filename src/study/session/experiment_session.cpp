@@ -40,11 +40,11 @@ namespace {
 
 using files::or_null;
 
-// Threshold assumed for an unmeasured tactor in a session that nobody feels.
+// Threshold assumed for a tactor without a measured threshold, in a session that nobody feels.
 constexpr double assumed_threshold_dbfs = -40.0;
 
-// If `nobody_feels` the session, gives a threshold to each tactor that has none. Returns true if it gave one.
-// Throws error (bad_input) for a session with a person, which needs measured thresholds.
+// Gives the assumed threshold to each tactor that has none. Returns true if there was such a tactor. Throws
+// error (bad_input) instead if `nobody_feels` is false, because a person needs measured thresholds.
 bool assume_thresholds(array& a, bool nobody_feels)
 {
     bool assumed = false;
@@ -62,9 +62,9 @@ bool assume_thresholds(array& a, bool nobody_feels)
     return assumed;
 }
 
-// For a left hand, exchanges left and right about the middle of the array in motions with `mirror` and in the
-// strokes of methods. Throws error (bad_input) if a motion has `mirror` and the session is with a person
-// whose hand is not given.
+// For a left hand, mirrors motions with `mirror`, and the strokes of methods, about the middle of the array.
+// Does nothing if no motion has `mirror`. Throws error (bad_input) if a motion has `mirror` but the hand of
+// the person is not given.
 void mirror_for_hand(experiment_definition& d, const array& a, const session_request& r)
 {
     const auto mirrored = std::ranges::find(d.motions, true, &motion_definition::mirror);
@@ -125,8 +125,8 @@ void keep_group(experiment_definition& d, const std::string& name)
     std::erase_if(d.runs, [](const run_definition& r) { return r.motions.empty(); });
 }
 
-// Sets the number of the session. Throws error (bad_input) if the definition lacks this session, or has
-// several and none is given.
+// Sets the number of the session, and keeps only the runs of this session. Throws error (bad_input) if the
+// definition does not have this session, or has several sessions but `session` is missing.
 void take_session(experiment_definition& d, session_number session)
 {
     const unsigned all = d.outline.sessions;
@@ -145,8 +145,8 @@ void take_session(experiment_definition& d, session_number session)
                     "add it to sessions of a [[run]]");
 }
 
-// Throws error (bad_input) if a limit changes a trial even on an array that has rested: the trial would
-// always be void.
+// Throws error (bad_input) if a limit would change a trial even after the array has rested, because the trial
+// would then always be void.
 void check_limits(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
                   const drive_limits& l, unsigned rate)
 {
@@ -167,13 +167,13 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
                          : "use a lower level, or raise the limit if the actuators bear it");
 }
 
-// Returns true if the answers choose the value of a trial, or move it.
+// Returns true if an adaptive procedure chooses the value of a trial, or the participant adjusts it.
 bool has_any_value(const experiment_definition& d, const run_sequence& r, const planned_trial& t)
 {
     return t.track > 0 || task_in(d.runs[r.run].outline).about().moves_value;
 }
 
-// Checks the trials of all runs, including practice.
+// Checks the trials of all runs, including practice, with each value that they may have.
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
                   const stimulus_set& stimuli, const drive_limits& l, unsigned rate)
 {
@@ -190,7 +190,7 @@ void check_limits(const experiment_definition& d, const std::vector<run_sequence
                 }
 }
 
-// Lists doubts about the calibration in a session whose level is relative to thresholds.
+// Returns warnings about the calibration, for a session whose level is relative to thresholds.
 std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
                                             const stimulus_set& stimuli)
 {
@@ -213,7 +213,7 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     return doubts;
 }
 
-// Passes the answer in a line to the adaptive procedure. Returns true if it ended the trial's track.
+// Passes the answer in a line to the adaptive procedure. Returns true if the answer ended the trial's track.
 bool take_line(value_chooser& values, const trial_row& row)
 {
     if (row.is_void || !row.track)
@@ -236,7 +236,7 @@ json array_facts(const array& a)
                            {"max_dbfs", t.max_dbfs},
                            {"threshold_dbfs", files::make_document(files::find_thresholds(t))},
                            {"actuator", std::string(to_string(t.actuator))}});
-        if (t.displacement_um_at_0dbfs) // else absent, so that sessions of older versions can resume
+        if (t.displacement_um_at_0dbfs) // absent if unknown, so that sessions of older versions can resume
             tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
     }
     return {{"name", a.name}, {"tactors", tactors}};
@@ -262,7 +262,7 @@ json calibration_facts(const prepared_experiment& p)
             {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
 }
 
-// Returns the pauses before the trials of each run, in the order of the trials.
+// Returns the rests before the trials of each run, s, in the order of the trials.
 json rest_facts(const prepared_experiment& p)
 {
     json all = json::object();
@@ -294,7 +294,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         render.level_dbfs = *d.level_dbfs;
     else
         render.sl_db = d.sl_db;
-    // A dry run may lack the participant.
+    // A dry run may have no participant.
     const std::string code = r.participant.empty() ? "01" : r.participant;
     const std::uint64_t seed = r.seed.value_or(d.seed.value_or(default_seed(code)));
     const std::size_t row = r.row.value_or(default_row(d, code));
@@ -414,8 +414,8 @@ std::vector<listed_stimulus> list_stimuli(const prepared_experiment& p)
     return all;
 }
 
-// Returns the path on which an observer is predicted to feel a stimulus, its strokes one after the other;
-// nothing if the observer has no prediction.
+// Returns the path that an observer is predicted to feel, with the strokes of the stimulus one after the
+// other. Returns nothing if the observer makes no prediction for this stimulus.
 std::optional<drawing> predict_drawing(const prepared_experiment& p, const stimulus& s, observer_kind who)
 {
     const std::vector<stroke>& strokes = s.made.strokes;

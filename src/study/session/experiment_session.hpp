@@ -37,31 +37,31 @@ enum class hand_kind { left, right };
 
 /// Request for a session.
 struct session_request {
-    std::string definition = {};            ///< name of the built-in definition, or a file
-    std::string participant = {};           ///< code; empty only for a dry run
-    std::optional<std::uint64_t> seed = {}; ///< if missing: the definition's, else default_seed()
+    std::string definition = {};            ///< name of a built-in definition, or path of a file
+    std::string participant = {};           ///< code of the participant; may be empty for a dry run
+    std::optional<std::uint64_t> seed = {}; ///< default: seed of the definition, or else default_seed()
     audience who = audience::person;
     std::optional<hand_kind> hand = {};  ///< missing if not given
     std::string group = {};              ///< name of a group; empty if not given
-    std::optional<std::size_t> row = {}; ///< row of the orders, from 1; if missing, default_row()
+    std::optional<std::size_t> row = {}; ///< row in the table of orders, from 1; default: default_row()
     session_number session = {};         ///< number of the session; missing if not given
-    bool all_sessions = false;           ///< true if no session number is needed
+    bool all_sessions = false;           ///< true to prepare the runs of all sessions; ignores `session`
 };
 
 struct prepared_experiment {
     experiment_definition definition;
     std::string participant;
     std::uint64_t seed = 0;
-    session::environment where; ///< its array has thresholds if a level needs them
+    session::environment where; ///< each tactor has a threshold if a level is relative to thresholds
     std::string pcm;            ///< PCM; "null" for a session without a person
     render_options render;
-    bool assumed = false; ///< true if a threshold is assumed, not measured
+    bool assumed = false; ///< true if any threshold is assumed, not measured
     std::vector<run_sequence> runs;
     stimulus_set stimuli;
     std::vector<std::string> warnings;
     std::vector<std::string> calibration_doubts; ///< warnings about the origin of the thresholds
     std::optional<hand_kind> hand = {};          ///< motions with `mirror` are mirrored for a left hand
-    std::size_t row = 1;                         ///< row of the orders, from 1
+    std::size_t row = 1;                         ///< row in the table of orders, from 1
     code_numbers codes = {};                     ///< empty without [sync] code
 
     /// Returns the run at a position in the session's order.
@@ -69,74 +69,78 @@ struct prepared_experiment {
 };
 
 /// Prepares and checks a session. \throws error (bad_input) if the definition, array or configuration is
-/// wrong, the definition lacks the group, session or row, a stimulus cannot be planned or played, or a
-/// session with a person lacks thresholds.
+/// invalid, the definition does not have the requested group, session or row, a stimulus cannot be planned or
+/// played, or a session with a person needs thresholds that the array does not have.
 prepared_experiment prepare(const session_request& r, session::settings& s);
 
-/// Makes the score that drives one tactor in the walk, at the carrier of the definition's first method.
-/// \throws error (bad_input) if its level is too high. The hint names keys of the definition.
+/// Makes the score that drives one tactor in the walk, with the carrier of the definition's first method.
+/// \throws error (bad_input) if the level is too high. The hint of the error names keys of the definition.
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
 
 /// Time from the change of the screen to the first frame of a stimulus, s. It lets the participant get ready.
 inline constexpr double stimulus_lead_s = 0.5;
 
-/// Returns the time from the end of the rest before a trial to its first frame: the duration of the target,
-/// if the run shows it, plus stimulus_lead_s.
+/// Returns the time from the end of the rest before a trial to the trial's first frame, s. It is
+/// stimulus_lead_s, plus the duration of the target if the run shows the target.
 double find_lead_s(const prepared_experiment& p, const run_definition& r, const planned_trial& t);
 
 struct run_time {
-    double total_s = 0.0;  ///< duration with practice, without the break after the run
-    double waits_s = 0.0;  ///< part of total_s spent waiting for the limits of drive time
+    double total_s = 0.0;  ///< duration, including practice but not the break after the run
+    double waits_s = 0.0;  ///< part of total_s in which trials wait for the limits of drive time
     std::size_t waits = 0; ///< number of trials that wait
 };
 
-/// Estimates the time of each run, in the session's order. Assumes that answers take no time and move no
-/// value, the device adds no latency, and the array has rested before.
+/// Estimates the duration of each run, in the session's order. Assumes that answers take no time and change
+/// no value, that the device adds no latency, and that the array has rested before the session.
 std::vector<run_time> session_times(const prepared_experiment& p);
 
-/// Returns the content of session.json before a session begins.
+/// Returns the content that session.json has when a session begins.
 nlohmann::ordered_json describe_session(const prepared_experiment& p,
                                         const std::optional<simulation>& simulate, const std::string& masker);
 
-/// Returns a trial's line with the cells that are known before the trial.
+/// Returns the table line of a trial. Fills only the cells that are known before the trial.
 trial_row planned_row(const prepared_experiment& p, const run_definition& r, const planned_trial& t,
                       const pending_trial& which);
 
-/// Sets the first frame of each stimulus that began. `begin`: start of each stimulus in its trial, of which
-/// `frames` frames were played.
+/// Sets the first frame of each stimulus that began to play. `begin`: start of each stimulus in frames since
+/// the start of the trial. `first_frame`: first frame of the trial. `frames`: number of frames of the trial
+/// that were played.
 void note_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
                  std::optional<std::uint64_t> first_frame, std::uint64_t frames);
 
-/// Sets the response of a line, its time, and whether it came early.
+/// Sets the response and the response time of a line. Marks the response as early if it came before the run's
+/// min_response_s.
 void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s);
 
 /// Returns the trials of a run that remain after the lines in its table. \throws error (bad_input) if a line
 /// does not belong to this session.
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows);
 
-/// Returns true if the tables have all trials of all runs and all answers to questionnaires. Throws as
-/// replay() does.
+/// Returns true if the tables have all trials of all runs and all answers to questionnaires. Throws the same
+/// errors as replay().
 bool finished(const prepared_experiment& p, const session_store& store);
 
-/// Makes the flow of a session from its present state on. Consent and walk are only for a person.
+/// Makes the flow of a session, starting from the state in the store. Only a flow `with_person` has consent
+/// and walk.
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person);
 
-/// Returns the name of the run before a questionnaire that comes between runs; empty for other
+/// Returns the name of the run that precedes a questionnaire between runs. Returns an empty name for other
 /// questionnaires.
 std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run);
 
-/// The table of one run or of its practice. Times count from the run's first sample at the DAC.
+/// The table of one run or of its practice. Its times are relative to the run's first sample at the DAC.
 class run_table {
 public:
     /// Continues after the lines that the store already has.
     run_table(session_store& store, const run_definition& r, bool practice);
 
-    /// Sets the onset and writes the line, which is on the disk when this returns. `started_ns` is
-    /// CLOCK_REALTIME at the trial's first frame; without a first frame it is the present time. \throws error
-    /// (runtime).
+    /// Sets the onset of a line and writes the line. When this returns, the line is on the disk.
+    /// `started_ns`: CLOCK_REALTIME at the trial's first frame, or now if the trial has no first frame.
+    /// \throws error (runtime).
     void add(trial_row row, std::int64_t started_ns, unsigned rate);
-    /// Returns the time of a frame since the run's first sample, s. The time is exact within a stream; in a
-    /// later stream it comes from `at_ns`, the frame's CLOCK_REALTIME. Call it after add().
+    /// Returns the time from the run's first sample to a frame, s. The time is exact if both are in the same
+    /// stream. If the frame is in a later stream, uses `at_ns`, the frame's CLOCK_REALTIME. Call it after
+    /// add().
     double onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_ns, unsigned rate) const;
 
 private:
@@ -145,7 +149,7 @@ private:
     bool practice_;
     bool empty_ = true;
     unsigned first_stream_ = 0;
-    std::optional<std::uint64_t> first_frame_ = {}; ///< first frame in that stream
+    std::optional<std::uint64_t> first_frame_ = {}; ///< run's first frame in stream first_stream_
     std::optional<std::int64_t> began_ns_ = {};     ///< start of the run, CLOCK_REALTIME
 };
 
@@ -155,10 +159,10 @@ public:
     /// Continues after the lines that the store already has.
     held_run(const prepared_experiment& p, std::size_t place, session_store& store);
 
-    /// Returns the trial of a step, with its value.
+    /// Returns the trial of a step, with the value that an adaptive procedure chooses, if any.
     planned_trial find_trial(const session_step& s) const;
-    /// Writes the line of a trial as run_table::add() does, and passes its answer to the adaptive procedure.
-    /// Returns true if the answer ended the trial's track.
+    /// Writes the line of a trial (see run_table::add()) and passes the trial's answer to the adaptive
+    /// procedure. Returns true if the answer ended the trial's track.
     [[nodiscard]] bool add(const session_step& s, const trial_row& row, std::int64_t started_ns);
     const run_table& table(const session_step& s) const { return s.practice ? practice_ : trials_; }
 

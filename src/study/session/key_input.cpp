@@ -29,8 +29,8 @@
 namespace tactor::study {
 namespace {
 
-// Returns an epoll of all descriptors, so that a caller can wait for one. Standard input stays out if it is a
-// file: epoll refuses files, which are always ready.
+// Returns an epoll descriptor that is ready when a keypad, `besides` (-1: none) or standard input is ready.
+// Leaves out standard input if it is a file: epoll refuses files, because they are always ready.
 detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
 {
     detail::owned_fd any(::epoll_create1(EPOLL_CLOEXEC));
@@ -61,8 +61,8 @@ constexpr key other_keys[] = {
     {KEY_LEFT, '<'},    {KEY_A, 'a'},     {KEY_ENTER, 'a'}, {KEY_KPENTER, 'a'},   {KEY_N, 'n'},
     {KEY_0, 'n'},       {KEY_KP0, 'n'},   {KEY_B, 'b'},     {KEY_BACKSPACE, 'b'}, {KEY_KPDOT, '.'}};
 
-// Time within which the key that answered a question cannot begin a number or text, ns. The key may be held,
-// or pressed twice.
+// Time during which the key that answered the previous question cannot begin a number or text, ns. The
+// participant may still hold the key, or press it twice.
 constexpr std::int64_t first_key_ns = 1'000'000'000;
 
 constexpr bool is_backspace(std::string_view key) noexcept
@@ -84,7 +84,7 @@ session_key make_key(std::string text, bool is_key)
     return k;
 }
 
-// Shows the change that a key made in a typed text.
+// Shows on the terminal how a key changed the typed text.
 void echo(const std::string& typed, std::size_t bytes_before)
 {
     if (typed.size() > bytes_before)
@@ -228,7 +228,7 @@ void session_keys::fill()
         if (n < 0)
             session::refuse_standard_input(errno);
         ended_ = n == 0;
-        if (ended_ && any_) // input at its end would be ready forever
+        if (ended_ && any_) // at its end, standard input would always be ready
             static_cast<void>(::epoll_ctl(any_.get(), EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
         read_ns_ = rt::monotonic_ns();
         text_.append(bytes, static_cast<std::size_t>(n));
@@ -264,7 +264,7 @@ void session_keys::drop_pressed()
         ;
 }
 
-// Reads the terminal's keys, too, so that repeat_guard knows a key that is still held.
+// Also reads the terminal's keys, so that repeat_guard recognises a key that is still held.
 void session_keys::drop_keys()
 {
     drop_pressed();
@@ -337,7 +337,7 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
     for (;;) {
         session_key k = wait("the session", true);
         const bool is_point = k.is_dot && estimate;
-        // A keypad's b erases while digits are typed.
+        // While a number is being typed, a keypad's b erases its last digit.
         const bool erases = k.from_keypad && k.command && !is_point && !shown.empty();
         if (!k.is_key || (k.command && !erases && !is_point))
             return k;
@@ -345,7 +345,8 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
             continue;
         const std::size_t before = shown.size();
         const char key = k.text.front();
-        // find_answer() converts a keypad's Enter to a and its 0 to n, for adjustments.
+        // For adjustments, find_answer() returns a for a keypad's Enter and n for its 0. This converts
+        // them back.
         auto typed = number.take(!k.from_keypad ? key
                                  : key == 'a'   ? '\n'
                                  : key == 'n'   ? '0'

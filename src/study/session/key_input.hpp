@@ -25,14 +25,15 @@ namespace tactor::study {
 /// 0; b for B and Backspace; a point for a keypad's dot. Returns nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
-/// Greatest number of answers with a key for each.
+/// Greatest number of answers for which each answer has a key: 1 to 9.
 inline constexpr unsigned most_keys = 9;
 
-/// A number that somebody is typing. It does not access the terminal.
+/// A number that somebody is typing. This class does not access the terminal.
 class typed_number {
 public:
-    /// Takes a digit, sign, point, comma or e (so that 1.5 and 1e5 do not become 15), Backspace or Enter, and
-    /// ignores other keys. At Enter returns the typed text, if any, and starts again.
+    /// Takes a digit, sign, point, comma, e, Backspace or Enter. Ignores other keys. Points and e are part of
+    /// the text so that 1.5 and 1e5 do not become 15. At Enter, returns the typed text, if any, and clears
+    /// it.
     std::optional<std::string> take(char key);
     const std::string& text() const noexcept { return text_; }
 
@@ -54,20 +55,20 @@ public:
 private:
     std::string text_ = {};
     std::string begun_ = {}; ///< bytes of an incomplete character
-    char escape_ = '\0';     ///< last byte of an unfinished escape sequence, as of an arrow; 0 if none
+    char escape_ = '\0';     ///< last byte of an unfinished escape sequence (an arrow key sends one), or 0
 };
 
 /// Detector of keys that a terminal repeats because they are held down. It does not read a clock.
 class repeat_guard {
 public:
-    /// Returns the time since the same key was last taken, ns; the greatest value if the last key was
-    /// different.
+    /// Returns the time since the last key, ns. Returns the greatest value if the last key was a different
+    /// key.
     std::int64_t since_ns(char key, std::int64_t at_ns) const noexcept
     {
         return key == last_ ? at_ns - last_ns_ : std::numeric_limits<std::int64_t>::max();
     }
-    /// Takes a key that was read at `at_ns`. `again`: the same key follows in the same read. Returns true if
-    /// the terminal repeats the key, which happens 10 to 60 times a second while it is held.
+    /// Takes a key that was read at `at_ns`. Returns true if the terminal repeated the key: it does so 10 to
+    /// 60 times a second while the key is held. `again`: true if the same read returned the key once more.
     bool is_repeated(char key, std::int64_t at_ns, bool again) noexcept
     {
         const bool repeated = again || since_ns(key, at_ns) < quiet_ns;
@@ -79,7 +80,7 @@ public:
 private:
     static constexpr std::int64_t quiet_ns = 100'000'000;
 
-    char last_ = '\0'; ///< last key; 0 before the first
+    char last_ = '\0'; ///< last key; 0 before the first key
     std::int64_t last_ns_ = 0;
 };
 
@@ -87,12 +88,12 @@ private:
 inline constexpr const char* resume_hint =
     "earlier answers are kept; if there are any, continue with --resume";
 
-/// A keypad. While this object lives, no other program gets its keys. For use by one thread.
+/// A keypad. While this object exists, no other program receives the keypad's keys. For use by one thread.
 class keypad {
 public:
-    /// Opens a device such as /dev/input/by-id/...-event-kbd. \throws error: not_available if it is missing,
-    /// may not be read or belongs to another program; bad_input if it is not an input device or no key of it
-    /// is an answer.
+    /// Opens a device such as /dev/input/by-id/...-event-kbd. \throws error: not_available if the device is
+    /// missing, cannot be read or belongs to another program; bad_input if it is not an input device or has
+    /// no key for an answer.
     explicit keypad(std::string device);
     keypad(const keypad&) = delete;
     keypad& operator=(const keypad&) = delete;
@@ -115,22 +116,22 @@ enum class operator_key {
     pause,     ///< p: pauses before the next trial
     go_on,     ///< g: ends a pause or a break
     quit,      ///< q: ends the session, as Ctrl-C does
-    back,      ///< b: asks the previous item again; works for the participant, too
+    back,      ///< b: goes back to the previous item; the participant may press it, too
 };
 
-/// A key, or a line if standard input is not a terminal.
+/// A key, an answer from the page, or a line if standard input is not a terminal.
 struct session_key {
-    /// Key, or line without blanks; typed number; text from the page. Empty for a command from the terminal
-    /// in a session with a page.
+    /// The key, the line without its blanks, the typed number, or the text from the page. Empty for a command
+    /// from the terminal in a session with a page.
     std::string text = {};
     std::optional<operator_key> command = {};
-    std::optional<unsigned> answer = {};     ///< number in `text`, or of the page's answer
+    std::optional<unsigned> answer = {};     ///< number in `text`, or number of the answer on the page
     std::optional<std::string> entered = {}; ///< line with its blanks, or text from the page
     bool is_key = false;  ///< true for a key press, false for a whole line or an answer from the page
     bool is_held = false; ///< true if a terminal repeats the key
     std::int64_t since_ns = std::numeric_limits<std::int64_t>::max(); ///< repeat_guard::since_ns()
     bool from_keypad = false;
-    bool is_dot = false;    ///< true for a keypad's dot, which means b except in an estimate
+    bool is_dot = false;    ///< true for a keypad's dot key, which means b except in an estimate
     std::int64_t at_ns = 0; ///< time of the key, CLOCK_MONOTONIC
 };
 
@@ -145,32 +146,36 @@ struct answering {
 /// key at once and does not show it; keys that send signals still work.
 class session_keys {
 public:
-    /// Opens the keypads. \throws error as keypad does.
+    /// Opens the keypads. Throws the errors of keypad's constructor.
     session_keys(stage& s, const answering& with);
     ~session_keys();
     session_keys(const session_keys&) = delete;
     session_keys& operator=(const session_keys&) = delete;
 
     bool is_terminal() const noexcept { return terminal_; }
-    /// Returns true if keys can come before their question. Lines cannot: each line waits for its question.
+    /// Returns true if somebody can press a key before the question that the key should answer. Lines cannot
+    /// come too early: each line stays unread until its question.
     bool come_early() const noexcept { return terminal_ || page_ != nullptr; }
-    /// Returns true if the participant has keys, not only lines.
+    /// Returns true if the participant can answer with keys, not only with lines.
     bool has_keys() const noexcept { return come_early() || !keypads_.empty(); }
-    /// Returns the next key or line, if any, even an unknown one. Does not block. Unless `repeated` is true,
-    /// skips answers that a terminal repeats, with a message the first time. \throws error (runtime) if a
-    /// source cannot be read.
+    /// Returns the next key or line, if any, even if it has no meaning. Does not block. Unless `repeated` is
+    /// true, skips answers that a terminal repeats, and prints a message the first time. \throws error
+    /// (runtime) if an input cannot be read.
     std::optional<session_key> poll(bool repeated = false);
-    /// Blocks until the next key or line. \throws stage::interruption; error (runtime) as poll() does, and
-    /// with `subject` if no more keys can come.
+    /// Blocks until the next key or line, and returns it. \throws stage::interruption; error (runtime) if an
+    /// input cannot be read, or if no more keys can come. In the last case `subject` is the subject of the
+    /// error.
     session_key wait(const std::string& subject = "the session", bool repeated = false);
-    /// Blocks until a number or a command. Shows digits as keys type them; a line or the page gives the whole
-    /// number. The key that answered the previous question cannot begin the number. `estimate`: the number
-    /// may have a point. Throws as wait().
+    /// Blocks until a number or a command is entered, and returns it. Shows the digits while they are typed.
+    /// A line, or an answer from the page, is a whole number at once. For one second, the key that answered
+    /// the previous question cannot begin the number. `estimate`: true if the number may have a point. Throws
+    /// as wait().
     session_key wait_for_number(typed_number& number, bool estimate);
-    /// Blocks until a text, and returns it in `entered` after tidy_text(). If `entered` is missing, the text
-    /// was not allowed. With a page it also returns the experimenter's commands. Without a page all keys are
-    /// text, except Backspace before the text, which is the command `back`. Shows the text as keys type it.
-    /// The key that answered the previous question cannot begin the text. Throws as wait().
+    /// Blocks until a text is entered, and returns it in `entered` after tidy_text(). `entered` is missing if
+    /// tidy_text() refused the text. With a page, this also returns the experimenter's commands. Without a
+    /// page, all keys of the terminal are text, except that Backspace before the first character is the
+    /// command `back`. Shows the text while it is typed. For one second, the key that answered the previous
+    /// question cannot begin the text. Throws as wait().
     session_key wait_for_text(typed_text& text);
     /// Returns true if no more keys or lines can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
@@ -188,7 +193,7 @@ private:
     stage& stage_;
     participant_page* page_;
     std::list<keypad> keypads_;
-    detail::owned_fd any_; ///< epoll of all inputs, unless standard input is the only one
+    detail::owned_fd any_; ///< epoll descriptor of all inputs; empty if standard input is the only input
     termios before_{};     // declared before terminal_, whose initializer fills it
     bool terminal_;
     std::string text_ = {};

@@ -41,7 +41,8 @@ ordered paths_list(const std::vector<Points>& paths)
     return all;
 }
 
-// Reads the points of a drawing: time, s, and place, mm.
+// Reads the points of a drawing: the time of each point, s, and its x and y, mm. Returns nothing if they are
+// not valid.
 std::optional<drawing> read_points(const ordered& j)
 {
     if (!j.is_array() || j.size() > most_drawn_points)
@@ -61,8 +62,8 @@ constexpr net::page_document document =
 #include "study/participant_page.inc"
     ;
 
-// Returns the words, the places of tactors and the site for a page. Leaves out title and methods, which could
-// influence the participant.
+// Returns what a page must know: its words, the positions of the tactors, and where the array is worn. Leaves
+// out the study's title and methods, which could influence the participant.
 nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
 {
     nlohmann::ordered_json words;

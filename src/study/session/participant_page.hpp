@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The participant's page. page_dialogue has its screens, messages and answers, and uses no socket, clock or
-/// thread. participant_page is the server.
+/// The participant's page. page_dialogue handles the page's screens, messages and answers; it uses no socket,
+/// clock or thread. participant_page is the page's server.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,8 @@ enum class entry_kind {
 /// Greatest length of a text that a participant enters, in characters.
 inline constexpr std::size_t most_text_characters = 2000;
 
-/// Returns a text with \n as line end, a blank for each tab, and no other control characters. Returns nothing
-/// if the text is too long or not UTF-8.
+/// Returns a text without control characters: keeps \n, replaces each tab by a blank, and removes the others.
+/// Returns nothing if the text is not UTF-8 or has more than most_text_characters.
 std::optional<std::string> tidy_text(std::string_view entered);
 
 /// Progress of the session.
@@ -45,9 +45,9 @@ struct page_progress {
     std::size_t run = 0; ///< number of the run, from 1
     std::size_t runs = 0;
     bool practice = false;
-    unsigned trial = 0; ///< number of the trial, from 1; 0 before the first
+    unsigned trial = 0; ///< number of the trial, from 1; 0 before the first trial
     std::size_t trials = 0;
-    bool may_end_early = false; ///< true if it may have fewer trials
+    bool may_end_early = false; ///< true if the run may end before its last trial
 };
 
 /// Content of the participant's screen. It does not reveal the method that renders a motion.
@@ -57,21 +57,22 @@ struct page_screen {
     std::string name = "wait";
     std::string text = {};
     std::string question = {};
-    std::vector<std::string> choices = {}; ///< possible answers; the page shows an empty one as its number
+    std::vector<std::string> choices = {}; ///< possible answers; the page shows a number for an empty label
     std::string keys = {};                 ///< a key for each choice; may be empty
-    bool is_line = false;     ///< true if the choices are places on a line, from 0 on, without numbers
-    bool are_stimuli = false; ///< true if the choices are the stimuli of the trial, in their places
+    bool is_line = false;     ///< true if the choices are places on a line without numbers, counted from 0
+    bool are_stimuli = false; ///< true if the choices are the stimuli of the trial, in their order
     entry_kind entry = entry_kind::none;     ///< kind of typed answer, in place of choices
     drawing_kind draws = drawing_kind::none; ///< kind of drawing, in place of choices
     unsigned lowest = 1;                     ///< smallest number that may be entered
     unsigned greatest = 1;
     bool back = false; ///< true if key b goes to the previous question
-    /// Paths of a motion's strokes for each choice, at equal parts of their times; may be empty.
+    /// For each choice, the paths of a motion's strokes, sampled at equal time steps. May be empty.
     std::vector<std::vector<std::vector<point>>> pictures = {};
-    unsigned stimuli = 0;                ///< number of stimuli to show; 0 if not shown one by one
-    unsigned playing = 0;                ///< stimulus that plays now, from 1; 0 if none
+    unsigned stimuli = 0; ///< number of stimuli that the page shows one by one; 0 if it does not
+    unsigned playing = 0; ///< stimulus that plays now, from 1; 0 if none
     std::vector<std::string> names = {}; ///< names of the stimuli; may be empty
-    /// Positions of the target's strokes at equal parts of its time; missing while a stroke does not play.
+    /// Positions of each stroke of the target, sampled at equal time steps. A position is missing while the
+    /// stroke does not play.
     std::vector<std::vector<std::optional<point>>> paths = {};
     double lasts_s = 0.0; ///< duration of the target or the break
     std::optional<page_progress> where = {};
@@ -84,10 +85,10 @@ public:
     struct message {
         visitor to = 0;
         std::string text = {};
-        bool last = false; ///< true if the connection ends after it
+        bool last = false; ///< true if the connection ends after this message
     };
 
-    /// Keeps `facts`, which each page gets once, when it says hello.
+    /// Keeps `facts`. Each page receives them once, in reply to its hello.
     explicit page_dialogue(nlohmann::ordered_json facts) : facts_(std::move(facts)) {}
 
     /// Shows a new screen and drops the open question. Returns the messages to send. `now_ns` is from the
@@ -97,17 +98,17 @@ public:
     struct heard {
         bool understood = true; ///< false if the visitor must be disconnected
         std::vector<message> replies = {};
-        std::optional<char> answer = {}; ///< key of the answer, or 0; a question gets at most one answer
-        unsigned number = 0;             ///< number entered, or place of the choice from 1 (on a line from 0)
-        /// Text that was entered, after tidy_text(); an estimate; a drawing as to_text() writes it.
+        std::optional<char> answer = {}; ///< key of the answer, or 0 if the answer has no key
+        unsigned number = 0; ///< entered number, or number of the choice, from 1 (on a line from 0)
+        /// Entered text after tidy_text(), estimate as it was typed, or drawing as to_text() writes it.
         std::optional<std::string> text = {};
     };
     /// Takes a message. {"hello":true} makes its sender the participant's page. {"ask":N,"answer":CHOICE or
-    /// number}, {"ask":N,"text":TEXT} and {"ask":N,"drawing":[[TIME,X,Y],...]} answer question N,
-    /// {"ask":N,"back":true} goes back from it.
+    /// number}, {"ask":N,"text":TEXT} and {"ask":N,"drawing":[[TIME,X,Y],...]} answer question N.
+    /// {"ask":N,"back":true} goes back to the previous question.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
 
-    /// Takes a keypad's key in place of an answer from the page: the key of a choice, or its number.
+    /// Takes a keypad's key (the key or the number of a choice) in place of an answer from the page.
     heard press(char key, std::int64_t now_ns);
 
     void leave(visitor v);
@@ -116,7 +117,7 @@ public:
 
 private:
     std::string state(std::int64_t now_ns) const;
-    /// Closes the question with a choice, which counts from 0.
+    /// Closes the question with a choice. `choice`: from 0.
     heard take(std::size_t choice);
     /// Closes the question with the key b.
     heard go_back();
@@ -133,10 +134,11 @@ struct page_answer {
     char key = 0; ///< key of the choice; 0 if it has none
     unsigned number = 0;
     std::optional<std::string> text = {}; ///< text that was entered
-    std::int64_t at_ns = 0;               ///< CLOCK_MONOTONIC at its arrival
+    std::int64_t at_ns = 0;               ///< CLOCK_MONOTONIC when the answer arrived
 };
 
-/// The page's server. A separate thread serves the sockets; these functions are for the session's thread.
+/// The server of the participant's page. A separate thread serves the sockets. The functions of this class
+/// are for the session's thread.
 class participant_page {
 public:
     /// Serves pages on `listening`, a TCP socket. Signals must be blocked already.
@@ -144,12 +146,13 @@ public:
 
     /// Shows a screen. Drops the open question, and an answer that poll() has not yet returned.
     void show(page_screen s);
-    /// Takes a keypad's key as an answer from the page: the key of a choice, or its number. Ignores other
-    /// keys, and all keys while no page is open.
+    /// Takes a keypad's key (the key or the number of a choice) as if it were an answer from the page.
+    /// Ignores other keys, and all keys while no page is open.
     void press(char key);
     /// Returns true if somebody has the page open.
     bool is_watched();
-    /// Returns the answer to the open question, if any, and only once. Does not block.
+    /// Returns the answer to the open question, unless there is none or poll() has already returned it. Does
+    /// not block.
     std::optional<page_answer> poll();
     /// Returns a descriptor that is readable while poll() has an answer.
     int descriptor() const noexcept { return answered_.fd(); }

@@ -23,11 +23,11 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Number of points of a path on the page, enough to look smooth.
+// Points of a path on the page: enough for a smooth curve.
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
 
-// Name in messages of the person who ends a session with q.
+// Name, for messages, of the person who ends a session with q.
 constexpr std::string_view experimenter = "the experimenter (q)";
 
 bool names_stimuli(const experiment_definition& d, const run_definition& r)
@@ -126,7 +126,7 @@ void person_session::step(const session_step& s)
 {
     if (s.what != step_kind::trial)
         stage_.fade_out();                           // noise that lasts through a run ends here
-    if (const auto v = std::exchange(voided_, {})) { // not earlier, because a stimulus may have been playing
+    if (const auto v = std::exchange(voided_, {})) { // only now, because a stimulus may have been playing
         codes_.send(code_event::made_void, *v, held_->find_trial(*v));
         const trial_row row{.trial = v->which.trial, .attempt = v->which.attempt, .stream = stream_};
         codes_.write(p_.run_at(v->run), row, held_->table(*v));
@@ -151,7 +151,7 @@ void person_session::step(const session_step& s)
     }
 }
 
-// Counts an opening of the device, and records it in session.json.
+// Records in session.json that the device was opened, and gives the new stream a number.
 void person_session::note_stream()
 {
     if (!begun_)
@@ -211,7 +211,7 @@ void person_session::introduce(const session_step& s)
         flow_.go_on();
 }
 
-// Blocks until a key, or until the experimenter changes the next step.
+// Blocks until somebody presses a key, or the experimenter changes the next step.
 void person_session::wait_for_any_key()
 {
     const session_step now = flow_.next();
@@ -288,7 +288,7 @@ void person_session::rest(const session_step& s)
         return !ended && flow_.next() == s;
     });
     if (!there)
-        return find_device(); // then next() asks for the same break again
+        return find_device(); // next() then returns the same break again
     if (flow_.next() == s)
         flow_.go_on();
 }
@@ -320,7 +320,7 @@ void person_session::ask_item(const session_step& s)
     if (flow_.next() != s)
         return;
     keys_.drop_keys();
-    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early(); // then b is text
+    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early(); // b may be text
     const auto a =
         ask(ask_about_item(q, s.item, p_.definition.page, flow_.can_go_back() && !is_line, page_ != nullptr));
     if (!a)
@@ -399,7 +399,7 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
         return [](std::uint64_t) {};
     const std::vector<std::size_t> methods = t.list_methods();
     const std::vector<std::uint64_t> begin = p_.stimuli.starts(t);
-    // Each gap has a mark, too, so that the participant sees all stimuli begin and end.
+    // Gaps have marks, too, so that the participant sees when each stimulus begins and ends.
     std::vector<std::pair<std::uint64_t, unsigned>> changes;
     for (std::size_t i = 0; i < methods.size(); ++i) {
         changes.emplace_back(begin[i], i + 1);
@@ -424,7 +424,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
     const double rest_s = again ? 0.0 : t.rest_s;
     if (rest_s > 0.0)
         on_page(stimulus_screen(p_, s));
-    // Waits before the target, because the stimulus follows it at once.
+    // Waits for the limits before it shows the target, because the stimulus follows the target at once.
     if (!stage_.pass(rest_s, [&](double) { return heed(); }) ||
         !stage_.make_room(stimuli, again ? stimulus_lead_s : find_lead_s(p_, r, t), waiting()))
         return {.flaw = "the device is gone"};
@@ -444,7 +444,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
                 stage_.cancel();
         });
         if (g.flaw.empty())
-            mark(stimuli.frames()); // in case the process was too slow to look
+            mark(stimuli.frames()); // shows marks that the watcher missed because the process was slow
     }
     heed(); // drops keys that were pressed too early
     if (quit_)
@@ -506,7 +506,7 @@ void person_session::trial(const session_step& s)
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     const bool ends_track = held_->add(s, row, started_ns);
     flow_.took(row.is_void, ends_track);
-    // Comes after add(), so that a kill during the code does not lose the answer.
+    // Comes after add(): if the process is killed while it sends the code, the answer is not lost.
     codes_.write(r, row, held_->table(s));
     if (right)
         tell(*right);

@@ -32,13 +32,13 @@ namespace tactor::study {
 
 /// A terminal that shows targets.
 struct target_display {
-    bool moves = false; ///< false if a line of text replaces the target
-    /// Shows a target. Returns a function that draws it at a time since its start, s. The picture lives as
-    /// long as that function; both arguments must live longer.
+    bool moves = false; ///< false if the terminal shows a line of text instead of the target
+    /// Shows a target. Returns a function that draws the target as it is `t_s` seconds after its start. The
+    /// picture exists as long as the returned function. Both arguments must outlive that function.
     std::function<std::function<void(double t_s)>(const array& a, const std::vector<stroke>& target)> show;
 };
 
-/// Names of a session's devices, for its data; empty if there is none.
+/// Names of a session's devices, for session.json. A name is empty if there is no such device.
 struct session_devices {
     std::string pcm = {};
     std::string pcm_server = {}; ///< sound server between the program and the card
@@ -75,13 +75,16 @@ private:
     /// continues.
     bool end();
 
-    /// Returns a watcher that asks the participant to wait when it is first called.
+    /// Returns a watcher whose first call asks the participant to wait.
     std::function<bool(double)> waiting();
-    /// Shows the target. Returns a reason if that makes the trial void, else an empty text.
+    /// Shows the target. Returns an empty text, or the reason why the trial is void if showing the target
+    /// fails.
     std::string animate(const session_step& s, const planned_trial& t);
-    /// Plays the stimuli of a trial. `again`: they played before, with these values or others.
+    /// Plays the stimuli of a trial. `again`: true if the trial's stimuli have played before, with the same
+    /// value or another one.
     given_stimulus give(const session_step& s, const planned_trial& t, bool again);
-    /// Returns a watcher that shows which of two stimuli plays at a frame, and catches up on earlier changes.
+    /// Returns a watcher that shows which stimulus of a trial plays at a frame. A late call also shows the
+    /// changes that came before the frame.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     std::optional<given_answer> ask(const question& q);
 
@@ -92,7 +95,7 @@ private:
     void obey(operator_key k);
     void void_last();
     void wait_for_any_key();
-    /// Blocks until one of these keys. Meanwhile q is the only command.
+    /// Blocks until one of these keys is pressed, and returns it. Obeys no command except q.
     char wait_for_one_of(std::string_view keys);
     void find_device();
     void note_stream();
@@ -109,13 +112,13 @@ private:
     session_flow flow_;
     std::optional<held_run> held_ = {}; ///< run in progress
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
-    std::optional<unsigned> doubted_ = {};    ///< tactor that gets a second try after a No
-    std::optional<session_step> voided_ = {}; ///< trial that was made void, and whose code is not yet sent
+    std::optional<unsigned> doubted_ = {};    ///< tactor that plays again after the first No
+    std::optional<session_step> voided_ = {}; ///< void trial whose code is not sent yet
     unsigned stream_ = 0;
     std::string agreed_at_ = {};                                    ///< time of consent; empty if not asked
     bool begun_ = false;                                            ///< true after begin_store()
-    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< questionnaires shown, with their runs
-    bool repeat_ = false; ///< true if requested while a stimulus plays
+    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< introduced questionnaires: form, run
+    bool repeat_ = false; ///< true if the experimenter pressed r while a stimulus plays
     bool quit_ = false;
 };
 

@@ -16,13 +16,13 @@ constexpr double picture_points = 60.0; // enough to look smooth
 // Time within which a second press of the key that answered the previous question is ignored, ns.
 constexpr std::int64_t second_press_ns = 300'000'000;
 
-// Returns a key for each answer; empty if there are too many answers.
+// Returns a key for each answer. Returns no keys if there are more answers than keys.
 std::string number_keys(std::size_t answers)
 {
     return answers <= most_keys ? std::string("123456789").substr(0, answers) : "";
 }
 
-// Returns the places of each stroke at equal parts of its own time.
+// Returns points on the path of each stroke, at equal time steps.
 std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, const layout& faces)
 {
     std::vector<std::vector<point>> all;
@@ -35,7 +35,8 @@ std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, 
     return all;
 }
 
-// Returns the possible answers for a terminal: "1 none, 2 slight", "1 (never) to 7 (always)", "0 to 120".
+// Returns the possible answers for a terminal, such as "1 none, 2 slight", "0 to 120" or
+// "1 (never) to 7 (always)".
 std::string answers_text(const questionnaire_item& item, const page_words& w)
 {
     const std::vector<std::string> labels = label_answers(item);
@@ -51,7 +52,7 @@ std::string answers_text(const questionnaire_item& item, const page_words& w)
     return text;
 }
 
-// Returns the number of the choice with this key. At a terminal Enter is the key a, as on a keypad.
+// Returns the number of the choice with this key, from 1. Enter counts as the key a, as on a keypad.
 std::optional<unsigned> find_choice(const page_screen& s, const std::string& key)
 {
     const std::size_t at = key.size() == 1 ? s.keys.find(key == "\n" ? 'a' : key.front()) : s.keys.npos;
@@ -172,7 +173,7 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s, co
         return {std::move(shown), std::move(a.possible)};
     }
     shown.draws = a.draws;
-    if (a.draws == drawing_kind::place) { // at a terminal, the number of a tactor
+    if (a.draws == drawing_kind::place) { // at a terminal, participants type a tactor's number
         shown.greatest = static_cast<unsigned>(p.where.tactors.tactors.size());
         a.possible = fmt::format("{} {} {}", shown.lowest, p.definition.page["to"], shown.greatest);
     }

@@ -45,7 +45,7 @@ public:
 
 private:
     detail::owned_fd port_;
-    std::atomic<unsigned> shown_ = 256; ///< last byte sent; 256 before the first
+    std::atomic<unsigned> shown_ = 256; ///< last byte sent; 256 before the first byte
 };
 
 // Returns true if a file is a terminal device. Does not open it, because opening some devices has side

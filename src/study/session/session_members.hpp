@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Facts that session.json and tactor-experiment/1 share, with their members.
+/// Facts that both session.json and tactor-experiment/1 contain.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace tactor::study {
 
-/// Level of stimuli: exactly one of the two has a value.
+/// Level of stimuli. Exactly one of the two members has a value.
 struct listed_level {
     std::optional<double> sl_db = {};
     std::optional<double> dbfs = {};
@@ -26,7 +26,7 @@ struct listed_noise {
     std::string color = {};
     double level_dbfs = 0.0;
     double fade_s = 0.0;
-    std::string duration = {}; ///< run or stimulus
+    std::string duration = {}; ///< "run" or "stimulus"
 };
 
 /// A stimulus with the SHA-256 of its plans.
@@ -39,7 +39,7 @@ struct listed_stimulus {
     std::optional<listed_level> level = {};
 };
 
-/// Returns the level of a score.
+/// Returns the level in render options.
 listed_level list_level(const render_options& o);
 
 /// Returns the noise of a definition, if any.

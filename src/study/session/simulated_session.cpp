@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A session with a simulated observer. It has no device, and its clock follows from its lines.
+// A session with a simulated observer. It has no device. Its clock is computed from the lines of its trials.
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -94,14 +94,15 @@ private:
         return epoch_ns + static_cast<std::int64_t>(microseconds) * 1000;
     }
 
-    // Sets the clock after a trial, only from its line: a resumed session has nothing else.
+    // Sets the clock to the time after a trial. Uses only the trial's line, because a resumed session has no
+    // other data.
     void pass(const trial_row& row)
     {
         now_ = row.frame_1.value_or(now_) + frames(row.duration_s) +
                frames(row.response_time_s.value_or(0.0)) + frames(pause_s);
     }
 
-    // Sets the clock of a resumed session to the end of its lines.
+    // Sets the clock of a resumed session to the time after its last line.
     void go_to_end_of_lines()
     {
         for (const run_sequence& s : p_.runs) {
@@ -116,7 +117,7 @@ private:
         }
     }
 
-    // Plays a trial, and sets its last value.
+    // Simulates a trial, and returns its line. Sets `t` to the value at which the observer stops.
     trial_row play(const session_step& s, const simulated_observer& who, planned_trial& t)
     {
         const run_definition& r = p_.run_at(s.run);

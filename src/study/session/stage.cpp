@@ -64,7 +64,7 @@ bool stage::fade_in()
     if (!masker_)
         return true;
     if (masker_->ended() != io_kind::ok) {
-        masker_.reset(); // closes the device first
+        masker_.reset(); // closes the device before it is opened again
         masker_ = std::make_unique<masker>(open_masker_(), masking_);
     }
     masker_->fade_in();

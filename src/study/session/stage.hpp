@@ -24,15 +24,15 @@ struct given_stimulus {
     std::uint64_t frames = 0;                      ///< number of frames that were played
     std::int64_t started_ns = 0;                   ///< CLOCK_MONOTONIC of its first frame at the DAC
     std::int64_t ended_ns = 0;                     ///< CLOCK_MONOTONIC of its last frame at the DAC
-    unsigned xruns = 0;                            ///< number of xruns since the request
-    bool limited = false;                          ///< true if limits of the array changed it
+    unsigned xruns = 0;                            ///< number of xruns since the stimulus was requested
+    bool limited = false;                          ///< true if limits of the array changed the stimulus
 
-    /// Returns the reason why the stimulus does not count: its flaw, or a limit. Returns an empty text if it
-    /// counts.
+    /// Returns the reason why the stimulus is not valid: its flaw, or a limit. Returns an empty text if the
+    /// stimulus is valid.
     std::string fault() const;
 };
 
-/// A session on the array. A signal ends it with an exception. For use by one thread.
+/// A session that plays on the array. A signal ends the session with an exception. For use by one thread.
 class stage : public session::play_session {
 public:
     /// Early end of a session.
@@ -46,37 +46,39 @@ public:
           const session::stream_source& source = {});
 
     using sink_opener = std::function<std::unique_ptr<sink>()>;
-    /// Plays noise around each stimulus from now on. \throws error as masker does, and errors of `open`.
+    /// From now on, plays masking noise around each stimulus. Throws the errors of `open` and of masker's
+    /// constructor.
     void mask(sink_opener open, const masking_options& o);
     /// Plays the noise on the PCM with this name, in stereo.
     void mask(const std::string& pcm, const masking_options& o);
 
-    /// Returns the time, s, by which a score that would begin in `lead_s` must be delayed so that no tactor
-    /// exceeds the limits of drive time. Counts earlier stimuli, too.
+    /// Returns the delay, s, that a score starting in `lead_s` needs so that no tactor exceeds the limits of
+    /// drive time. Takes earlier stimuli into account. Returns 0 if no delay helps.
     double room_s(const score& s, double lead_s) const;
-    /// Blocks for the time of room_s(), as pass() does.
+    /// Blocks for the delay that room_s() returns. `watch` and the result are as for pass().
     bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
-    /// Function that is called some 25 times a second with the current frame of the stimulus.
+    /// Function that is called about 25 times a second with the current frame of the stimulus.
     using watcher = std::function<void(std::uint64_t stimulus_frame)>;
-    /// Plays a score. Masking noise, if any, starts before it and continues after it. Blocks until the score
-    /// ends. \throws interruption; error if the noise's device cannot be opened again.
+    /// Plays a score. Masking noise, if any, starts before the score and continues after the score. Blocks
+    /// until the score ends. \throws interruption; error if the noise's device cannot be opened again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
 
-    /// Plays a score as give() does. If a limit changed it because earlier runs drove the tactors, lets them
-    /// rest completely and plays it once more. `watch`: as for pass().
+    /// Plays a score as give() does. If a limit changed the score because earlier runs drove the tactors,
+    /// waits until the tactors have rested, and plays the score once more. `watch`: as for pass().
     given_stimulus give_after_limits(const score& s, const std::function<bool(double passed_s)>& watch);
 
-    /// Starts the noise, which lasts until fade_out(), and blocks until it has full level. Returns false if
-    /// it does not sound. Throws as give().
+    /// Starts the noise, if any, and blocks until the noise has full level. It lasts until fade_out().
+    /// Returns false if the noise does not play. Throws as give().
     bool fade_in();
     void fade_out() noexcept;
 
-    /// Returns the reason why the noise ended; `ok` while it plays, and without noise.
+    /// Returns the reason why the noise ended; `ok` while it plays, or if there is no noise.
     io_kind noise_ended() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
 
-    /// Blocks until `seconds` of the stream's time have passed. `watch` gets the time passed and returns
-    /// false to stop early. Returns false if the stream ended meanwhile. \throws interruption.
+    /// Blocks until `seconds` of the stream's time have passed. Calls `watch` repeatedly with the time
+    /// passed; `watch` returns false to stop early. Returns false if the stream ended meanwhile. \throws
+    /// interruption.
     bool pass(double seconds, const std::function<bool(double passed_s)>& watch);
     /// Blocks until a descriptor is readable. \throws interruption.
     void wait_for(int descriptor);
@@ -108,9 +110,9 @@ private:
     stage& stage_;
 };
 
-/// Calls `held`, which uses the stage, and ends the stage's streams in any case. Returns the interruption, if
-/// any.
-/// \throws all that `held` throws, except stage::interruption.
+/// Calls `held`, which uses the stage, and then ends the stage's streams, even after an error. Returns the
+/// interruption, with signal 0 if there was none.
+/// Throws the exceptions of `held`, except stage::interruption.
 template <typename Held>
 [[nodiscard]] stage::interruption until_interrupted(stage& s, const Held& held)
 {

@@ -24,7 +24,7 @@
 namespace tactor::study {
 namespace {
 
-// Name of the event of a code that was cut short.
+// Name of the event in which a code was cut short.
 constexpr std::string_view broken = "broken";
 
 std::uint64_t bit_frames(const code_settings& c, unsigned rate)
@@ -276,9 +276,9 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
         parts.push_back({make(numbers[i]), begin[i]});
     const double rate = p_.render.rate;
     if (lines_ != nullptr) {
-        there_->fade_in(); // now, because its duration is unknown
-        // Changes the number halfway between the starts of two stimuli, so that a late pulse still has the
-        // right one.
+        there_->fade_in(); // before the times below, because its duration is unknown
+        // Changes the number halfway between the starts of two stimuli, so that a late pulse still shows the
+        // right number.
         const double first_s = stimulus_lead_s + there_->setup().buffer_frames / rate;
         std::vector<due_number> due{{numbers[0], 0}};
         for (std::size_t i = 1; i < begin.size(); ++i) {
@@ -291,7 +291,8 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
     given_stimulus g = there_->give(lead > 0 ? synth::join_scores(parts) : stimuli,
                                     stimulus_lead_s - static_cast<double>(lead) / rate,
                                     [&](std::uint64_t frame) { watch(frame - std::min(frame, lead)); });
-    // A code comes before its stimulus. With the first code in front, each begins where its stimulus would.
+    // A code comes before its stimulus, and the first code delays all stimuli by `lead`. So each code begins
+    // at the frame at which its stimulus would begin without codes.
     const std::uint64_t played = g.frames;
     const auto find_cut = [&](std::uint64_t begins, unsigned number) {
         if (!g.first_frame || played <= begins || played >= begins + lead)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sends numbers that mark the stimuli, answers and void trials of a session for an EEG amplifier: as pulse
-/// codes on a spare channel, on GPIO lines, as bytes to a serial trigger box, and to the Lab Streaming Layer.
-/// Writes them to the table of events of a run, too.
+/// Codes: numbers that mark the stimuli, answers and void trials of a session for an EEG amplifier. They are
+/// sent as pulse codes on a spare channel, on GPIO lines, as bytes to a serial trigger box, and to the Lab
+/// Streaming Layer. The table of events of a run contains them, too.
 #pragma once
 
 #include <atomic>
@@ -41,8 +41,8 @@ std::string_view name_outputs(const code_settings& c) noexcept;
 
 /// Checks before a session that each code and each pulse ends before the next one. A code on the channel must
 /// fit into the gap between two stimuli. A number on the lines or at a serial box must fit into the shortest
-/// stimulus, because an answer may come at its end. A byte must fit into its pulse, and a pulse or marker of
-/// [sync] must end before the next stimulus. \throws error (bad_input).
+/// stimulus, because an answer may come when the stimulus ends. A byte must fit into a pulse. A pulse or
+/// marker of [sync] must end before the next stimulus. \throws error (bad_input).
 void check_pulses(const session::environment& e, const experiment_definition& d, const stimulus_set& all,
                   unsigned rate);
 
@@ -51,14 +51,14 @@ nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& al
 /// Returns the description of the tables of events, with each number and its meaning; null without codes.
 nlohmann::ordered_json describe_events(const prepared_experiment& p);
 
-/// Number that a pulse shows from a time on.
+/// Number that pulses show from a given time on.
 struct due_number {
     unsigned number = 0;      ///< 0 for none
     std::int64_t from_ns = 0; ///< CLOCK_MONOTONIC
 };
 
-/// Outputs of the codes (GPIO lines, a serial box) in place of a line of sync pulses. Each pulse shows the
-/// present number, and also switches the line `out`, if any.
+/// Outputs of the codes (GPIO lines, a serial box), which replace the line of sync pulses. Each pulse shows
+/// the number that is due. It also switches the line `out`, if any.
 class coded_pulse final : public enable_line {
 public:
     coded_pulse(std::vector<std::unique_ptr<amplifier::code_lines>> outputs, std::unique_ptr<enable_line> out)
@@ -83,13 +83,14 @@ private:
     std::array<due_code, most_stimuli> due_ = {};
 };
 
-/// Returns a source that opens the outputs of the codes together with those of the stream, and sets `lines`
-/// to them. They live as long as the stream. All arguments must live until the source is called.
+/// Returns a stream source that opens the outputs of the codes and adds them to the stream's lines. Sets
+/// `lines` to these outputs, if any; they exist as long as the stream. All arguments must live until the
+/// source is called.
 session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
                                   coded_pulse*& lines);
 
-/// A stream of numbers in the Lab Streaming Layer, with type "Markers". It lasts until the process ends. The
-/// constructor loads liblsl, so that other sessions do not need it.
+/// A stream of numbers in the Lab Streaming Layer, with type "Markers". It lasts until the process ends. Only
+/// the constructor loads liblsl, so that sessions without such a stream do not need the library.
 class lsl_markers {
 public:
     /// Loads the library $PYLSL_LIB, or liblsl.so.2, and opens the stream. \throws error (not_available) if
@@ -105,29 +106,31 @@ private:
     void* outlet_ = nullptr;
 };
 
-/// The codes of one session. Practice has no codes. Without [sync] code this class does nothing.
+/// The codes of one session. Practice trials have no codes. Without [sync] code this class does nothing.
 class sync_codes {
 public:
-    /// Prepares the codes. Without a stage (`there` is null) it sends nothing, and the caller notes the codes
-    /// with their times. `lines` may be null. All arguments must outlive this object.
+    /// Prepares the codes. Without a stage (`there` is null) this class sends nothing, and the caller must
+    /// note each code with its time. `lines` may be null. All arguments must outlive this object.
     sync_codes(const prepared_experiment& p, session_store& store, stage* there, coded_pulse* lines);
 
-    /// Returns the length of the code before a stimulus, in frames.
+    /// Returns the length of the code before a stimulus, in frames; 0 without a code on the channel.
     std::uint64_t lead(const session_step& s) const { return code_ && !s.practice ? lead_ : 0; }
 
-    /// Plays a trial's stimuli as stage::give() does, each after its code. The record covers only the
-    /// stimuli, not the codes. Throws as stage::give().
+    /// Plays a trial's stimuli as stage::give() does, and sends the code of each stimulus. The returned
+    /// record covers only the stimuli, not the codes. Throws as stage::give().
     given_stimulus give(const score& stimuli, const session_step& s, const planned_trial& t,
                         const stage::watcher& watch);
-    /// Starts to send the code of an event that happens now: on the lines at once, on the channel after the
-    /// device's buffer. finish() completes it. `response`: response of an answer, as in the table.
+    /// Starts to send the code of an event that happens now. Lines show the code at once; on the channel it
+    /// plays after the frames in the device's buffer. Call finish() to complete the code. `response`: for an
+    /// answer, the response as in the run's table.
     void send(code_event e, const session_step& s, const planned_trial& t, std::string_view response = {});
 
-    /// Blocks until the end of a code that send() started, if any, and notes it.
+    /// Completes the code that send() started, if any: blocks until the code ends, and notes it.
     void finish();
 
-    /// Notes the codes of stimuli that began at `frame_1` and of which `frames` frames were played. `ns`:
-    /// CLOCK_REALTIME of `frame_1`.
+    /// Notes the code of each stimulus of a trial, if the stimulus began to play. `frame_1`: first frame of
+    /// the first stimulus. `frames`: number of frames of the trial that were played. `ns`: CLOCK_REALTIME of
+    /// `frame_1`.
     void note_stimuli(const session_step& s, const planned_trial& t, std::uint64_t frame_1,
                       std::uint64_t frames, std::int64_t ns);
     /// Notes the code of an answer or a void trial at a frame. `ns`: CLOCK_REALTIME of the frame.
@@ -153,7 +156,7 @@ private:
         std::optional<stroke_report> refused = {}; ///< report, if the stream refused the code
         session_step of = {};
     };
-    /// Returns a stimulus of a trial. `place`: counts from 1.
+    /// Returns the event of a stimulus. `place`: place of the stimulus in the trial, from 1.
     coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const;
     unsigned number(const coded_event& e) const;
     /// Notes and reports a code that was cut short: the recorder may have read another number.
@@ -168,7 +171,7 @@ private:
     const code_settings* code_;
     std::uint64_t lead_ = 0;
     std::optional<lsl_markers> lsl_ = {};
-    std::optional<score> like_ = {}; ///< template of the scores of codes on the channel
+    std::optional<score> like_ = {}; ///< template for the scores of codes on the channel
     std::optional<sending> sending_ = {};
     std::vector<sent> noted_ = {};
 };
