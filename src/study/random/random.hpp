@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Random numbers that are the same on every machine, for every draw of a study.
+/// Random numbers for all draws of a study. They are the same on every machine.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace tactor::study {
 
-/// xoshiro256** of Blackman and Vigna (2018). Its state is the SHA-256 of a text, eight bytes to a word, the
-/// most significant byte first.
+/// The generator xoshiro256** (Blackman and Vigna 2018). The initial state is the SHA-256 of a text. Each
+/// word of the state is eight bytes of the SHA-256, with the most significant byte first.
 class random_numbers {
 public:
     explicit random_numbers(std::string_view seed) : s_{}
@@ -26,7 +26,7 @@ public:
         for (std::size_t i = 0; i < d.size(); ++i)
             s_[i / 8] = s_[i / 8] << 8 | d[i];
     }
-    /// Begins with a state, which must not be all zeros.
+    /// Starts with this state, which must not be all zeros.
     explicit random_numbers(const std::array<std::uint64_t, 4>& state) noexcept : s_(state) {}
 
     std::uint64_t next() noexcept
@@ -42,25 +42,26 @@ public:
         return drawn;
     }
 
-    /// Returns 0 to n - 1, each as likely as the others (Lemire 2019, on the upper 32 bits). n must not be 0.
+    /// Returns a uniformly distributed number from 0 to n - 1 (Lemire 2019, with the upper 32 bits). n must
+    /// not be 0.
     std::uint32_t below(std::uint32_t n) noexcept
     {
         const auto product = [&] { return (next() >> 32) * n; };
         std::uint64_t m = product();
         if (static_cast<std::uint32_t>(m) < n) {
             const std::uint32_t least =
-                (0U - n) % n; // 2^32 mod n: below that some numbers come once too often
+                (0U - n) % n; // 2^32 mod n: smaller remainders would make some numbers more likely
             while (static_cast<std::uint32_t>(m) < least)
                 m = product();
         }
         return static_cast<std::uint32_t>(m >> 32);
     }
 
-    /// Returns a multiple of 2^-53 from 0 to below 1.
+    /// Returns a uniformly distributed multiple of 2^-53, at least 0 and below 1.
     double unit() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
 
-    /// Returns a normal number, mean 0 and standard deviation 1 (Marsaglia's polar method, without its second
-    /// number).
+    /// Returns a normally distributed number with mean 0 and standard deviation 1, by Marsaglia's polar
+    /// method. Does not use the second number of each pair.
     double normal() noexcept
     {
         for (;;) {
@@ -76,7 +77,7 @@ private:
     std::array<std::uint64_t, 4> s_;
 };
 
-/// Puts values into an order, each as likely as the others: Fisher-Yates, from the end.
+/// Shuffles values by the Fisher-Yates algorithm, from the end. All orders are equally likely.
 template <typename T>
 void shuffle(std::span<T> values, random_numbers& r)
 {

@@ -12,7 +12,8 @@ namespace {
 
 using square_matrix = std::vector<std::vector<double>>;
 
-// Lists the first item, and each item with a chain of preferences to the first item and one back.
+// Returns the first item, and all items that chains of preferences connect to the first item in both
+// directions.
 std::vector<std::size_t> list_comparable(const square_matrix& wins)
 {
     const std::size_t n = wins.size();
@@ -49,7 +50,7 @@ square_matrix invert(square_matrix m)
     return m;
 }
 
-// Derivatives of the log likelihood by the log worths of all items but the first.
+// Derivatives of the log-likelihood with respect to the log worths of all items except the first.
 struct derivatives {
     std::vector<double> gradient;
     square_matrix information; ///< negative second derivatives
@@ -80,7 +81,7 @@ derivatives derive(const square_matrix& wins, const std::vector<std::size_t>& it
 std::vector<worth> bradley_terry(const std::vector<std::vector<double>>& wins)
 {
     constexpr int most_steps = 100;
-    constexpr double longest_step = 1.0; // longer ones may lead away from the maximum
+    constexpr double longest_step = 1.0; // longer steps may lead away from the maximum
     constexpr double shortest_step = 1e-9;
     const std::vector<std::size_t> items = list_comparable(wins);
     std::vector<double> log_worths(items.size());

@@ -16,12 +16,12 @@
 namespace tactor::study {
 namespace {
 
-// Computes in double, for the reason in tests.cpp.
+// Policy that computes in double; tests.cpp has the reason.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 struct sigmoid_value {
     double below; // S(z)
-    double above; // 1 - S(z), which has digits where S is near 1
+    double above; // 1 - S(z), precise even if S is near 1
     double slope; // dS / dz
     double bend;  // d2S / dz2
 };
@@ -43,20 +43,20 @@ double normal_quantile(double share)
     return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * share, in_double());
 }
 
-// Parameters where the stimuli are -1 to 1: z = a + b x.
+// Parameters for stimuli that are scaled to -1 ... 1: z = a + b x.
 struct point {
     double a;
     double b;
     double lapse;
 };
 
-// Log-likelihood without binomial coefficients, and its derivatives by a, b and the lapse.
+// Log-likelihood without binomial coefficients, and its derivatives with respect to a, b and the lapse.
 struct likelihood {
     double log = 0.0;
     std::array<double, 3> gradient = {};
     std::array<std::array<double, 3>, 3> information = {};
 
-    double determinant() const // of the information about a and b
+    double determinant() const // of the information matrix of a and b
     {
         const auto& i = information;
         return i[0][0] * i[1][1] - i[0][1] * i[0][1];
@@ -67,7 +67,7 @@ struct likelihood {
     }
 };
 
-// Computes the log-likelihood with the observed information, or with the expected one.
+// Computes the log-likelihood with the observed information, or with the expected information if `expected`.
 likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_family& f, const point& p,
                     bool expected = false)
 {
@@ -97,9 +97,9 @@ likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_
     return all;
 }
 
-// Returns the step of Newton's method, or of Fisher's scoring if `expected`, with the lapse within its
-// bounds. Returns nothing if the information is not that of a maximum. With `expected`, the lapse stays if
-// the answers say nothing about it.
+// Returns the step of Newton's method, or of Fisher's scoring if `expected`. The step keeps the lapse within
+// its bounds. Returns nothing if the information matrix is not positive definite. With `expected`, the step
+// does not change the lapse if the answers have no information about the lapse.
 std::optional<point> find_move(const likelihood& l, double lapse, double most_lapse, bool expected)
 {
     if (l.singular())
@@ -124,11 +124,12 @@ std::optional<point> find_move(const likelihood& l, double lapse, double most_la
 struct summit {
     point at;
     double log;
-    bool step = false; // any steep slope fits as well
+    bool step = false; // true if all steep slopes fit equally well
 };
 
-// Climbs by Newton's method, or by Fisher's scoring if Newton's finds no move. Halves a move until it does
-// not lead down. Returns nothing if the answers do not rise.
+// Climbs to a maximum of the likelihood by Newton's method, or by Fisher's scoring if Newton's method has no
+// step. Halves each step until the likelihood does not fall. Returns nothing if the share of answers does not
+// rise with x.
 std::optional<summit> climb(const std::vector<answer_block>& blocks, const psychometric_family& f, point p)
 {
     likelihood here = evaluate(blocks, f, p);
@@ -139,9 +140,9 @@ std::optional<summit> climb(const std::vector<answer_block>& blocks, const psych
             move = find_move(here, p.lapse, f.most_lapse, true);
         }
         const auto& up = here.gradient;
-        // The square of the move in standard errors.
+        // The sum is the square of the step in standard errors.
         if (!move || up[0] * move->a + up[1] * move->b + up[2] * move->lapse < 1e-16) {
-            // The slope is more than a thousandth of its standard error.
+            // The slope is known if it is more than a thousandth of its standard error.
             const bool known = move && p.b * p.b * here.determinant() > 1e-6 * here.information[0][0];
             const bool step = !known && p.b > 1.0 && std::abs(p.a) < p.b;
             return p.b > 0.0 && (known || step) ? std::optional(summit{p, here.log, step}) : std::nullopt;
@@ -163,7 +164,8 @@ std::optional<summit> climb(const std::vector<answer_block>& blocks, const psych
     return {};
 }
 
-// Climbs from each start and returns the highest summit. With lapses and guesses there may be several.
+// Climbs from each start and returns the highest maximum. With lapses and guesses there may be several
+// maxima.
 std::optional<summit> find_summit(const std::vector<answer_block>& blocks, const psychometric_family& f,
                                   const std::vector<point>& starts)
 {
@@ -174,7 +176,7 @@ std::optional<summit> find_summit(const std::vector<answer_block>& blocks, const
     return best;
 }
 
-// Blocks with stimuli from -1 to 1.
+// Blocks of answers whose stimuli are scaled to -1 ... 1.
 struct scaled_blocks {
     explicit scaled_blocks(std::span<const answer_block> given) : all(given.begin(), given.end())
     {
@@ -212,8 +214,8 @@ psychometric_fit describe(const scaled_blocks& blocks, const summit& best)
     return fit;
 }
 
-// Returns the 95 % interval from values of `times` simulations: percentiles, corrected for `bias` (Efron
-// 1987).
+// Returns the 95 % percentile interval of values from `times` simulations, corrected for `bias` (Efron 1987).
+// Returns nothing if more than 5 % of the simulations have no value.
 std::optional<interval> percentiles(std::vector<double> values, std::size_t times, double bias = 0.0)
 {
     const auto n = static_cast<double>(values.size());
@@ -300,7 +302,7 @@ psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> bloc
         thresholds.push_back(again.parameters.threshold);
         slopes.push_back(again.parameters.slope);
         less_slope += again.parameters.slope < slope ? 1.0 : 0.0;
-        // Rounding must not make equal answers fit better.
+        // The tolerance counts deviances as equal if they differ only by rounding.
         as_large += again.deviance >= fit.deviance - 1e-9 * (1.0 + fit.deviance) ? 1.0 : 0.0;
     }
     const auto share = [&](double count) { return count / static_cast<double>(thresholds.size() + 1); };

@@ -53,8 +53,8 @@ quest::quest(const quest_grid& g, const std::function<double(double, const psych
     choose();
 }
 
-// Chooses the stimulus whose answer is expected to take most entropy from the parameters. That is as much as
-// known parameters would take from the answer.
+// Chooses the stimulus whose answer is expected to reduce the entropy of the parameters most. The expected
+// reduction is the entropy of the answer minus its mean entropy given the parameters.
 void quest::choose()
 {
     double entropy = 0.0;

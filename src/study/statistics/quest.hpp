@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// QUEST+ (Watson 2017): the next stimulus is the one whose answer is expected to say most about the
-/// parameters of a psychometric function.
+/// The adaptive procedure QUEST+ (Watson 2017). It chooses the stimulus whose answer is expected to give the
+/// most information about the parameters of a psychometric function.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace tactor::study {
 /// Parameters of a psychometric function.
 struct psychometric {
     double threshold = 0.0;
-    double slope = 1.0; ///< standard deviation of the normal, in the unit of the stimulus
+    double slope = 1.0; ///< standard deviation of the normal distribution, in the unit of the stimulus
     double lapse = 0.0;
 };
 
@@ -23,32 +23,33 @@ inline constexpr double normal_quartile = 0.6744897501960817;
 /// Returns guess + (1 - guess - lapse) Phi((x - threshold) / slope).
 double normal_chance(double x, const psychometric& p, double guess);
 
-/// Possible stimuli and parameters: each threshold with each slope and each lapse.
+/// Possible stimuli, and possible parameters: all combinations of thresholds, slopes and lapses.
 struct quest_grid {
     std::vector<double> stimuli = {};
     std::vector<double> thresholds = {};
-    std::vector<double> weights = {}; ///< weights of the thresholds before the first answer; empty: all equal
+    std::vector<double> weights = {}; ///< prior weights of the thresholds; empty if all are equal
     std::vector<double> slopes = {};
     std::vector<double> lapses = {};
 };
 
 class quest {
 public:
-    /// `chance` returns the chance of a right answer to a stimulus, 0 to 1, from the parameters.
+    /// Chooses the first stimulus. `chance`: returns the chance, 0 to 1, of a right answer to a stimulus if
+    /// the function has the given parameters.
     quest(const quest_grid& g, const std::function<double(double, const psychometric&)>& chance);
 
-    /// Returns the next stimulus. Of equally good ones this is the first in the grid.
+    /// Returns the next stimulus. If several stimuli are equally good, this is the first of them in the grid.
     double stimulus() const noexcept { return stimuli_[next_]; }
     /// Returns the index of stimulus() in the grid.
     std::size_t place() const noexcept { return next_; }
     /// Takes the answer to stimulus().
     void answer(bool right);
 
-    /// Returns the means of the parameters after the answers so far.
+    /// Returns the posterior means of the parameters.
     psychometric estimate() const;
-    /// Returns the standard deviation of the threshold after the answers so far.
+    /// Returns the posterior standard deviation of the threshold.
     double threshold_sd() const;
-    /// Returns the entropy (natural logarithm) that is expected after the answer to stimulus().
+    /// Returns the expected entropy (natural logarithm) of the parameters after the answer to stimulus().
     double expected_entropy() const noexcept { return entropy_; }
 
 private:
@@ -56,9 +57,9 @@ private:
 
     std::vector<double> stimuli_;
     std::vector<psychometric> parameters_ = {};
-    std::vector<double> chance_ = {};           ///< of a right answer, by stimulus, then by parameters
-    std::vector<double> answer_entropies_ = {}; ///< of an answer with that chance
-    std::vector<double> likely_ = {};           ///< chance of each set of parameters; sums up to 1
+    std::vector<double> chance_ = {};           ///< chance of a right answer, by stimulus, then by parameters
+    std::vector<double> answer_entropies_ = {}; ///< entropy of an answer with this chance
+    std::vector<double> likely_ = {};           ///< posterior chance of each set of parameters; the sum is 1
     std::size_t next_ = 0;
     double entropy_ = 0.0;
 };

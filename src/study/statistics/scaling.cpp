@@ -12,7 +12,7 @@ namespace {
 
 using matrix = std::vector<std::vector<double>>;
 
-// Returns half the squared differences with the means of rows and columns taken off, and the sign changed.
+// Returns -1/2 times the squared differences, minus the means of rows and columns (double centring).
 matrix centre(const matrix& differences)
 {
     const std::size_t n = differences.size();
@@ -30,8 +30,8 @@ matrix centre(const matrix& differences)
     return b;
 }
 
-// Rotates rows and columns p and q of a symmetric matrix so that the element between them becomes 0, and the
-// columns of `vectors` with them.
+// Rotates rows and columns p and q of a symmetric matrix so that the element (p, q) becomes 0. Rotates the
+// columns p and q of `vectors` by the same angle.
 void rotate(matrix& a, matrix& vectors, std::size_t p, std::size_t q)
 {
     const double angle = 0.5 * std::atan2(2.0 * a[p][q], a[q][q] - a[p][p]);
@@ -55,7 +55,7 @@ matrix diagonalise(matrix& a)
     matrix vectors(n, std::vector<double>(n));
     for (std::size_t i = 0; i < n; ++i)
         vectors[i][i] = 1.0;
-    constexpr int sweeps = 20; // each of the last ones squares what is left beside the diagonal
+    constexpr int sweeps = 20; // enough: the last sweeps converge quadratically
     for (int sweep = 0; sweep < sweeps; ++sweep)
         for (std::size_t p = 0; p < n; ++p)
             for (std::size_t q = p + 1; q < n; ++q)
@@ -80,7 +80,7 @@ scaled_items scale_items(const matrix& differences)
         const double length = std::sqrt(std::max(0.0, b[at][at]));
         double farthest = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            s.places[i][k] = vectors[i][at] * length + 0.0; // no -0
+            s.places[i][k] = vectors[i][at] * length + 0.0; // changes -0 to 0
             if (std::abs(s.places[i][k]) > std::abs(farthest) * (1.0 + 1e-9))
                 farthest = s.places[i][k];
         }

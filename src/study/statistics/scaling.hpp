@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Multidimensional scaling: items as points whose distances are like the differences that people felt.
+/// Multidimensional scaling: represents items by points. The distances between points approximate the
+/// differences that people felt between items.
 #pragma once
 
 #include <array>
@@ -11,13 +12,15 @@ namespace tactor::study {
 
 /// Items in a plane.
 struct scaled_items {
-    std::vector<std::array<double, 2>> places = {}; ///< by item, about their centre
-    double stress = 0.0; ///< Kruskal's stress-1 of the distances in the plane; 0: they equal the differences
+    /// Place of each item, relative to the centre of all items.
+    std::vector<std::array<double, 2>> places = {};
+    double stress = 0.0; ///< Kruskal's stress-1; 0 if the distances in the plane equal the differences
 };
 
-/// Places items by classical scaling (Torgerson 1952; Gower 1966) in two dimensions, the one with the larger
-/// eigenvalue first. In each the item farthest from 0 is on the positive side. An eigenvalue below 0 gives a
-/// dimension of 0. `differences`: a symmetric matrix with 0 in its diagonal, of two items or more.
+/// Places two or more items in two dimensions by classical scaling (Torgerson 1952; Gower 1966). The first
+/// dimension has the largest eigenvalue. In each dimension, the item farthest from 0 has a positive
+/// coordinate. If an eigenvalue is below 0, all coordinates in this dimension are 0. `differences`: a
+/// symmetric matrix with zeros on the diagonal.
 scaled_items scale_items(const std::vector<std::vector<double>>& differences);
 
 } // namespace tactor::study

@@ -29,7 +29,7 @@ double z(double rate)
     return boost::math::quantile(normal(), rate);
 }
 
-// Returns the log-likelihood of k of n answers at their own rate.
+// Returns the log-likelihood of k of n answers at the rate k / n.
 double log_likelihood(std::size_t k, std::size_t n)
 {
     const auto part = [n](std::size_t count) {
@@ -39,7 +39,7 @@ double log_likelihood(std::size_t k, std::size_t n)
     return part(k) + part(n - k);
 }
 
-// Share of right answers to three stimuli without a difference.
+// Share of right answers if the three stimuli do not differ.
 constexpr double third = 1.0 / 3.0;
 
 // Returns 2 ln of the likelihood ratio of a participant's answers to three stimuli.
@@ -53,8 +53,9 @@ double likelihood_ratio(const right_count& c)
                   (all - right) * std::log(1.0 - third));
 }
 
-// Returns 2 ln of the likelihood ratio of a participant. If hits are above false alarms, the model fits any
-// two rates by some d' and criterion. Otherwise d' = 0 is the most likely.
+// Returns 2 ln of the likelihood ratio of a participant's same-different answers. If the rate of hits is
+// above the rate of false alarms, some d' and criterion fit both rates exactly. Otherwise d' = 0 is most
+// likely.
 double likelihood_ratio(const difference_counts& c)
 {
     if (c.hits * c.same <= c.false_alarms * c.different)
@@ -63,15 +64,15 @@ double likelihood_ratio(const difference_counts& c)
                   log_likelihood(c.hits + c.false_alarms, c.different + c.same));
 }
 
-// Likelihood ratios of a participant whose answers have nothing to do with the stimuli.
+// Distribution of the likelihood ratio of a participant whose answers do not depend on the stimuli.
 class drawn_ratios {
 public:
-    // The answers "different" fall on the pairs at random.
+    // Computes the distribution for answers "different" that fall on the pairs at random: hypergeometric.
     explicit drawn_ratios(const difference_counts& c)
     {
         const std::size_t answers = c.hits + c.false_alarms;
         const std::size_t most = std::min(answers, c.different);
-        double chance = 1.0; // relative to that of the fewest hits: hypergeometric
+        double chance = 1.0; // relative to the chance of the fewest hits
         double sum = 0.0;
         for (std::size_t hits = answers - std::min(answers, c.same); hits <= most; ++hits) {
             const std::size_t others = answers - hits;
@@ -81,7 +82,7 @@ public:
                       static_cast<double>((hits + 1) * (c.same - others + 1));
         }
     }
-    // A third of the answers is right by chance.
+    // Computes the distribution for answers of which a third is right by chance.
     explicit drawn_ratios(const right_count& c)
     {
         const auto trials = static_cast<double>(c.trials);
@@ -99,11 +100,11 @@ public:
     }
 
 private:
-    std::vector<double> ratios_ = {}; ///< by hits or right answers
-    std::vector<double> up_to_ = {};  ///< chance of so many or fewer, times a constant
+    std::vector<double> ratios_ = {}; ///< likelihood ratio for each number of hits or right answers
+    std::vector<double> up_to_ = {};  ///< chance of this number or fewer, times a constant
 };
 
-// Tests the ratios of all participants against those of simulated studies.
+// Compares the sum of the participants' likelihood ratios with the sums of simulated studies.
 template <class Counts>
 std::optional<difference_test> test_ratios(std::span<const Counts> people, std::string_view seed)
 {
@@ -122,7 +123,7 @@ std::optional<difference_test> test_ratios(std::span<const Counts> people, std::
         double sum = 0.0;
         for (const drawn_ratios& one : drawn)
             sum += one.draw(r);
-        // Rounding must not make equal answers differ.
+        // The tolerance counts sums as equal if they differ only by rounding.
         as_large += sum >= found - 1e-9 * (1.0 + found) ? 1 : 0;
     }
     return difference_test{found, static_cast<double>(as_large) / static_cast<double>(studies + 1), studies};
@@ -152,7 +153,7 @@ sensitivity same_different(double hits, double false_alarms)
     const auto off = [&](double d) {
         return boost::math::cdf(differences, d) + boost::math::cdf(differences, -d) - hits;
     };
-    // An upper bound: d' without the second term, which is positive.
+    // Upper bound: the root without the second term of off(), which is positive.
     const double most = c + std::numbers::sqrt2 * z(hits) + 1e-9;
     std::uintmax_t steps = 200;
     const auto [low, high] = boost::math::tools::toms748_solve(
@@ -162,8 +163,9 @@ sensitivity same_different(double hits, double false_alarms)
 
 double triangle_share(double dprime)
 {
-    // With the odd stimulus at d' of the two others, it is the farthest one if two normal variables have the
-    // same sign: their means are d' / sqrt 6, their variances 1 and their correlation -1/2.
+    // The mean of the odd stimulus differs by d' from the means of the two others. The odd stimulus is
+    // farthest from both others if two normal variables have the same sign. Each variable has a mean of d' /
+    // sqrt 6 and a variance of 1; the correlation of the variables is -1/2.
     return 1.0 - 4.0 * boost::math::owens_t(dprime / std::sqrt(6.0), std::numbers::sqrt3, in_double());
 }
 
@@ -171,7 +173,7 @@ double triangle_dprime(double share)
 {
     if (share <= third)
         return 0.0;
-    constexpr double most = 20.0; // its share of wrong answers is below 1e-15
+    constexpr double most = 20.0; // at this d', the share of wrong answers is below 1e-15
     std::uintmax_t steps = 200;
     const auto [low, high] =
         boost::math::tools::toms748_solve([share](double d) { return triangle_share(d) - share; }, 0.0, most,

@@ -19,8 +19,8 @@
 namespace tactor::study {
 namespace {
 
-// Policy that computes in double. By default Boost.Math computes in long double, and does so once before
-// main(), where valgrind, which has no long double, ends the program.
+// Policy that computes in double. By default, Boost.Math computes in long double, also once before main().
+// valgrind does not support long double and would end the program there.
 using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 // Returns the noncentrality for which P(T <= t) is `below`. P falls as the noncentrality grows.
@@ -30,7 +30,8 @@ double noncentrality(double t, double df, double below)
         return boost::math::cdf(boost::math::non_central_t_distribution<double, in_double>(df, delta), t) -
                below;
     };
-    // Start with a bracket around t about as wide as the uncertainty of t; widen it until it holds the root.
+    // Start with a bracket around t that is about as wide as the uncertainty of t. Widen it until it contains
+    // the root.
     double width = 1.0 + std::abs(t) / std::sqrt(df);
     double low = t - width;
     double high = t + width;
@@ -47,12 +48,13 @@ double noncentrality(double t, double df, double below)
 
 struct share {
     double sum;
-    double weight; ///< part of all choices of signs: a multiple of a power of two, so exact
+    double weight; ///< share of all choices of signs; exact, as a multiple of a power of two
 };
 
 constexpr std::size_t most_sums = std::size_t{1} << 20;
 
-// Lists the sums of the values with either sign, in order, each once; empty if there are too many.
+// Returns the sums of the values for all choices of signs, in ascending order and without duplicates. Returns
+// an empty list if there are too many sums. `equal`: largest difference of two sums that count as equal.
 std::vector<share> all_sums(std::span<const double> values, double equal)
 {
     std::vector<share> sums{{0.0, 1.0}};
@@ -117,8 +119,8 @@ matrix kronecker(const matrix& a, const matrix& b)
     return c;
 }
 
-// Sums of squares of an effect, of its interaction with groups and of its error, and the cross products of
-// the participants' differences within groups.
+// Sums of squares of an effect, of its interaction with groups, and of the error. `cross`: cross products of
+// the participants' contrasts within groups.
 struct parts {
     double effect = 0.0;
     double by_group = 0.0;
@@ -126,7 +128,7 @@ struct parts {
     matrix cross;
 };
 
-// Projects the cells on contrasts. `groups`: the group of each participant, from 0; no group is empty.
+// Projects the cells onto contrasts. `groups`: the group of each participant, from 0; no group is empty.
 parts project(const cell_table& t, const matrix& c, const std::vector<std::size_t>& groups)
 {
     std::vector<double> n(1 + *std::max_element(groups.begin(), groups.end()), 0.0);
@@ -172,7 +174,7 @@ parts project(const cell_table& t, const matrix& c, const std::vector<std::size_
     return s;
 }
 
-// Returns the largest sum of squares that rounding can make of 0.
+// Returns the largest sum of squares that may be only rounding error.
 double nothing(const cell_table& t)
 {
     double largest = 0.0;
@@ -191,14 +193,14 @@ double t_quantile(double df)
     return boost::math::quantile(boost::math::students_t_distribution<double, in_double>(df), 0.975);
 }
 
-// Returns the upper tail of F.
+// Returns the upper tail of the F distribution.
 double p_of_f(double f, double df1, double df2)
 {
     return boost::math::cdf(boost::math::complement(
         boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
 }
 
-// Tests a sum of squares with `df1` against the error of these parts.
+// Tests a sum of squares with `df1` degrees of freedom against the error in `s`.
 effect judge(double squares, std::size_t df1, const parts& s, const cell_table& t, std::size_t groups,
              double all_error)
 {
@@ -242,12 +244,14 @@ double trace(const matrix& m)
     return sum;
 }
 
-// Returns the determinant of a symmetric matrix without negative eigenvalues, by Cholesky; 0 if one is 0.
+// Returns the determinant of a symmetric positive semidefinite matrix, by a Cholesky decomposition with
+// pivoting.
 double determinant(matrix m)
 {
     double product = 1.0;
     for (std::size_t k = 0; k < m.size(); ++k) {
-        // Take the largest remaining element first, so that a singular matrix leaves only rounding.
+        // Take the largest remaining diagonal element first, so that the last elements of a singular matrix
+        // are only rounding errors.
         std::size_t best = k;
         for (std::size_t i = k; i < m.size(); ++i)
             best = m[i][i] > m[best][best] ? i : best;
@@ -276,10 +280,10 @@ double above(double z)
     return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
-// Chance that the range of k standard normal variables is above w. It is an integral over the place z of the
-// least variable: the chance that all others are above z, less the chance that all are in z ... z + w.
-// Trapezoids of this width are right to rounding, because the integrand resembles a Gaussian: the error falls
-// as exp(-2 pi^2 / (k step^2)).
+// Chance that the range of k standard normal variables is above w. It is an integral over the value z of the
+// smallest variable. The integrand is the chance that all other variables are above z, minus the chance that
+// all of them are between z and z + w. With this step, the trapezoidal rule is exact except for rounding: the
+// integrand resembles a Gaussian, so the error falls as exp(-2 pi^2 / (k step^2)).
 class range_tail {
 public:
     explicit range_tail(std::size_t k) : others_(k - 1), step_(0.7 / std::sqrt(static_cast<double>(k)))
@@ -308,7 +312,7 @@ private:
         double weight;
     };
 
-    // Returns a^m - b^m from a - b, so that a small difference loses no digits.
+    // Returns a^m - b^m, where m is `others_`. Uses a - b, so that a small difference loses no digits.
     double difference(double a, double b, double a_less_b) const
     {
         if (others_ == 1)
@@ -394,7 +398,7 @@ t_test test_mean(std::span<const double> values, double against, double rounding
     t_test r = quick_test_mean(values, against, rounding);
     if (values.size() < 2)
         return r;
-    // A difference that is only rounding has no sign.
+    // Sets differences to 0 if they are only rounding errors, because their signs mean nothing.
     std::vector<double> off(values.begin(), values.end());
     for (double& x : off) {
         const double least = std::max(few_digits * std::max(std::abs(x), std::abs(against)), rounding);
@@ -472,8 +476,8 @@ std::optional<double> sign_flip_p(std::span<const double> values)
     const std::vector<share> second = all_sums(values.subspan(values.size() / 2), 1e-12 * all);
     if (first.empty() || second.empty())
         return {};
-    // Count only the sums at or above |observed|: each choice of signs has its opposite, so as many are at or
-    // below -|observed|.
+    // Count only the sums at or above |observed|: each choice of signs has an opposite choice, so equally
+    // many sums are at or below -|observed|.
     const double limit = std::abs(observed) - 1e-9 * all;
     if (limit <= 0.0)
         return 1.0;
@@ -533,13 +537,13 @@ double greenhouse_geisser(const matrix& cross)
         for (const double v : row)
             squares += v * v;
     const double sum = trace(cross);
-    return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // rounding may exceed 1
+    return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // may round to above 1
 }
 
 std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df)
 {
     const double rest = df - df1 * epsilon_gg;
-    if (rest <= 1e-9 * df) // rounding of 0
+    if (rest <= 1e-9 * df) // 0 except for rounding
         return {};
     return ((df + 1.0) * df1 * epsilon_gg - 2.0) / (df1 * rest);
 }
@@ -555,7 +559,7 @@ std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::si
         for (double& v : row)
             v *= p / trace(cross);
     const double w = std::min(1.0, determinant(std::move(scaled)));
-    // A singular matrix has a w of rounding errors, some 1e-16.
+    // For a singular matrix, w is a rounding error of about 1e-16.
     if (w < 1e-13)
         return {};
     const double rho = 1.0 - (2.0 * p * p + p + 2.0) / (6.0 * p * n);
@@ -618,7 +622,7 @@ std::vector<double> join_angles(std::vector<double> degrees)
         d -= turn * std::floor(d / turn);
     std::vector<double> sorted = degrees;
     std::ranges::sort(sorted);
-    double first = sorted.front(); // after the largest gap
+    double first = sorted.front(); // first angle after the largest gap
     double gap = first + turn - sorted.back();
     for (std::size_t i = 1; i < sorted.size(); ++i)
         if (sorted[i] - sorted[i - 1] > gap) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The transformed up-down rule of adaptive procedures (Levitt 1971), in levels or in places of a list.
+/// The transformed up-down rule of adaptive procedures (Levitt 1971), for levels or for positions in a list.
 #pragma once
 
 #include <algorithm>
@@ -9,20 +9,20 @@
 
 namespace tactor::study {
 
-/// A rule for steps: several positive answers in a row make one step down, and one negative answer makes one
-/// step up. Every second reversal moves on to the next step size. The owner moves the level.
+/// The transformed up-down rule. Several positive answers in a row cause a step down; one negative answer
+/// causes a step up. After every second reversal, the next step size applies. The caller changes the level.
 class up_down_rule {
 public:
     struct options {
-        unsigned in_row = 1;   ///< number of answers in a row for a step, above 0
+        unsigned in_row = 1;   ///< number of answers in a row that cause a step, above 0
         std::size_t sizes = 1; ///< number of step sizes, above 0
-        bool mirrored = false; ///< up after several negative answers in a row, down after one positive
-        bool fast_to_reversal = false; ///< one answer is enough until the first reversal
+        bool mirrored = false; ///< true for up after several negative answers, down after one positive
+        bool fast_to_reversal = false; ///< true if one answer causes a step until the first reversal
     };
     struct step {
         bool up;
         bool turned;      ///< true at a reversal
-        std::size_t size; ///< place of the step's size
+        std::size_t size; ///< index of the step's size
     };
 
     explicit up_down_rule(options o) noexcept : o_(o) {}
