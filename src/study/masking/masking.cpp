@@ -22,7 +22,8 @@ namespace {
 constexpr std::size_t masking_block_frames = 64;
 constexpr unsigned most_breaks_in_row = 3;
 
-// P. Kellet's sum of first-order filters: 3 dB per octave within a quarter of a dB from 10 Hz on at 48 kHz.
+// P. Kellet's filter for pink noise, a sum of first-order filters. At 48 kHz and above 10 Hz, it falls by 3
+// dB per octave, with errors below 0.25 dB.
 struct section {
     double pole;
     double gain;
@@ -35,10 +36,10 @@ constexpr std::array<section, 6> sections{{{0.99886, 0.0555179},
                                            {-0.7616, -0.0168980}}};
 constexpr double direct = 0.5362;
 constexpr double delayed = 0.115926;
-constexpr int response_samples = 1 << 15; // after so many, the slowest pole has decayed
+constexpr int response_samples = 1 << 15; // long enough for the slowest pole to decay
 
-constexpr int look_ms = 20;          // time between two looks at a stream that stands still
-constexpr int masking_priority = 60; // below the array's audio thread
+constexpr int look_ms = 20;          // longest time between two checks of a stream
+constexpr int masking_priority = 60; // below the priority of the array's audio thread
 
 } // namespace
 
@@ -156,7 +157,7 @@ void masking_stream::make_block(std::size_t frames, bool on) noexcept
     const std::size_t bytes = sample_bytes(sink_.setup().format);
     const std::array<synth::channel_samples, 1> mono{{{.channel = 0, .x = samples_.data()}}};
     synth::interleave(sink_.setup().format, mono, 1, static_cast<unsigned>(frames), block_.data());
-    // Copy from the last frame on, so that no frame is overwritten before it is read.
+    // Copy backwards from the last frame, so that no frame is overwritten before it is read.
     for (std::size_t i = frames; i-- > 0;)
         for (std::size_t c = sink_.setup().channels; c-- > 0;)
             std::copy_n(block_.data() + i * bytes, bytes, block_.data() + i * frame_bytes_ + c * bytes);
@@ -214,7 +215,7 @@ masker::~masker()
 void masker::want(bool on) noexcept
 {
     on_ = on;
-    // The old state is over, even if the thread has not looked yet.
+    // The old state is no longer valid, even if the thread has not seen the request yet.
     if (ended_ == io_kind::ok)
         state_ = masking_state::fading;
     wake_.signal();
@@ -231,7 +232,7 @@ bool masker::wait_for(masking_state s, const waiter& wait)
 {
     const auto until = std::chrono::steady_clock::now() + patience_;
     for (;;) {
-        // Read the clock before the state: the state may come while this thread has no processor.
+        // Read the clock before the state, because the state may change while this thread is suspended.
         const bool late = std::chrono::steady_clock::now() >= until;
         if (ended_ != io_kind::ok)
             return false;
@@ -267,7 +268,8 @@ void masker::run() noexcept
             return;
         }
         const masking_state is = stream_.state();
-        // Do not publish a state opposite to the request: the stream has not followed it yet.
+        // Do not publish the state opposite to the request: it means that the stream has not followed the
+        // request yet.
         if (is != (on ? masking_state::silent : masking_state::full) && state_.exchange(is) != is)
             changed_.signal();
     }

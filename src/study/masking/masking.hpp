@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Masking noise on a separate device, faded in and out: its samples, its stream, which has no thread and no
-/// clock, and a thread that plays the stream through a calibration or an experiment.
+/// Masking noise that fades in and out on a separate device. `noise` makes the samples. `masking_stream`
+/// writes the samples to the device; it has no thread and no clock. `masker` plays the stream in a thread
+/// during a calibration or an experiment.
 #pragma once
 
 #include <array>
@@ -35,14 +36,15 @@ constexpr std::string_view to_string(noise_color c) noexcept
     return c == noise_color::white ? "white" : "pink";
 }
 
-/// Returns the greatest level that does not clip, dBFS. White noise is uniform. Pink noise has peaks: those
-/// 15 dB above this level, once in minutes, are clipped at full scale.
+/// Returns the greatest level of a noise, dBFS. White noise is uniformly distributed and never clips at this
+/// level. Peaks of pink noise are more than 15 dB above the level once in several minutes; such peaks are
+/// clipped at full scale.
 constexpr double greatest_noise_dbfs(noise_color c) noexcept
 {
     return c == noise_color::white ? -5.0 : -15.0;
 }
 
-/// Noise of one colour. Levels are roots of the mean square, in dB below that of a full-scale square.
+/// Noise of one colour. Levels are root mean squares, in dB relative to a full-scale square wave.
 class noise {
 public:
     noise(noise_color c, double level_dbfs, std::string_view seed);
@@ -62,28 +64,29 @@ private:
 
 struct masking_options {
     noise_color color = noise_color::white;
-    double level_dbfs = -30.0; ///< root of the mean square, dB below that of a full-scale square
-    double fade_s = 0.05;      ///< raised cosine, in and out
+    double level_dbfs = -30.0; ///< root mean square, dB relative to a full-scale square wave
+    double fade_s = 0.05;      ///< duration of each fade, a raised cosine
     std::string seed = {};
-    double patience_s = 5.0; ///< masker: time beyond the fade after which it gives up
+    double patience_s = 5.0; ///< time beyond the fade after which masker::wait_for() gives up
 };
 
-/// Sound at the DAC.
+/// State of the noise at the DAC.
 enum class masking_state { silent, fading, full };
 
-/// A stream of noise, the same on each channel. Only the constructor allocates, locks or throws.
+/// A stream of noise. All channels have the same samples. Only the constructor allocates, locks or throws.
 class masking_stream {
 public:
     masking_stream(sink& s, const masking_options& o);
 
-    /// Prepares the sink, fills its buffer and starts it.
+    /// Prepares the sink, fills its buffer with silence and starts the sink.
     io_kind begin() noexcept;
-    /// Fills the free space. `ready` is the sink's reading of its descriptors. Counts an xrun and begins the
-    /// stream again, from silence. Returns `ok`, or the reason for its end.
+    /// Fills the free space of the sink's buffer. After an xrun, counts a break and restarts the stream from
+    /// silence. Returns `ok`, or the reason why the stream ended. `ready`: result of sink::ready(). `on`:
+    /// true if the noise must be on.
     io_kind step(io_kind ready, bool on) noexcept;
 
     masking_state state() noexcept;
-    /// Number of times that the stream stood still.
+    /// Returns how often an xrun has interrupted the stream.
     unsigned breaks() const noexcept { return breaks_; }
     const stream_setup& setup() const noexcept { return sink_.setup(); }
 
@@ -101,38 +104,40 @@ private:
     std::vector<std::byte> block_;
     std::size_t pending_ = 0; ///< frames of block_ that the sink has not taken yet
     std::size_t pending_from_ = 0;
-    std::uint32_t faded_ = 0; ///< 0: silent, fade_frames_: full
-    std::uint64_t made_ = 0;  ///< frames of this epoch
+    std::uint32_t faded_ = 0; ///< progress of the fade, from 0 (silent) to fade_frames_ (full)
+    std::uint64_t made_ = 0;  ///< number of frames made since begin()
     std::optional<std::uint64_t> full_from_ = {};
     std::optional<std::uint64_t> silent_from_ = 0;
     unsigned breaks_ = 0;
-    unsigned breaks_in_row_ = 0; ///< without a frame played between
+    unsigned breaks_in_row_ = 0; ///< breaks without a played frame between them
 };
 
-/// Plays silence, and noise between fade_in() and fade_out(). One caller at a time.
+/// A thread that plays noise between fade_in() and fade_out(), and silence at other times. For one caller at
+/// a time.
 class masker {
 public:
     /// Starts the stream. Peaks above full scale are clipped: see greatest_noise_dbfs(). \throws error
-    /// (runtime) when the stream does not start; std::system_error if the system has no thread or descriptor
+    /// (runtime) if the stream does not start; std::system_error if the system has no thread or descriptor
     /// left.
     masker(std::unique_ptr<sink> s, const masking_options& o);
-    /// Cuts the sound: call fade_out() and wait_for(masking_state::silent) first.
+    /// Stops the sound without a fade. Call fade_out() and wait_for(masking_state::silent) first.
     ~masker();
     masker(const masker&) = delete;
     masker& operator=(const masker&) = delete;
 
     void fade_in() noexcept { want(true); }
     void fade_out() noexcept { want(false); }
-    /// Waits for a descriptor to be readable, or a time; returns false to give up.
+    /// Function that waits until a descriptor is readable or a time has passed. The function returns false to
+    /// give up.
     using waiter = std::function<bool(int descriptor, int timeout_ms)>;
-    /// Blocks until that state is at the DAC. Returns false if the device has failed, if the state comes
-    /// later than the fade and masking_options::patience_s allow, or if the waiter gave up.
+    /// Blocks until the noise at the DAC has this state. Returns false if the device has failed, if the state
+    /// does not come within the duration of the fade plus masking_options::patience_s, or if `wait` gives up.
     bool wait_for(masking_state s, const waiter& wait = poll_descriptor);
 
-    /// Number of times that the stream stood still. If it grew during a stimulus, the noise did not cover
-    /// that stimulus.
+    /// Returns how often an xrun has interrupted the stream. If this number grows during a stimulus, the
+    /// noise did not cover the whole stimulus.
     unsigned breaks() const noexcept { return breaks_; }
-    /// Reason for the end of the stream; `ok` while it goes on.
+    /// Returns the reason why the stream ended; `ok` while the stream runs.
     io_kind ended() const noexcept { return ended_; }
     const stream_setup& setup() const noexcept { return stream_.setup(); }
 
