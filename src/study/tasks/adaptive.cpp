@@ -29,9 +29,10 @@ using detail::toml_table;
 
 constexpr unsigned most_tracks = 8;
 constexpr unsigned most_reversals = 1000;
-constexpr double slope_parts = 40.0; ///< parts of the range; one is the smallest slope
+constexpr double slope_parts = 40.0; ///< the smallest slope is the range divided by this
 
-// Names of procedures, by the number of positive answers in a row that move a staircase down.
+// Names of procedures. For staircases, the index is the number of positive answers in a row that cause a step
+// down.
 constexpr std::array<std::string_view, 4> procedures{"quest", "1up1down", "1up2down", "1up3down"};
 
 bool is_quest(const adaptive_track& t)
@@ -39,7 +40,8 @@ bool is_quest(const adaptive_track& t)
     return t.down == 0;
 }
 
-// Reads a list of numbers. If it has two, returns `count` numbers from the first to the second.
+// Reads a list of numbers. If the list has two numbers, returns `count` numbers from the first to the second,
+// with equal ratios if `by_ratio`, else with equal differences.
 std::vector<double> read_prior(const toml_table& t, std::string_view key, const detail::bounds& b,
                                std::vector<double> usual, std::size_t count, bool by_ratio)
 {
@@ -58,7 +60,7 @@ std::vector<double> read_prior(const toml_table& t, std::string_view key, const 
     return all;
 }
 
-// Returns the procedure with a name, as adaptive_track::down.
+// Returns the index of a name in `procedures`. The index is the value of adaptive_track::down.
 unsigned find_procedure(const toml_table& t, const std::string& name)
 {
     const auto at = std::ranges::find(procedures, name);
@@ -104,9 +106,10 @@ void refuse_unused_keys(const toml_table& t, const adaptive_options& a)
                    "leave it out");
 }
 
-// Sets the sides of tracks: mirrors every second staircase of a kind, and begins at the other end. A
-// staircase that needs several answers for a step stays on one side of the pse. A fit would then move the pse
-// to that side and find a jnd that is too small. `greatest`: index of the greatest value.
+// Sets the sides of tracks. Every second track of a kind begins at the other end, and is mirrored if it needs
+// several answers for a step. Without mirrored tracks, such staircases would stay on one side of the pse. A
+// fit would then move the pse to that side and find a jnd that is too small. `greatest`: index of the
+// greatest value.
 void set_sides(const toml_table& t, adaptive_options& a, std::size_t greatest)
 {
     std::array<std::size_t, procedures.size()> counts{};

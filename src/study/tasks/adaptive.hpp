@@ -44,17 +44,17 @@ private:
     std::size_t top_;
 };
 
-/// Reads the procedures of a run whose answers choose the values, from a grid over `range`. `two_sided`: both
-/// answers have equal rank. Then every second one of the staircases that need the same number of positive
-/// answers in a row is mirrored. Else answers are right or wrong, and tracks start at the greatest value.
+/// Reads the procedures of an adaptive run, in which the answers choose values from a grid over `range`.
+/// `two_sided`: true if both answers have equal rank. Every second staircase of a kind is then mirrored. If
+/// `two_sided` is false, answers are right or wrong, and tracks start at the greatest value by default.
 /// \throws error (bad_input) with line and column.
 void read_procedure(const detail::toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided);
 
-/// Names of the keys that read_procedure() reads, besides those of read_vary().
+/// Names of the keys that read_procedure() reads. read_vary() reads further keys.
 inline constexpr std::array<std::string_view, 9> procedure_keys{
     "procedure", "start", "steps", "range", "tracks", "slope", "lapse", "stop_sd", "reversals"};
 
-/// Returns these keys after `keys`.
+/// Returns `keys` followed by procedure_keys.
 std::vector<std::string_view> add_procedure_keys(std::vector<std::string_view> keys);
 
 /// Lists the trials of each motion and method at the first value of each track.
@@ -65,7 +65,7 @@ std::string describe_range(const task& of, const run_outline& o);
 /// Describes the procedures in the methods section, as task::describe_procedure() does.
 std::string describe_adaptive(const run_definition& r, std::set<std::string_view>& sections);
 
-/// Function that tells whether an answer is positive.
+/// Function that returns true if an answer is positive.
 using is_positive = bool (*)(const run_outline& o, std::string_view method_1, unsigned response);
 
 /// Returns the chooser of an adaptive run.
@@ -80,9 +80,9 @@ public:
     std::size_t next(unsigned track);
     /// Takes the answer to the trial of next().
     void answer(unsigned track, bool positive);
-    /// Returns true if the answers so far have ended a track. \pre it has an answer.
+    /// Returns true if the answers so far have ended a track. \pre the track has an answer.
     bool has_ended(unsigned track) const;
-    /// Sets how a track stands after the answers so far. \pre it has an answer.
+    /// Sets the members of a track that depend on its answers. \pre the track has an answer.
     void describe(played_track& t) const;
 
 private:
@@ -95,11 +95,11 @@ private:
 
 /// Returns the number of tracks of all conditions of an adaptive run.
 unsigned count_tracks(const run_outline& o);
-/// Follows the tracks of a session from its trials, in the order of the table. Returns nothing if tracks
-/// cannot end early, or if the trials do not say their tracks.
+/// Computes the tracks of a session from its trials, which must be in the order of the table. Returns an
+/// empty list if tracks cannot end early, or if the track of a trial is unknown.
 std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<trial>& trials);
-/// Returns the keys of a definition that end tracks: "stop_sd = 2, reversals = 8". Returns an empty text if
-/// tracks cannot end early.
+/// Returns the keys of a definition that end tracks, such as "stop_sd = 2, reversals = 8". Returns an empty
+/// text if tracks cannot end early.
 std::string name_stop_rule(const adaptive_options& a);
 
 } // namespace tactor::study

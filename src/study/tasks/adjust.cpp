@@ -31,11 +31,12 @@ constexpr std::string_view usual_question = "Make both feel equal.";
 struct move_row {
     std::string_view word; ///< word of the page
     char key;
-    int sign; ///< direction; 0 plays both stimuli again as they are
+    int sign; ///< direction; 0 plays both stimuli again without a change
     bool coarse;
 };
 
-// Keys as in calibrate; answers count from 1 in this order, and the next one accepts the value.
+// The keys are the same as in calibrate. Answers have numbers from 1 in this order. The number after the last
+// row accepts the value.
 constexpr std::array<move_row, 5> moves{{{"much_less", '-', -1, true},
                                          {"less", '<', -1, false},
                                          {"more", '>', 1, false},
@@ -60,7 +61,7 @@ std::size_t find_value_place(const planned_trial& t, const run_definition& r)
     return 0;
 }
 
-// Returns the number of values below the standard, and the number of those not above it.
+// Returns the number of values below the standard, and the number of values that are not above the standard.
 std::pair<std::size_t, std::size_t> find_sides(const run_outline& o)
 {
     const auto [from, to] = std::ranges::equal_range(o.values, *o.standard);
@@ -114,7 +115,7 @@ public:
     {
         std::vector<std::size_t> start = r.adjusting.start;
         if (start.empty())
-            start = {0, r.outline.values.size() - 1}; // draw_start() takes others from their side
+            start = {0, r.outline.values.size() - 1}; // draw_start() replaces them
         std::vector<planned_trial> cells;
         for (const std::size_t motion : r.motions)
             for (const std::size_t method : r.methods)
@@ -122,8 +123,8 @@ public:
                     add_comparison(cells, motion, r.variants.at(method), place, false);
         return cells;
     }
-    // Takes motions and methods in turn, each time with the next start, and with the next order after all
-    // starts.
+    // Motions and methods take turns. Each repetition of a condition has the next start; after all starts,
+    // the condition has its stimuli in the other order.
     std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                     random_numbers& numbers) const override
     {
@@ -134,13 +135,13 @@ public:
         std::iota(methods.begin(), methods.end(), 0);
         shuffle(std::span(motions), numbers);
         shuffle(std::span(methods), numbers);
-        std::vector<std::size_t> conditions; // a list starts one later before a condition repeats
+        std::vector<std::size_t> conditions; // methods shift by one before a condition repeats
         for (std::size_t i = 0; i < motions.size() * methods.size(); ++i)
             conditions.push_back(
                 motions[i % motions.size()] * methods.size() +
                 methods[(i + i / std::lcm(motions.size(), methods.size())) % methods.size()]);
         const std::size_t own = cells.size() / conditions.size();
-        const std::size_t starts = own / 2; // each in both orders
+        const std::size_t starts = own / 2; // each start has both orders
         const std::size_t first = numbers.below(static_cast<unsigned>(own));
         std::vector<planned_trial> all;
         for (std::size_t i = 0; i < n; ++i) {
@@ -230,8 +231,8 @@ public:
         r.value = answer.number;
     }
 
-    // Settles where the person's function has its PSE, with the noise of its slope. A person who lapses
-    // accepts the first value.
+    // Accepts the value that is nearest to the person's PSE plus noise. The standard deviation of the noise
+    // is the slope of the person's psychometric function. A person who lapses accepts the first value.
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         const std::vector<double>& values = who.run.outline.values;
@@ -247,7 +248,7 @@ public:
                                      sigmoid) const override
     {
         const adjustment a = average_adjustments(o, trials);
-        return {{{"constant_error"}, a.constant_error}, {{"sd"}, a.sd}}; // pse would repeat the first
+        return {{{"constant_error"}, a.constant_error}, {{"sd"}, a.sd}}; // pse would repeat constant_error
     }
 
     std::vector<std::vector<result_outline>> outline_results() const override

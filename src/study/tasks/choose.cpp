@@ -15,8 +15,8 @@
 namespace tactor::study {
 namespace {
 
-// Lists the pairs of methods in one order. They are a cyclic design: in each group of n pairs, each of the n
-// methods comes first once.
+// Lists the pairs of n methods, each pair in one order. The list is a cyclic design: in each group of n
+// pairs, each method comes first once.
 std::vector<planned_trial> list_pairs(std::size_t motion, const std::vector<std::size_t>& methods)
 {
     const std::size_t n = methods.size();
@@ -26,7 +26,7 @@ std::vector<planned_trial> list_pairs(std::size_t motion, const std::vector<std:
     return all;
 }
 
-// Returns true if a run has three or more methods. Each of them then has a row of cells and a worth.
+// Returns true if a run has three or more methods. Each method then has a row of cells and a worth.
 bool has_several(const run_outline& o)
 {
     return o.methods.size() > 2;
@@ -37,8 +37,8 @@ std::size_t find_chosen(const trial& t)
     return t.response == 1 ? t.method_1 : t.method_2;
 }
 
-// Plans the per cent of trials that chose the last method; with three or more methods, the per cent of each
-// method's trials.
+// Plans the percentage of trials in which people chose the last method. With three or more methods, plans for
+// each method the percentage of the trials with this method in which people chose it.
 cell_plan plan_choices(const run_outline& o)
 {
     if (has_several(o))
@@ -187,7 +187,8 @@ public:
         return has_several(o) ? std::vector<std::string_view>{"other"} : std::vector<std::string_view>{};
     }
 
-    // A trial asks about the last of two methods; with three or more, about the method felt first.
+    // `chosen` is 1 if the participant chose `method`. `method` is the last of two methods, or the method
+    // that was felt first if the run has three or more methods.
     named_texts describe_trial(const trial& t, const run_outline& own,
                                const run_outline& whole) const override
     {
@@ -201,8 +202,8 @@ public:
                 {"chosen", (t.response == 1) == asks_first ? "1" : "0"}};
     }
 
-    // Worths have a column for each method but the first, 1 where it was felt first, -1 where it was felt
-    // second. The intercept is the preference for the first interval.
+    // The model of worths has a column for each method except the first: 1 if the method was felt first, -1
+    // if it was felt second. The intercept is the preference for the first interval.
     std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         if (!has_several(o))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A task whose answer chooses one of two: the comparison or the standard, or without a standard the second
-/// or the first word.
+/// A task whose answer chooses the comparison or the standard. Without a standard, the answer chooses one of
+/// two words.
 #pragma once
 
 #include <string>

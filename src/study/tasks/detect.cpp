@@ -79,7 +79,7 @@ public:
             return 2;
         if (find_value(who.definition, t))
             return feels_more(who, t, r) ? 1 : 2;
-        // Uses one criterion for all methods, which share the trials without a stimulus.
+        // Uses one criterion for all methods, because all methods share the trials without a stimulus.
         std::vector<double> all;
         for (const std::size_t method : who.run.methods)
             all.push_back(find_dprime(who, {t.motion, method}));
@@ -148,8 +148,8 @@ public:
         return compare_with(o.vary.empty() ? "dprime" : "threshold", "t", find_against(o));
     }
 
-    // The slope is over the values, or over the presence of a signal. With several methods, the factor of
-    // methods already has the signal: the method of a trial without a stimulus is "none".
+    // The predictor is the value, or the presence of a signal. With several methods, the factor `method`
+    // already contains the presence of a signal: in trials without a stimulus, the method is "none".
     std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;

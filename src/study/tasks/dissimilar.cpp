@@ -21,7 +21,7 @@ constexpr unsigned most_different = 100;
 
 using method_pair = std::pair<std::size_t, std::size_t>;
 
-// Lists all pairs of so many methods, the smaller place first.
+// Lists all pairs of indices of methods, with the smaller index first. `methods`: number of methods.
 std::vector<method_pair> list_places(std::size_t methods)
 {
     std::vector<method_pair> all;
@@ -40,7 +40,7 @@ std::vector<planned_trial> list_all_pairs(std::size_t motion, const std::vector<
     return all;
 }
 
-// Plans mean differences by pair, of both orders.
+// Plans the mean difference for each pair, over both orders.
 cell_plan plan_pairs(const run_outline& o)
 {
     const std::vector<method_pair> pairs = list_places(o.methods.size());
@@ -59,7 +59,7 @@ cell_plan plan_pairs(const run_outline& o)
             "difference"};
 }
 
-// Places methods by the differences of all pairs.
+// Places methods in a plane according to the differences of all pairs.
 scaled_methods scale_methods(std::size_t methods, const std::vector<double>& pairs)
 {
     scaled_methods s{std::vector<std::vector<double>>(methods, std::vector<double>(methods))};
@@ -181,7 +181,7 @@ public:
                 {"response", fmt::format("{}", t.response)}};
     }
 
-    // The pair is the same in both orders.
+    // Both orders of two methods are the same pair.
     std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const std::string factors = list_factors(o, f);

@@ -10,7 +10,7 @@
 namespace tactor::study {
 namespace {
 
-// Exchanges the methods of a pair if `swapped`.
+// Returns a trial. Exchanges the methods of a pair if `swapped`.
 planned_trial with_order(planned_trial t, bool swapped)
 {
     if (t.method_2 && swapped)
@@ -51,8 +51,8 @@ std::vector<planned_trial> draw_by_turns(const experiment_definition& d, const r
                                          std::vector<planned_trial> cells, random_numbers& numbers)
 {
     shuffle(std::span(cells), numbers);
-    // A cell's turn has two numbers: first the number of earlier cells with its motion and method, then the
-    // number of earlier cells of its motion that have the same first number.
+    // Sorts the cells by two numbers. The first number counts the earlier cells with the same motion and
+    // method. The second number counts the earlier cells that have the same motion and the same first number.
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> cells_before;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> turns_before;
     std::multimap<std::pair<std::size_t, std::size_t>, planned_trial> turns;
@@ -96,8 +96,9 @@ std::vector<planned_trial> draw_balanced(const run_definition& r, const conditio
     std::vector<std::size_t> methods = r.methods;
     shuffle(std::span(motions), numbers);
     shuffle(std::span(methods), numbers);
-    // Combines each motion with each condition once: both lists advance by one at a time, and the conditions
-    // by one more before a combination repeats. Then repeats this with each pair in its other order.
+    // Combines each motion with each condition once. Both lists advance by one for each trial. Before a
+    // combination repeats, the list of conditions advances by one more. After all combinations, continues
+    // with the other order of each pair.
     const std::vector<planned_trial> listed = conditions(0, methods);
     const std::size_t kinds = listed.size();
     const std::size_t half = motions.size() * kinds;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Draws the trials of a run, in no particular order.
+/// Functions that draw the trials of a run, in no particular order.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,26 @@
 
 namespace tactor::study {
 
-/// Draws n trials: each cell equally often, and different cells for the remainder. The n trials include catch
-/// trials, if any.
+/// Draws n trials: each cell equally often. If n is not a multiple of the number of cells, the remaining
+/// trials have different cells. The n trials include catch trials, if any.
 std::vector<planned_trial> draw_cells(const run_definition& r, std::vector<planned_trial> cells,
                                       std::size_t n, random_numbers& numbers);
 
-/// Draws fewer trials than there are cells. Motions take turns, and so do the motions of each method.
+/// Draws the trials of a run with fewer trials than cells. Motions take turns, and so do the methods of each
+/// motion.
 std::vector<planned_trial> draw_by_turns(const experiment_definition& d, const run_definition& r,
                                          std::vector<planned_trial> cells, random_numbers& numbers);
 
-/// Function that lists the conditions of a motion: trials that differ in the methods.
+/// Function that lists the conditions of a motion: trials that differ in their methods.
 using condition_list =
     std::function<std::vector<planned_trial>(std::size_t motion, const std::vector<std::size_t>& methods)>;
 
 /// Lists a trial for each motion and condition, with pairs in both orders.
 std::vector<planned_trial> cross_motions(const run_definition& r, const condition_list& conditions);
 
-/// Draws n trials: each cell equally often, and different cells for the remainder. In the remainder each
-/// motion, each method or pair, each of these in a motion, and each order of a pair come equally often as far
-/// as n allows. The cells of one motion are adjacent.
+/// Draws n trials: each cell equally often. If n is not a multiple of the number of cells, the remaining
+/// trials have different cells. These trials balance the motions, the conditions, the conditions of each
+/// motion, and the orders of each pair, as far as n allows.
 std::vector<planned_trial> draw_balanced(const run_definition& r, const condition_list& conditions,
                                          std::size_t n, random_numbers& numbers);
 

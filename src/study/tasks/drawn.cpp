@@ -88,7 +88,7 @@ main_comparison drawn_task::name_comparison(const run_outline&) const
     return compare_with(list_drawn_figures(kind_, {}).front().name.front(), "t", {});
 }
 
-// A place has its errors; a path has its figures.
+// Lists the columns for places and their errors, or for the figures of paths.
 std::vector<std::string_view> drawn_task::list_columns(const run_outline&) const
 {
     if (kind_ == drawing_kind::place)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A task whose answer is a place or a path that the participant draws on the page's hand.
+/// A task whose answer is a place or a path that the participant draws on the page, on a picture of the hand.
 #pragma once
 
 #include <optional>

@@ -127,7 +127,7 @@ public:
                 {"estimate", text}};
     }
 
-    // Estimates follow the logarithm of a value that is not a level.
+    // The logarithm of an estimate is linear in a level in dB, and in the logarithm of any other value.
     std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const double middle = std::sqrt(o.values.front() * o.values.back());

@@ -16,10 +16,10 @@
 namespace tactor::study {
 namespace {
 
-using paths = std::vector<std::vector<tactor::point>>; // by stroke
+using paths = std::vector<std::vector<tactor::point>>; // points of each stroke
 
-// Returns the mean distance of two motions, whose strokes are compared in their order. If one has fewer,
-// its strokes come again.
+// Returns the mean distance between the paths of two motions. Compares the strokes in their order. If a
+// motion has fewer strokes than the other, repeats its strokes.
 double mean_distance(const paths& a, const paths& b)
 {
     const std::size_t strokes = std::max(a.size(), b.size());
@@ -38,7 +38,7 @@ double find_chance(const run_outline& o)
     return 100.0 / static_cast<double>(o.motions.size());
 }
 
-// Plans the per cent correct by method, against chance.
+// Plans the percentage of right answers for each method, to be tested against chance.
 cell_plan plan_names(const run_outline& o)
 {
     return {o.methods,

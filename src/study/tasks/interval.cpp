@@ -20,7 +20,7 @@ bool is_right(const run_outline&, std::string_view method_1, unsigned response)
     return (response == 2) == (method_1 == catch_name);
 }
 
-// Returns the per cent of right answers.
+// Returns the percentage of right answers.
 std::optional<double> count_right(const std::vector<trial>& trials)
 {
     if (trials.empty())

@@ -23,7 +23,8 @@ namespace {
 
 constexpr unsigned intervals = 3;
 
-/// The two stimuli of a trial: of these methods one is in one interval, the other in two.
+/// Methods of the two different stimuli of a trial. One method is in one interval, and the other method is in
+/// two intervals.
 using stimulus_pair = std::pair<std::size_t, std::size_t>;
 
 // Lists the pairs of a run: both methods, or each value of each method with the standard.
@@ -40,11 +41,11 @@ std::vector<stimulus_pair> list_both(const run_definition& r)
     return all;
 }
 
-// Number of different trials of a pair: either of the two differs, in each interval.
+// Number of different trials of a pair: either of the two methods can be odd, in any interval.
 constexpr std::size_t orders = 2 * std::size_t{intervals};
 
-// Returns the trial of a pair in one of its orders. As many orders in a row as there are have each of the two
-// equally often as the one that differs, and this one equally often in each interval.
+// Returns the trial of a pair for an order, which may be any number. In `orders` successive orders, each
+// method is odd equally often, and the odd stimulus is in each interval equally often.
 planned_trial make_trial(std::size_t motion, const stimulus_pair& pair, std::size_t order)
 {
     const auto [odd, other] = order % 2 == 0 ? pair : stimulus_pair(pair.second, pair.first);
@@ -103,8 +104,8 @@ public:
                     cells.push_back(make_trial(motion, pair, order));
         return cells;
     }
-    // In the remainder, motions, pairs and orders take turns. A list starts one later before a combination
-    // repeats.
+    // In the trials that remain after complete sets of cells, motions, pairs and orders take turns. Pairs and
+    // orders shift by one before a combination repeats.
     std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                     random_numbers& numbers) const override
     {
@@ -140,7 +141,8 @@ public:
         return answer.number == find_odd(t).value();
     }
 
-    // The method of the trial is that of the values, or without values the one that differs.
+    // The trial's method is the method of the value. In a run without values, it is the method of the odd
+    // stimulus.
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         constexpr std::array<const char*, intervals> columns{"method_1", "method_2", "method_3"};
@@ -174,8 +176,8 @@ public:
         r.positive = r.response == r.odd;
     }
 
-    // With values, d' grows in proportion to the distance from the standard, up to that of the farthest
-    // value.
+    // In a run with values, d' is proportional to the distance of the value from the standard. At the
+    // farthest value, d' is the person's own d'.
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         if (const auto key = lapse(who, r, intervals))
@@ -242,8 +244,8 @@ public:
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 
-    // The link of the triangular model, whose intercept is d'. That of psyphy for three alternatives is for
-    // observers who know how the stimulus differs.
+    // Uses the link function of the triangular model, with which the intercept is d'. The link function of
+    // psyphy for three alternatives is for observers who know how the odd stimulus differs.
     std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         const std::string apart =

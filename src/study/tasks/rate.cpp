@@ -18,7 +18,7 @@
 namespace tactor::study {
 namespace {
 
-// Plans mean ratings by method, without a test against a value.
+// Plans the mean rating of each method. The means are not tested against a value.
 cell_plan plan_ratings(const run_outline& o)
 {
     return {o.methods,
@@ -31,7 +31,8 @@ cell_plan plan_ratings(const run_outline& o)
             "rating"};
 }
 
-// Returns the last method's mean minus the first's; 0 if only rounding makes a difference.
+// Returns the mean of the last method minus the mean of the first method. Returns 0 if the means differ only
+// by rounding.
 double subtract_methods(const cell_values& cells, const cell_plan& plan)
 {
     const double difference = mean(cells.back()) - mean(cells.front());

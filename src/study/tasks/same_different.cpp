@@ -76,7 +76,7 @@ public:
     {
         if (const auto key = lapse(who, r))
             return *key;
-        // Answers "different" if the felt difference exceeds this, in units of d'.
+        // Felt difference, in units of d', above which the observer answers "different".
         constexpr double criterion = std::numbers::sqrt2;
         const double apart = t.method_1 != *t.method_2 ? find_dprime(who, t) : 0.0;
         return std::abs(apart + r.normal() - r.normal()) > criterion ? 2 : 1;

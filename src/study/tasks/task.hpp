@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Tasks of a study. Each task is a file in this folder with one object, which defines everything special
-/// about its runs. list_tasks() lists the objects. They have no state, and any thread may use them.
+/// Tasks of a study. Each task is a file in this folder with one object. The object defines everything that
+/// is special about the task's runs. list_tasks() lists the objects. They have no state, and any thread may
+/// use them.
 #pragma once
 
 #include <array>
@@ -37,26 +38,25 @@ struct model_factors;
 /// Answers that a participant may give in a trial.
 struct trial_answers {
     unsigned lowest = 1;                     ///< number of the first answer
-    std::vector<std::string> labels = {};    ///< label of each answer; empty if the number is enough
-    std::string possible = {};               ///< all answers for a terminal: "1 or 2"
-    bool is_line = false;                    ///< answers are places on a line, without numbers
-    bool is_estimate = false;                ///< the answer is a number above 0, and all else is unused
-    drawing_kind draws = drawing_kind::none; ///< what participants draw, if anything; all else is unused
-    bool names_stimuli = false;              ///< labels name the stimuli of the trial
-    std::string keys = {};                   ///< key of each answer; empty for their numbers
-    bool shows_motions = false;              ///< answers are the run's motions, which a page draws
+    std::vector<std::string> labels = {};    ///< label of each answer; empty text if the number is enough
+    std::string possible = {};               ///< all answers for a terminal, such as "1 or 2"
+    bool is_line = false;                    ///< true if answers are places on a line without numbers
+    bool is_estimate = false;                ///< true for a number above 0; other members are unused
+    drawing_kind draws = drawing_kind::none; ///< kind of drawing, if any; other members are unused
+    bool names_stimuli = false;              ///< true if the labels name the stimuli of the trial
+    std::string keys = {};                   ///< key of each answer; empty if the numbers are the keys
+    bool shows_motions = false;              ///< true if answers are the run's motions, which a page draws
 };
 
-/// Procedure that chooses values from the answers so far. This base class leaves the values of trials as they
-/// are.
+/// Procedure that chooses the values of trials from earlier answers. This base class does not change values.
 class value_chooser {
 public:
     virtual ~value_chooser() = default;
-    /// Gives a trial its value.
+    /// Sets the value of a trial.
     virtual void choose(planned_trial&) {}
-    /// Takes the answer to a trial of a track. `method_1`: name of the first stimulus' method.
+    /// Takes the answer to a trial of a track. `method_1`: name of the first stimulus's method.
     virtual void take(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
-    /// Returns true if the answers so far have ended a track. \pre it has an answer.
+    /// Returns true if the answers so far have ended a track. \pre the track has an answer.
     virtual bool has_ended(unsigned /*track*/) const { return false; }
 };
 
@@ -85,7 +85,7 @@ struct simulation {
     friend bool operator==(const simulation&, const simulation&) = default;
 };
 
-/// Deviations of a simulated person's figures from the mean of all, in standard deviations.
+/// Deviations of a simulated person's figures from the mean of all people, in standard deviations.
 struct simulated_figures {
     double pse = 0.0;
     double jnd = 0.0;
@@ -93,46 +93,46 @@ struct simulated_figures {
     double exponent = 0.0;
 };
 
-/// Deviations of a simulated person from the mean of all, in standard deviations.
+/// Deviations of a simulated person from the mean of all people, in standard deviations.
 struct simulated_person {
-    simulated_figures figures = {}; ///< common to all methods
-    double group = 0.0;             ///< deviation of the person's group, of all figures
-    std::vector<simulated_figures> figures_by_method = {}; ///< of each method of the definition alone
-    std::vector<double> methods = {};                      ///< of the worth of each method
+    simulated_figures figures = {}; ///< deviations common to all methods
+    double group = 0.0;             ///< deviation of the person's group, the same for all figures
+    std::vector<simulated_figures> figures_by_method = {}; ///< further deviations for each method
+    std::vector<double> methods = {};                      ///< deviation of the worth of each method
 };
 
-/// A run as a simulated observer knows it.
+/// Information about a run for a simulated observer.
 struct simulated_run {
     const simulation& truth;
     const experiment_definition& definition;
     const run_definition& run;
-    /// Returns the predicted error or unevenness of a stimulus. \throws error if it is not felt.
+    /// Returns the predicted error or unevenness of a stimulus. \throws error if the stimulus is not felt.
     std::function<double(std::size_t motion, std::size_t method)> cost;
-    /// Returns where each stroke of a stimulus is felt, at equal parts of its time.
+    /// Returns the path on which each stroke of a stimulus is felt, at equal time steps.
     std::function<const std::vector<std::vector<point>>&(std::size_t motion, std::size_t method)> felt_paths;
     simulated_person person = {};
     double mean_utility = 0.0;                                 ///< rate: mean of -ln cost over the stimuli
-    std::vector<std::vector<std::vector<point>>> targets = {}; ///< identify: by motion and stroke
+    std::vector<std::vector<std::vector<point>>> targets = {}; ///< for identify: paths by motion and stroke
 };
 
 /// Main comparison of a run.
 struct main_comparison {
     std::string text;
     std::optional<double> against = {}; ///< missing if there is nothing to compare with
-    double rounding = 0.0;              ///< as in varies()
+    double rounding = 0.0;              ///< see varies()
 };
 
-/// A participant in the main comparison of a run.
+/// Data of a participant for the main comparison of a run.
 struct compared_person {
     std::optional<double> value = {};             ///< missing if the participant is left out
-    std::optional<difference_counts> counts = {}; ///< same-different
-    std::optional<right_count> right = {};        ///< oddity
+    std::optional<difference_counts> counts = {}; ///< only for task same-different
+    std::optional<right_count> right = {};        ///< only for task oddity
 };
 
-/// Outcome of a study.
+/// Outcome of the main comparison of a study.
 struct compared {
-    std::optional<double> p = {}; ///< missing if it cannot be tested
-    bool is_above = false;        ///< true if the mean is above the value compared with
+    std::optional<double> p = {}; ///< missing if a test is not possible
+    bool is_above = false;        ///< true if the mean is above main_comparison::against
 };
 
 /// The highest rating, or "vas".
@@ -145,15 +145,15 @@ public:
     /// A task's texts for definitions and descriptions.
     struct facts {
         std::string_view name;
-        std::string_view trial;    ///< kind of a trial
-        std::string_view response; ///< meaning of its response; {} is the range of ratings
+        std::string_view trial;    ///< description of a trial
+        std::string_view response; ///< meaning of the response; {} stands for the range of ratings
         /// Usual questions about similarity, uniformity and other attributes; empty if there is none.
         std::array<std::string_view, 3> questions = {};
         std::vector<std::string_view> keys = {};    ///< keys of [[run]] that only some tasks have
         std::vector<std::string_view> columns = {}; ///< columns that only some tasks have
         bool has_silences = false;                  ///< true if one of a trial's two stimuli is silence
         bool has_three_stimuli = false;             ///< true if a trial has three stimuli
-        bool moves_value = false;                   ///< true if participants move the value; see move()
+        bool moves_value = false;                   ///< true if participants adjust the value; see move()
     };
 
     virtual ~task() = default;
@@ -165,102 +165,105 @@ public:
 
     /// Reads the parts of a [[run]] that the analysis needs. `r` must already have motions, methods, labels
     /// and choices.
-    /// \throws error (bad_input) with line and column, as the next two functions do.
+    /// \throws error (bad_input) with line and column, as check() and read() do.
     virtual void read_outline(const detail::toml_table& t, run_definition& r) const;
-    /// Throws error (bad_input) if a run, or a group's part of it, has too few motions or methods. `t`: table
-    /// named in the error.
+    /// Throws error (bad_input) if a run, or the part of a run for a group, has too few motions or methods.
+    /// `t`: table that the error names.
     virtual void check(const detail::toml_table& t, const run_outline& o) const;
-    /// Reads the parts that only a session needs.
+    /// Reads the parts of a [[run]] that only a session needs.
     virtual void read(const detail::toml_table& t, run_definition& r) const;
-    /// Returns the default words of both answers; usually none.
+    /// Returns the default words for the two answers; by default, no words.
     virtual std::vector<std::string> usual_choices(const page_words& w) const;
     /// Returns the range of ratings for --dry-run, if any.
     virtual std::optional<rating_scale> scale(const run_outline& o) const;
 
-    /// Lists the cells of a run: trials that differ in stimuli or their order.
+    /// Lists the cells of a run: trials that differ in their stimuli, or in the order of their stimuli.
     virtual std::vector<planned_trial> list_cells(const run_definition& r) const = 0;
     /// Draws n trials in no particular order: each cell equally often as far as n allows.
     virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                             random_numbers& numbers) const;
-    /// Draws the value at which a trial begins. Usually leaves the trial as it is.
+    /// Draws the initial value of a trial. By default, does not change the trial.
     virtual void draw_start(planned_trial&, const run_definition&, random_numbers&) const {}
     virtual std::unique_ptr<value_chooser> choose_values(const run_definition& r) const;
     /// Returns true if the tables of a run have the task's own columns.
     virtual bool uses_columns(const run_outline&) const { return true; }
 
-    /// Returns the possible answers; usually two.
+    /// Returns the possible answers; by default, two answers.
     virtual trial_answers ask(const run_definition& r, const page_words& w) const;
-    /// Returns a text for the participant above the question of a trial; usually empty.
+    /// Returns a text that the participant sees above the question of a trial; by default, an empty text.
     virtual std::string announce(const run_definition&, const planned_trial&, const page_words&) const
     {
         return {};
     }
-    /// Returns the trial to play after an answer that does not end it: the same trial, or with another value.
-    /// Returns nothing if the answer ends the trial, as most do.
+    /// Returns the trial to play after an answer that does not end the trial. The returned trial may have
+    /// another value. Returns nothing if the answer ends the trial, which is the default.
     virtual std::optional<planned_trial> move(const run_definition&, const planned_trial&,
                                               const trial_answer&) const
     {
         return {};
     }
-    /// Lists the trials that a simulated observer plays after the first, to reach an answer; usually none.
+    /// Lists the trials that a simulated observer plays after the first trial until it reaches the answer; by
+    /// default, no trials.
     virtual std::vector<planned_trial> list_moves(const run_definition&, const planned_trial&,
                                                   const trial_answer&) const
     {
         return {};
     }
-    /// Returns the target of a motion as its tables have it; empty if they do not.
+    /// Returns the target of a motion as in the run's table. Returns an empty text if the table has no
+    /// targets.
     virtual std::string write_target(const motion_definition&) const { return {}; }
-    /// Sets the cells of an answer in the row of its trial, as it was last played.
+    /// Sets the cells of an answer. `row`: row of the trial, with the value that was last played.
     virtual void take(trial_row& row, const run_definition& r, const trial_answer& answer) const;
-    /// Returns whether an answer is right; nothing if it can be neither right nor wrong.
+    /// Returns true if an answer is right. Returns nothing if answers are neither right nor wrong.
     virtual std::optional<bool> was_right(const experiment_definition&, const run_definition&,
                                           const planned_trial&, const trial_answer&) const
     {
         return {};
     }
-    /// Lists the responses in its tables that have separate numbers in [sync.codes]; empty if all share a
-    /// number.
+    /// Lists the responses, as in tables, that have separate numbers in [sync.codes]. Returns an empty list
+    /// if all responses share a number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
-    /// Returns the words for a response in the description of its code; empty if all responses share a
-    /// number.
+    /// Returns the words for a response in the description of its code. Returns an empty text if all
+    /// responses share a number.
     virtual std::string name_response(const run_outline& o, std::string_view response) const;
 
     /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.
     virtual void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const = 0;
-    /// Sets the members of a trial that depend on its answer. `method_1`: name of the first stimulus' method
+    /// Sets the members of a trial that depend on the answer. `method_1`: name of the first stimulus's method
     /// in the table.
     virtual void score(trial& r, const run_outline& o, std::string_view method_1,
                        const trial_answer& answer) const;
 
-    /// Prepares an observer. \throws error (bad_input) if it cannot judge the run.
+    /// Prepares a simulated observer. \throws error (bad_input) if the observer cannot judge the run.
     virtual void prepare(simulated_run& who) const;
-    /// Returns an observer's answer to a trial: 1 or 2, a rating, the place of a motion in the run from 1, an
-    /// estimate, or a drawing.
+    /// Returns an observer's answer to a trial: 1 or 2, a rating, the number of a motion in the run (from 1),
+    /// an estimate, or a drawing.
     virtual trial_answer simulate(const simulated_run& who, const planned_trial& t,
                                   random_numbers& r) const = 0;
 
     // Results.
 
-    /// Returns the cells of a run if each trial is a value; usually nothing, because the run measures
-    /// figures.
+    /// Returns the cells of a run in which each trial has a value. Returns nothing if the run measures
+    /// figures, which is the default.
     virtual std::optional<cell_plan> plan_cells(const run_outline&) const { return {}; }
-    /// Lists a participant's values in a run: a value for each cell, or the figures with the main one first.
-    /// Without trials lists only the names.
+    /// Lists a participant's values in a run: a value for each cell, or the figures, beginning with the main
+    /// figure. Lists only the names if there are no trials.
     virtual std::vector<named_value> measure(const run_outline& o, const std::vector<trial>& trials,
                                              sigmoid kind) const;
-    /// Returns the figure that is compared between the two intervals of a trial; usually nothing.
+    /// Returns the figure that is compared between the two intervals of a trial; by default, nothing.
     virtual std::optional<interval_plan> plan_intervals(const run_outline&, sigmoid) const { return {}; }
-    /// Returns the rows of a run that follow the rows which all runs have. `people`: participants with a
-    /// trial in each cell.
+    /// Returns the task's own rows of a run's results. They follow the rows that all runs have. `people`:
+    /// participants with a trial in each cell.
     virtual std::vector<result> analyse(const run_outline& o, const run_people& people,
                                         sigmoid kind) const = 0;
-    /// Lists the rows that analyse() may return, in each form that a run's results may have.
+    /// Lists the rows that analyse() may return, separately for each form that a run's results may have.
     virtual std::vector<std::vector<result_outline>> outline_results() const = 0;
-    /// Lists the methods by which response times are summarised, if a trial has one method.
+    /// Lists the methods for which response times are summarised. Returns an empty list if each trial has
+    /// several methods.
     virtual std::vector<std::string> list_timed_methods(const run_outline& o) const { return o.methods; }
     /// Returns true if a trial has one method, so that methods can be compared.
     virtual bool has_one_method(const run_outline&) const { return true; }
-    /// Tests whether the trial has no stimulus.
+    /// Returns true if a trial has no stimulus.
     virtual bool is_silent(const trial&) const { return false; }
 
     virtual main_comparison name_comparison(const run_outline& o) const = 0;
@@ -273,8 +276,8 @@ public:
 
     /// Lists the columns of --format tsv that only studies with this task have.
     virtual std::vector<std::string_view> list_columns(const run_outline& o) const;
-    /// Returns this task's cells of a trial in --format tsv: column and text. `own`: the run as the
-    /// participant's group does it.
+    /// Returns this task's cells of a trial in --format tsv: column and text. `own`: the part of the run for
+    /// the participant's group. `whole`: the run with all groups.
     virtual named_texts describe_trial(const trial& t, const run_outline& own,
                                        const run_outline& whole) const;
     /// Returns the model of a run for R.
@@ -284,8 +287,8 @@ public:
     virtual std::string describe(const run_outline& o) const;
     /// Lists the sections of methods.md that a run needs.
     virtual std::vector<std::string_view> list_sections(const run_outline&) const { return {"has_cells"}; }
-    /// Describes how answers determine the values; usually empty. Adds the sections of methods.md that it
-    /// needs.
+    /// Describes how answers determine the values; by default, returns an empty text. Adds the sections of
+    /// methods.md that the description needs.
     virtual std::string describe_procedure(const run_definition&, std::set<std::string_view>&) const
     {
         return {};
@@ -303,7 +306,7 @@ std::span<const task* const> list_tasks() noexcept;
 /// Lists the names of all tasks.
 std::vector<std::string_view> task_names();
 
-/// Returns the task with a name. \pre there is one.
+/// Returns the task with a name. \pre there is such a task.
 const task& find_task(std::string_view name) noexcept;
 
 /// Returns the task of a run.
@@ -321,8 +324,9 @@ main_comparison compare_with(std::string_view figure, std::string_view test, std
 /// Reads `task` of a [[run]]. \throws error (bad_input) with line and column.
 const task& read_task(const detail::toml_table& t);
 
-/// Lists answers from `lowest` on for a terminal: "1 (not at all) to 5 (exactly)", or "1 yes, 2 no" if
-/// `named`. Lists only the ends if `each` is false. `between`: word between two answers.
+/// Returns a text that lists answers for a terminal, such as "1 (not at all) to 5 (exactly)". With `named`,
+/// labels have no brackets. With `each`, lists all answers: "1 yes, 2 no". Otherwise lists only the first and
+/// the last answer, with the word `between`. `lowest`: number of the first answer.
 std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,
                              std::string_view between);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of tasks, to which a new task adds a line, and defaults that most tasks share.
+// The list of tasks, and defaults that most tasks share. A new task adds a line to the list.
 #include <algorithm>
 #include <array>
 #include <cstddef>

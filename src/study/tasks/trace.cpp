@@ -24,7 +24,8 @@ public:
         return to_text(join_paths(sample_strokes(m.strokes), m.strokes));
     }
 
-    // The observer draws the felt path in the motion's time, all of it moved by the same noise.
+    // The observer draws the felt path in the time of the motion. The same noise moves all points of the
+    // path.
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         const double x_mm = who.truth.sigma * r.normal();

@@ -279,8 +279,8 @@ bool is_more(const run_outline& o, std::string_view method_1, unsigned response)
 
 namespace {
 
-// Returns the method of a trial, as an index in the definition; that of the comparison if there is a
-// standard.
+// Returns the method of a trial, as an index in the definition. If there is a standard, returns the method of
+// the comparison.
 std::size_t find_base(const simulated_run& who, const planned_trial& t)
 {
     const auto base = [&who](std::size_t m) { return who.definition.methods[m].made_of.value_or(m); };
@@ -288,7 +288,7 @@ std::size_t find_base(const simulated_run& who, const planned_trial& t)
                                                                                     : base(t.method_1);
 }
 
-// Returns how far a person's figure is from the mean, in standard deviations.
+// Returns the deviation of a person's figure from the mean of all people, in standard deviations.
 double find_deviation(const simulated_run& who, const planned_trial& t, double simulated_figures::*figure)
 {
     const double common =

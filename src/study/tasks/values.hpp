@@ -34,28 +34,30 @@ std::vector<double> read_one_or_more(const detail::toml_table& t, std::string_vi
                                      const detail::bounds& b);
 /// Grid of a run's values.
 struct value_grid {
-    double least = 0.0; ///< ends of the range
+    double least = 0.0; ///< ends of the range: least and greatest value
     double greatest = 0.0;
     double step = 0.0;                   ///< distance between two values
-    std::vector<std::size_t> sizes = {}; ///< sizes of `steps`, as multiples of the step; empty if not given
+    std::vector<std::size_t> sizes = {}; ///< key `steps`, in multiples of `step`; empty if not given
 };
-/// Reads `range` and `steps`, and makes the values: from the smallest on, in the smallest of the steps, or in
-/// steps of 1 dB or a fortieth of the range. `own`: key to name if there is no range.
+/// Reads `range` and `steps`, and sets the run's values. They begin at the least value. The distance between
+/// two values is the smallest of `steps`, or by default 1 dB for levels and a fortieth of the range for other
+/// values. `own`: key that the error names if there is no range.
 value_grid read_grid(const detail::toml_table& t, run_outline& o, const detail::bounds& b,
                      std::string_view own);
 /// Returns the index of the value nearest to v.
 std::size_t find_nearest(const std::vector<double>& values, double v);
-/// Throws if a run has blocks by methods, but two methods in a trial.
+/// Throws if a run has blocks by method. For runs with two methods in each trial.
 void refuse_method_blocks(const detail::toml_table& t, const run_outline& o);
 /// Throws if a method has the name `name`, which has another meaning in the run's tables.
 void refuse_method_name(const detail::toml_table& t, const run_outline& o, std::string_view name);
 /// Throws if a run has neither words for both answers nor a standard.
 void need_words(const detail::toml_table& t, const run_outline& o);
 
-/// Lists a trial for each motion, method and value. With a standard or silence as the other stimulus lists
-/// both orders, or only the other one first.
+/// Lists a trial for each motion, method and value. If a trial has another stimulus (a standard or silence),
+/// lists both orders, or with `other_first` only the order in which the other stimulus comes first.
 std::vector<planned_trial> list_value_cells(const run_definition& r, bool other_first);
-/// Adds a trial with the value at `place` alone, or two trials with the other stimulus before and after it.
+/// Adds a trial with the value at index `place`. If there is another stimulus, adds both orders, or with
+/// `other_first` only the order in which the other stimulus comes first.
 void add_comparison(std::vector<planned_trial>& cells, std::size_t motion, const method_variants& v,
                     std::size_t place, bool other_first, unsigned track = 0);
 
@@ -74,10 +76,12 @@ unsigned read_one_of_two(const text_table& t, std::size_t row);
 double read_value(const text_table& t, std::size_t row, const run_outline& o);
 /// Reads the methods and the value of a trial, which may have a standard.
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o);
-/// Reads them if the other stimulus has the name `other` in the table.
+/// Does the same for a trial whose other stimulus has the name `other` in the table. `other` is empty if
+/// there is no other stimulus.
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o,
                      std::string_view other);
-/// Reads an answer from two columns, which must agree, each with `read`.
+/// Reads an answer from the columns `response` and `column`. One of the two cells may be empty; if neither is
+/// empty, the cells must agree. `read`: function that reads a column.
 template <class Read>
 auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)
 {
@@ -91,31 +95,35 @@ auto read_twice(const text_table& t, std::size_t row, std::string_view column, c
     return own ? *own : *response;
 }
 
-/// Returns true if the response is the comparison, or without a standard the second word.
+/// Returns true if the response chooses the comparison, or the second word if there is no standard.
 bool is_more(const run_outline& o, std::string_view method_1, unsigned response) noexcept;
 
 // Simulated observers.
 
-/// Returns the person's psychometric function for the method of a trial. The person's PSE is normal, the JND
-/// lognormal, so that it stays positive.
+/// Returns the person's psychometric function for the method of a trial. Over people, the PSE has a normal
+/// distribution, and the JND has a lognormal distribution, so that the JND stays positive.
 psychometric find_function(const simulated_run& who, const planned_trial& t);
-/// Returns true with the probability of that function at the value of a trial.
+/// Returns true with the probability that find_function() gives for the value of a trial.
 bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r);
-/// Returns the person's d' for the method of a trial: normal, at least 0.
+/// Returns the person's d' for the method of a trial. Over people, d' has a normal distribution, but values
+/// below 0 become 0.
 double find_dprime(const simulated_run& who, const planned_trial& t);
-/// Returns the person's exponent for the method of a trial: normal.
+/// Returns the person's exponent for the method of a trial. Over people, the exponent has a normal
+/// distribution.
 double find_exponent(const simulated_run& who, const planned_trial& t);
-/// Returns a random key in the share of trials in which an observer does not attend, else nothing.
+/// Returns a random key, from 1 to `keys`, if the observer does not attend to the trial; else nothing.
+/// simulation::lapse is the share of such trials.
 std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys = 2);
-/// Answers a trial with a comparison by is_more().
+/// Returns the answer to a trial with a comparison: 1 or 2, as is_more() expects.
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
-/// Throws error (bad_input) if an observer cannot judge the run's attribute; else computes the mean of its
-/// judgements.
+/// Computes the mean of the observer's judgements. Throws error (bad_input) if the observer cannot judge the
+/// run's attribute.
 void prepare_judge(simulated_run& who);
-/// Points of a line from 0 to 100 for a unit of -ln cost: a quarter of the line, as from 1 to 5.
+/// Points, on a line from 0 to 100, for a unit of -ln cost: a quarter of the line. On a scale from 1 to 5, a
+/// unit is also a quarter of the scale.
 inline constexpr double line_points = 25.0;
-/// Returns how far a judgement of a method is from the mean of all people's: what the method is worth to this
-/// person, plus noise.
+/// Returns the deviation of a judgement of a method from the mean judgement of all people: the worth of the
+/// method for this person, plus noise.
 double deviate(const simulated_run& who, std::size_t method, random_numbers& r);
 /// Returns a judgement of a stimulus: -ln of its cost, plus deviate().
 double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r);
