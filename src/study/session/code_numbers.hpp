@@ -20,7 +20,7 @@ namespace tactor::study {
 
 enum class code_event { stimulus, standard, silent, answer, made_void };
 
-/// Number of code_event's values.
+/// Number of values of code_event.
 inline constexpr std::size_t code_events = 5;
 
 /// Returns the event's name, as in [sync.codes].
@@ -36,7 +36,7 @@ struct coded_event {
     std::size_t motion = 0; ///< index in the definition
     std::size_t method = 0; ///< index of the stimulus's method; for other events, of the trial's first method
     unsigned interval = 1;  ///< place of the stimulus in its trial, from 1
-    std::string_view response = {}; ///< response as in the run's table; empty if the event is no answer
+    std::string_view response = {}; ///< response as in the run's table; empty for other events than answers
 };
 
 /// Numbers of all events of a definition. Two events share a number if they agree in all parts that `by` of

@@ -40,7 +40,7 @@ namespace {
 
 using files::or_null;
 
-// Threshold assumed for a tactor without a measured threshold, in a session that nobody feels.
+// Threshold assumed for a tactor without a measured threshold if the session has no person.
 constexpr double assumed_threshold_dbfs = -40.0;
 
 // Gives the assumed threshold to each tactor that has none. Returns true if there was such a tactor. Throws

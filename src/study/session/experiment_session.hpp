@@ -73,8 +73,9 @@ struct prepared_experiment {
 /// played, or a session with a person needs thresholds that the array does not have.
 prepared_experiment prepare(const session_request& r, session::settings& s);
 
-/// Makes the score that drives one tactor in the walk, with the carrier of the definition's first method.
-/// \throws error (bad_input) if the level is too high. The hint of the error names keys of the definition.
+/// Makes the score that drives one tactor in the walk, which tries each tactor before the runs. Uses the
+/// carrier of the definition's first method. \throws error (bad_input) if the level is too high. The hint of
+/// the error names keys of the definition.
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
 
 /// Time from the change of the screen to the first frame of a stimulus, s. It lets the participant get ready.
@@ -138,9 +139,9 @@ public:
     /// `started_ns`: CLOCK_REALTIME at the trial's first frame, or now if the trial has no first frame.
     /// \throws error (runtime).
     void add(trial_row row, std::int64_t started_ns, unsigned rate);
-    /// Returns the time from the run's first sample to a frame, s. The time is exact if both are in the same
-    /// stream. If the frame is in a later stream, uses `at_ns`, the frame's CLOCK_REALTIME. Call it after
-    /// add().
+    /// Returns the time from the run's first sample to a frame, s. The time is exact if the sample and the
+    /// frame are in the same stream. If the frame is in a later stream, uses `at_ns`, the frame's
+    /// CLOCK_REALTIME. Call it after add().
     double onset_s(unsigned stream, std::uint64_t frame, std::int64_t at_ns, unsigned rate) const;
 
 private:

@@ -153,8 +153,8 @@ public:
     session_keys& operator=(const session_keys&) = delete;
 
     bool is_terminal() const noexcept { return terminal_; }
-    /// Returns true if somebody can press a key before the question that the key should answer. Lines cannot
-    /// come too early: each line stays unread until its question.
+    /// Returns true if keys can come before the question that they answer. Lines cannot come too early: each
+    /// line stays unread until its question.
     bool come_early() const noexcept { return terminal_ || page_ != nullptr; }
     /// Returns true if the participant can answer with keys, not only with lines.
     bool has_keys() const noexcept { return come_early() || !keypads_.empty(); }
@@ -167,9 +167,9 @@ public:
     /// error.
     session_key wait(const std::string& subject = "the session", bool repeated = false);
     /// Blocks until a number or a command is entered, and returns it. Shows the digits while they are typed.
-    /// A line, or an answer from the page, is a whole number at once. For one second, the key that answered
-    /// the previous question cannot begin the number. `estimate`: true if the number may have a point. Throws
-    /// as wait().
+    /// A line, or an answer from the page, contains the complete number. For one second, the key that
+    /// answered the previous question cannot begin the number. `estimate`: true if the number may have a
+    /// point. Throws as wait().
     session_key wait_for_number(typed_number& number, bool estimate);
     /// Blocks until a text is entered, and returns it in `entered` after tidy_text(). `entered` is missing if
     /// tidy_text() refused the text. With a page, this also returns the experimenter's commands. Without a
@@ -194,7 +194,7 @@ private:
     participant_page* page_;
     std::list<keypad> keypads_;
     detail::owned_fd any_; ///< epoll descriptor of all inputs; empty if standard input is the only input
-    termios before_{};     // declared before terminal_, whose initializer fills it
+    termios before_{};     // declared first, because the initializer of terminal_ fills it
     bool terminal_;
     std::string text_ = {};
     std::int64_t read_ns_ = 0; ///< CLOCK_MONOTONIC of the last read into text_

@@ -68,8 +68,8 @@ struct page_screen {
     bool back = false; ///< true if key b goes to the previous question
     /// For each choice, the paths of a motion's strokes, sampled at equal time steps. May be empty.
     std::vector<std::vector<std::vector<point>>> pictures = {};
-    unsigned stimuli = 0; ///< number of stimuli that the page shows one by one; 0 if it does not
-    unsigned playing = 0; ///< stimulus that plays now, from 1; 0 if none
+    unsigned stimuli = 0;                ///< number of stimuli that the page shows one by one, or 0
+    unsigned playing = 0;                ///< stimulus that plays now, from 1; 0 if none
     std::vector<std::string> names = {}; ///< names of the stimuli; may be empty
     /// Positions of each stroke of the target, sampled at equal time steps. A position is missing while the
     /// stroke does not play.
@@ -88,7 +88,7 @@ public:
         bool last = false; ///< true if the connection ends after this message
     };
 
-    /// Keeps `facts`. Each page receives them once, in reply to its hello.
+    /// Keeps `facts`. Each page receives these facts once, in the reply to its hello message.
     explicit page_dialogue(nlohmann::ordered_json facts) : facts_(std::move(facts)) {}
 
     /// Shows a new screen and drops the open question. Returns the messages to send. `now_ns` is from the
@@ -103,7 +103,7 @@ public:
         /// Entered text after tidy_text(), estimate as it was typed, or drawing as to_text() writes it.
         std::optional<std::string> text = {};
     };
-    /// Takes a message. {"hello":true} makes its sender the participant's page. {"ask":N,"answer":CHOICE or
+    /// Takes a message. {"hello":true} makes the sender the participant's page. {"ask":N,"answer":CHOICE or
     /// number}, {"ask":N,"text":TEXT} and {"ask":N,"drawing":[[TIME,X,Y],...]} answer question N.
     /// {"ask":N,"back":true} goes back to the previous question.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
@@ -117,7 +117,7 @@ public:
 
 private:
     std::string state(std::int64_t now_ns) const;
-    /// Closes the question with a choice. `choice`: from 0.
+    /// Closes the question with a choice. `choice`: index from 0.
     heard take(std::size_t choice);
     /// Closes the question with the key b.
     heard go_back();
@@ -131,7 +131,7 @@ private:
 };
 
 struct page_answer {
-    char key = 0; ///< key of the choice; 0 if it has none
+    char key = 0; ///< key of the choice; 0 if the choice has no key
     unsigned number = 0;
     std::optional<std::string> text = {}; ///< text that was entered
     std::int64_t at_ns = 0;               ///< CLOCK_MONOTONIC when the answer arrived
@@ -151,8 +151,8 @@ public:
     void press(char key);
     /// Returns true if somebody has the page open.
     bool is_watched();
-    /// Returns the answer to the open question, unless there is none or poll() has already returned it. Does
-    /// not block.
+    /// Returns the answer to the open question, if there is one. Returns each answer only once. Does not
+    /// block.
     std::optional<page_answer> poll();
     /// Returns a descriptor that is readable while poll() has an answer.
     int descriptor() const noexcept { return answered_.fd(); }

@@ -111,7 +111,7 @@ void person_session::hold()
             stage_.fade_out();
         } while (!end());
     } catch (...) {
-        on_page(idle_screen(p_, "over")); // for the participant the session is over, however it ends
+        on_page(idle_screen(p_, "over")); // for the participant, the session is over in any case
         throw;
     }
 }
@@ -237,7 +237,7 @@ char person_session::wait_for_one_of(std::string_view keys)
     }
 }
 
-// Does not read lines: they answer the next question.
+// Does not read lines, because a line answers the next question.
 bool person_session::heed()
 {
     keys_.drop_pressed();
@@ -320,7 +320,8 @@ void person_session::ask_item(const session_step& s)
     if (flow_.next() != s)
         return;
     keys_.drop_keys();
-    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early(); // b may be text
+    // In a line of text, b is a letter and does not go back.
+    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early();
     const auto a =
         ask(ask_about_item(q, s.item, p_.definition.page, flow_.can_go_back() && !is_line, page_ != nullptr));
     if (!a)

@@ -77,8 +77,7 @@ private:
 
     /// Returns a watcher whose first call asks the participant to wait.
     std::function<bool(double)> waiting();
-    /// Shows the target. Returns an empty text, or the reason why the trial is void if showing the target
-    /// fails.
+    /// Shows the target. Returns an empty text, or the reason for a failure, which makes the trial void.
     std::string animate(const session_step& s, const planned_trial& t);
     /// Plays the stimuli of a trial. `again`: true if the trial's stimuli have played before, with the same
     /// value or another one.
@@ -117,7 +116,7 @@ private:
     unsigned stream_ = 0;
     std::string agreed_at_ = {};                                    ///< time of consent; empty if not asked
     bool begun_ = false;                                            ///< true after begin_store()
-    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< introduced questionnaires: form, run
+    std::set<std::pair<std::size_t, std::size_t>> introduced_ = {}; ///< questionnaires shown: form and run
     bool repeat_ = false; ///< true if the experimenter pressed r while a stimulus plays
     bool quit_ = false;
 };

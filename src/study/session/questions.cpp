@@ -154,7 +154,7 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
     const double duration_s = find_duration_s(target);
     std::vector<std::vector<std::optional<point>>> all(target.size());
     for (std::size_t s = 0; s < target.size(); ++s)
-        for (double i = 0.0; i <= parts; ++i) // the last product may be rounded up
+        for (double i = 0.0; i <= parts; ++i) // rounding may make the last time too large
             all[s].push_back(
                 find_place(target[s], spans[s], faces, std::min(duration_s, duration_s * i / parts)));
     return all;

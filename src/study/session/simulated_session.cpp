@@ -17,7 +17,7 @@ namespace {
 
 constexpr double pause_s = 0.5; // time from an answer to the next step
 
-// Start of a simulated session's clock: the year 2000, because its trials have no real time.
+// Start of a simulated session's clock: the year 2000, because simulated trials have no real time.
 constexpr std::int64_t epoch_ns = 946684800LL * 1000000000LL;
 
 class simulated_session {
@@ -117,7 +117,7 @@ private:
         }
     }
 
-    // Simulates a trial, and returns its line. Sets `t` to the value at which the observer stops.
+    // Simulates a trial, and returns its line. Sets `t` to the trial that the observer played last.
     trial_row play(const session_step& s, const simulated_observer& who, planned_trial& t)
     {
         const run_definition& r = p_.run_at(s.run);

@@ -29,7 +29,7 @@ double stage::room_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
         before_ + position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
-    const std::uint64_t wait = room_.wait(s, at).value_or(0); // 0 if no wait helps: give() reports it
+    const std::uint64_t wait = room_.wait(s, at).value_or(0); // 0 if no wait helps; give() reports the limit
     return static_cast<double>(wait) / s.rate();
 }
 

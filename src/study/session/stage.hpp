@@ -22,8 +22,8 @@ struct given_stimulus {
     std::string flaw = {};                         ///< deviation from the plan; empty if there is none
     std::optional<std::uint64_t> first_frame = {}; ///< first frame in the stream; missing if nothing sounded
     std::uint64_t frames = 0;                      ///< number of frames that were played
-    std::int64_t started_ns = 0;                   ///< CLOCK_MONOTONIC of its first frame at the DAC
-    std::int64_t ended_ns = 0;                     ///< CLOCK_MONOTONIC of its last frame at the DAC
+    std::int64_t started_ns = 0;                   ///< CLOCK_MONOTONIC when the first frame is at the DAC
+    std::int64_t ended_ns = 0;                     ///< CLOCK_MONOTONIC when the last frame is at the DAC
     unsigned xruns = 0;                            ///< number of xruns since the stimulus was requested
     bool limited = false;                          ///< true if limits of the array changed the stimulus
 
@@ -68,7 +68,7 @@ public:
     /// waits until the tactors have rested, and plays the score once more. `watch`: as for pass().
     given_stimulus give_after_limits(const score& s, const std::function<bool(double passed_s)>& watch);
 
-    /// Starts the noise, if any, and blocks until the noise has full level. It lasts until fade_out().
+    /// Starts the noise, if any, and blocks until the noise has full level. The noise lasts until fade_out().
     /// Returns false if the noise does not play. Throws as give().
     bool fade_in();
     void fade_out() noexcept;

@@ -276,7 +276,7 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
         parts.push_back({make(numbers[i]), begin[i]});
     const double rate = p_.render.rate;
     if (lines_ != nullptr) {
-        there_->fade_in(); // before the times below, because its duration is unknown
+        there_->fade_in(); // first, because a fade takes an unknown time
         // Changes the number halfway between the starts of two stimuli, so that a late pulse still shows the
         // right number.
         const double first_s = stimulus_lead_s + there_->setup().buffer_frames / rate;

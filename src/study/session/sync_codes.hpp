@@ -46,7 +46,7 @@ std::string_view name_outputs(const code_settings& c) noexcept;
 void check_pulses(const session::environment& e, const experiment_definition& d, const stimulus_set& all,
                   unsigned rate);
 
-/// Returns the part of session.json about the codes.
+/// Returns the description of the codes for session.json.
 nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& all);
 /// Returns the description of the tables of events, with each number and its meaning; null without codes.
 nlohmann::ordered_json describe_events(const prepared_experiment& p);
@@ -120,12 +120,12 @@ public:
     /// record covers only the stimuli, not the codes. Throws as stage::give().
     given_stimulus give(const score& stimuli, const session_step& s, const planned_trial& t,
                         const stage::watcher& watch);
-    /// Starts to send the code of an event that happens now. Lines show the code at once; on the channel it
-    /// plays after the frames in the device's buffer. Call finish() to complete the code. `response`: for an
-    /// answer, the response as in the run's table.
+    /// Starts to send the code of an event that happens now. Lines show the code at once; on the channel the
+    /// code plays after the frames in the device's buffer. Call finish() to complete the code. `response`:
+    /// for an answer, the response as in the run's table.
     void send(code_event e, const session_step& s, const planned_trial& t, std::string_view response = {});
 
-    /// Completes the code that send() started, if any: blocks until the code ends, and notes it.
+    /// Completes the code that send() started, if any: blocks until the code ends, and notes the code.
     void finish();
 
     /// Notes the code of each stimulus of a trial, if the stimulus began to play. `frame_1`: first frame of
