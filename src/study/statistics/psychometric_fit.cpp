@@ -56,7 +56,7 @@ struct likelihood {
     std::array<double, 3> gradient = {};
     std::array<std::array<double, 3>, 3> information = {};
 
-    double determinant() const // of the information matrix of a and b
+    double determinant() const // of the information about a and b
     {
         const auto& i = information;
         return i[0][0] * i[1][1] - i[0][1] * i[0][1];

@@ -48,8 +48,9 @@ double chance(double x, const psychometric& p, const psychometric_family& f);
 
 struct psychometric_fit {
     psychometric parameters = {};
-    bool step = false; ///< answers rise in one step: the threshold lies somewhere in it, and the slope is too
-                       ///< steep to be known
+    /// True if the answers rise in one step. The threshold lies somewhere in this step, and the slope is too
+    /// steep to be estimated.
+    bool step = false;
     double deviance = 0.0; ///< deviance from the model with a separate chance for each block
 };
 

@@ -55,7 +55,7 @@ matrix diagonalise(matrix& a)
     matrix vectors(n, std::vector<double>(n));
     for (std::size_t i = 0; i < n; ++i)
         vectors[i][i] = 1.0;
-    constexpr int sweeps = 20; // enough: the last sweeps converge quadratically
+    constexpr int sweeps = 20; // enough, because the last sweeps converge quadratically
     for (int sweep = 0; sweep < sweeps; ++sweep)
         for (std::size_t p = 0; p < n; ++p)
             for (std::size_t q = p + 1; q < n; ++q)

@@ -31,9 +31,9 @@ sensitivity same_different(double hits, double false_alarms);
 /// Numbers of a participant's answers "different": hits for different pairs, false alarms for same pairs.
 struct difference_counts {
     std::size_t hits = 0;
-    std::size_t different = 0; ///< pairs
+    std::size_t different = 0; ///< number of different pairs
     std::size_t false_alarms = 0;
-    std::size_t same = 0; ///< pairs
+    std::size_t same = 0; ///< number of same pairs
 };
 
 /// Returns the share of right answers in the triangular model (Ennis 1993). From three stimuli, an observer
@@ -50,7 +50,8 @@ struct right_count {
     std::size_t trials = 0;
 };
 
-/// Returns (right + 1/2) / (trials + 3/2). The result is never 1, and a share of 1/3 stays 1/3.
+/// Returns (right + 1/2) / (trials + 3/2). This share of right answers is never 1, and a share of 1/3 stays
+/// 1/3.
 double corrected_third(const right_count& c);
 
 /// A test of whether any participant can tell the stimuli apart. A t test of d' would not work: d' is never

@@ -31,7 +31,7 @@ struct t_test {
     std::size_t n = 0;
     std::optional<double> mean = {};
     std::optional<double> se = {};          ///< sd / sqrt n
-    std::optional<interval> ci = {};        ///< of the mean
+    std::optional<interval> ci = {};        ///< interval of the mean
     std::optional<interval> ci_within = {}; ///< within-participant interval of the mean: within_intervals()
     std::optional<double> t = {};           ///< t of the mean against `against`
     std::optional<double> df = {};          ///< n - 1
@@ -177,7 +177,7 @@ std::vector<double> join_angles(std::vector<double> degrees);
 
 struct comparison {
     std::size_t a;
-    std::size_t b;     ///< after a
+    std::size_t b;     ///< level after a
     double difference; ///< mean of a - mean of b
     std::optional<double> q = {};
     std::optional<double> p = {};
@@ -192,7 +192,7 @@ std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, s
 /// A comparison of two levels by a paired t test.
 struct paired_comparison {
     std::size_t a;
-    std::size_t b;                     ///< after a
+    std::size_t b;                     ///< level after a
     t_test test = {};                  ///< test of the differences a - b against 0
     std::optional<double> p_holm = {}; ///< adjusted for all pairs
 };
