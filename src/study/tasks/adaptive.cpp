@@ -92,7 +92,7 @@ std::vector<adaptive_track> read_tracks(const toml_table& t, bool two_sided)
     return all;
 }
 
-// Refuses keys of QUEST+ in a run without it, and keys of staircases in a run without them.
+// Refuses keys of QUEST+ in a run without QUEST+, and keys of staircases in a run without staircases.
 void refuse_unused_keys(const toml_table& t, const adaptive_options& a)
 {
     for (const auto& [key, of_quest] : {std::pair("steps", false),
@@ -106,9 +106,9 @@ void refuse_unused_keys(const toml_table& t, const adaptive_options& a)
                    "leave it out");
 }
 
-// Sets the sides of tracks. Every second track of a kind begins at the other end, and is mirrored if it needs
-// several answers for a step. Without mirrored tracks, such staircases would stay on one side of the pse. A
-// fit would then move the pse to that side and find a jnd that is too small. `greatest`: index of the
+// Sets the sides of tracks. Every second track of a procedure begins at the other end, and is mirrored if it
+// needs several answers for a step. Without mirrored tracks, such staircases would stay on one side of the
+// pse. A fit would then move the pse to that side and find a jnd that is too small. `greatest`: index of the
 // greatest value.
 void set_sides(const toml_table& t, adaptive_options& a, std::size_t greatest)
 {

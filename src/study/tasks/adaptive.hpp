@@ -45,9 +45,9 @@ private:
 };
 
 /// Reads the procedures of an adaptive run, in which the answers choose values from a grid over `range`.
-/// `two_sided`: true if both answers have equal rank. Every second staircase of a kind is then mirrored. If
-/// `two_sided` is false, answers are right or wrong, and tracks start at the greatest value by default.
-/// \throws error (bad_input) with line and column.
+/// `two_sided`: true if both answers have equal rank. Every second staircase of the same procedure is then
+/// mirrored. If `two_sided` is false, answers are right or wrong, and tracks start at the greatest value by
+/// default. \throws error (bad_input) with line and column.
 void read_procedure(const detail::toml_table& t, run_definition& r, const detail::bounds& b, bool two_sided);
 
 /// Names of the keys that read_procedure() reads. read_vary() reads further keys.

@@ -115,7 +115,7 @@ public:
     {
         std::vector<std::size_t> start = r.adjusting.start;
         if (start.empty())
-            start = {0, r.outline.values.size() - 1}; // draw_start() replaces them
+            start = {0, r.outline.values.size() - 1}; // draw_start() draws other values on these sides
         std::vector<planned_trial> cells;
         for (const std::size_t motion : r.motions)
             for (const std::size_t method : r.methods)
