@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t masking_block_frames = 64;
 constexpr unsigned most_breaks_in_row = 3;
 
-// P. Kellet's filter for pink noise, a sum of first-order filters. At 48 kHz and above 10 Hz, it falls by 3
-// dB per octave, with errors below 0.25 dB.
+// P. Kellet's filter for pink noise, a sum of first-order filters. At 48 kHz and above 10 Hz, its response
+// falls by 3 dB per octave, with errors below 0.25 dB.
 struct section {
     double pole;
     double gain;

@@ -82,7 +82,7 @@ public:
     io_kind begin() noexcept;
     /// Fills the free space of the sink's buffer. After an xrun, counts a break and restarts the stream from
     /// silence. Returns `ok`, or the reason why the stream ended. `ready`: result of sink::ready(). `on`:
-    /// true if the noise must be on.
+    /// true if the noise must fade in or play.
     io_kind step(io_kind ready, bool on) noexcept;
 
     masking_state state() noexcept;
