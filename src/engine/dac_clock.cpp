@@ -9,8 +9,8 @@ namespace tactor::engine {
 namespace {
 
 constexpr double reading_error_ns = 0.5e6; // standard deviation
-constexpr double first_drift = 1e-3;       // crystals: 100 ppm at most; virtual sound cards: more
-// Variance of the drift of a crystal that warms up: 0.01 ppm after a second.
+constexpr double first_drift = 1e-3;       // crystals drift by 100 ppm at most, virtual sound cards by more
+// Growth of the drift's variance while a crystal warms up: the standard deviation is 0.01 ppm after a second.
 constexpr double drift_walk_per_ns = 1e-8 * 1e-8 * 1e-9;
 constexpr double gate = 4.0; // standard deviations
 constexpr unsigned give_up_after = 8;
@@ -26,8 +26,8 @@ double frames_between(std::uint64_t from, std::uint64_t to) noexcept
     return to >= from ? static_cast<double>(to - from) : -static_cast<double>(from - to);
 }
 
-// Returns to - from in ns. Exact for times below 2^53 ns (104 days), within 8 ns in the first two years of
-// the clock.
+// Returns to - from in ns. Exact while both times are below 2^53 ns (104 days), within 8 ns while they are
+// below two years.
 double ns_between(std::int64_t from, std::int64_t to) noexcept
 {
     return static_cast<double>(to) - static_cast<double>(from);

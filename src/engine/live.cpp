@@ -26,10 +26,10 @@
 namespace tactor::engine {
 namespace {
 
-constexpr std::size_t live_knots = 33;    // most knots of a course
-constexpr double least_live_soa_s = 0.01; // least SOA of bursts
+constexpr std::size_t live_knots = 33;    // maximum number of knots of a course
+constexpr double least_live_soa_s = 0.01; // minimum SOA of bursts
 
-// Adds one more point with its delay.
+// Adds the delay of one point.
 void count(live_delay& d, std::int64_t ns) noexcept
 {
     const double s = 1e-9 * static_cast<double>(ns);
@@ -43,8 +43,8 @@ void count(live_delay& d, std::int64_t ns) noexcept
 
 std::size_t live_reserve(const stream_setup& s) noexcept
 {
-    // In one period a stroke needs two lines and a fade, or the bursts that may begin in it and those that
-    // still sound.
+    // In one period a continuous stroke needs two lines and a fade. A stroke of bursts needs the bursts that
+    // begin in the period and the bursts that still sound.
     const double bursts = 2.0 + s.period_frames / (least_live_soa_s * s.rate);
     return live_voices * static_cast<std::size_t>(std::ceil(std::max(3.0, bursts))) *
            ((s.channels + synth::drives_per_event - 1) / synth::drives_per_event);
@@ -61,8 +61,7 @@ live_voice::live_voice(const live_setup& s)
 
 void live_voice::request(action w) noexcept
 {
-    // The first request counts, with two exceptions: a cancel may still shorten an end, and a failure must be
-    // reported.
+    // The first request counts, with two exceptions: a cancel replaces an end, and a failure replaces both.
     action now = requested_.load(std::memory_order_relaxed);
     while (now < w && !requested_.compare_exchange_weak(now, w, std::memory_order_release)) {
     }
@@ -100,7 +99,7 @@ void live_voice::wait(std::uint64_t frames) noexcept
         has_point_ = true;
         idle_ = 0;
     } else if (requested() == action::go_on) {
-        idle_ += frames; // after its end the producer need not send points
+        idle_ += frames; // the producer need not send points after it has requested the end
     }
 }
 
@@ -134,14 +133,14 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t off
     } else {
         fits = follow(m, frames, t);
     }
-    // A burst takes the newest point; until then the point waits.
+    // The next burst takes the newest point; until then the point waits.
     idle_ = setup_.bursts && points_.has_news() ? 0 : idle_ + frames;
     rendered_.store(m.position() + frames - base_, std::memory_order_relaxed);
     return fits;
 }
 
-// Renders continuous strokes: linear from the amplitudes of one point to those of the next, while the carrier
-// runs on.
+// Renders a continuous stroke: amplitudes change linearly from one point to the next, and the carrier
+// continues.
 bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& t) noexcept
 {
     const std::uint64_t end = m.position() + frames;
@@ -172,7 +171,7 @@ bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& 
     return fits;
 }
 
-// Takes the newest point, if one has come. Frames from `at` on have it.
+// Takes the newest point, if there is one. It applies from frame `at` on.
 void live_voice::take(std::uint64_t at, const dac_times& t) noexcept
 {
     if (!points_.fetch())
@@ -190,7 +189,7 @@ live_delay live_voice::delay(std::int64_t started_ns) const noexcept
     return all;
 }
 
-// Sets the amplitudes that the newest course has at a frame of the stroke.
+// Sets to_ to the amplitudes that the newest course has at a frame of the stroke.
 void live_voice::aim(std::uint64_t frame) noexcept
 {
     const live_course& c = points_.value();
@@ -250,7 +249,7 @@ double live_voice::amplitude(std::size_t channel) const noexcept
     return from_[channel] + (to_[channel] - from_[channel]) * part;
 }
 
-// Adds an event by channels. `part` returns the amplitudes of a channel at both ends of the event.
+// Adds an event for all channels. `part` returns a channel's amplitudes at the start and end of the event.
 template <typename Part>
 bool live_voice::add(synth::mixer& m, synth::drive_event e, Part part) noexcept
 {
@@ -288,7 +287,7 @@ smoothing::place smoothing::at(std::uint64_t frame) const
 {
     place mean{{0.0, 0.0}, 0.0};
     point silent{0.0, 0.0};
-    double touched = 0.0; // touched part of the window
+    double touched = 0.0; // fraction of the window with a touch
     std::uint64_t rest = window_;
     std::uint64_t end = frame;
     for (auto g = places_.rbegin(); g != places_.rend() && rest != 0; ++g) {
@@ -347,7 +346,7 @@ void check(const live_options& o, unsigned rate)
                       "give 0 to 10 s");
 }
 
-/// Returns a plan with the members that determine its sound.
+/// Returns a plan that has only the members that determine the sound.
 plan sound_plan(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
@@ -389,7 +388,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
         return synth::attack_frames(synth::ramp_seconds(ramp_s, 0.0, duration_s, o.plan.carrier_hz),
                                     l.envelope, s.rate, l.duration);
     };
-    // With a restart all bursts are alike; else each has its place on the carrier.
+    // With a restart all bursts are equal; otherwise each burst begins at a different phase of the carrier.
     if (synth::crosses_zero(heard))
         l.ramp = ramp(l.restart ? o.render.ramp_s : o.render.ramp_s.value_or(0.0));
     else
@@ -398,7 +397,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     return l;
 }
 
-/// Mark of the thread that runs a model, while it lives.
+/// Scope in which the current thread is marked as running a model.
 class model_call {
 public:
     explicit model_call(std::atomic<std::thread::id>& owner) noexcept : owner_(owner)
@@ -413,7 +412,7 @@ private:
     std::atomic<std::thread::id>& owner_;
 };
 
-/// Returns all tactors' levels. A point may come anywhere, so all must have one.
+/// Returns the levels of all tactors. Each tactor must have a level, because a point may come anywhere.
 std::vector<synth::tactor_level> live_levels(const array& a, const render_options& o)
 {
     const std::vector<std::size_t> unmeasured = synth::unmeasured_tactors(a, o);
@@ -481,8 +480,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     return true;
 }
 
-// Writes the course to a place. A model may refuse a point; but after another failure nobody knows what
-// should be felt, so the stroke ends.
+// Writes the course to a place. If the model refuses the point, the stroke continues. After any other failure
+// the amplitudes are unknown, so the stroke ends.
 bool live_stroke::impl::write_course(point p, double intensity)
 {
     const auto failed = [this](std::string_view what) {
@@ -490,7 +489,7 @@ bool live_stroke::impl::write_course(point p, double intensity)
             fmt::format("phantom model \"{}\" failed: {}", model->name(), what.substr(0, what.find('\n'))));
     };
     const model_call now(model_thread);
-    excess.clear(); // text about an earlier point that was refused
+    excess.clear(); // may hold text about an earlier point that was refused
     try {
         return compute_course({p, intensity}, voice.draft());
     } catch (const error& e) {
@@ -516,14 +515,14 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
     const std::span<double> all(course.amplitudes);
     if (window == 0)
         return amplitudes_at(p.at, p.intensity, all);
-    engine::smoothing next = smooth; // keeps `smooth` if a model throws
+    engine::smoothing next = smooth; // `smooth` stays unchanged if a model throws
     next.to(course.start, p);
     course.length = next.frames_to_target();
     if (course.length != 0)
         course.knots = most_knots;
     bool limited = false;
     const std::size_t channels = limits.size();
-    // Begins at the end, which has the requested intensity, so that an error names that one.
+    // Starts at the last knot, which has the requested intensity, so that an error names that intensity.
     for (std::size_t k = course.knots; k-- > 0;) {
         const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
         const auto mean = next.at(course.start + after);

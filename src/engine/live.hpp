@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A live stroke: its voice in the audio thread, and the producer's side, which makes an even movement and
-/// amplitudes of points that come in bursts.
+/// A live stroke: its voice in the audio thread, and the producer's side. The producer's side turns points
+/// that arrive irregularly into an even movement, and computes its amplitudes.
 #pragma once
 
 #include <atomic>
@@ -29,44 +29,44 @@
 
 namespace tactor::engine {
 
-/// Most live strokes that the audio thread renders at once.
+/// Maximum number of live strokes that the audio thread renders at once.
 inline constexpr std::size_t live_voices = 64;
-/// Most live strokes of the audio thread: those, and strokes that wait for their first point or for another
-/// one to end. More wait on the control side.
+/// Maximum number of live strokes that the audio thread holds, including those that wait for their first
+/// point or for another stroke to end. Further strokes wait on the control side.
 inline constexpr std::size_t live_places = voices / 2;
 
 struct live_setup {
     std::size_t channels = 0;
     double cycles_per_frame = 0.0;
-    std::uint64_t step = 48; ///< continuous: least number of frames from one set of weights to the next
+    std::uint64_t step = 48; ///< continuous strokes: minimum number of frames between two sets of weights
     std::uint64_t timeout = 24'000;
-    std::uint64_t longest = UINT64_MAX; ///< frames that it may sound
-    std::uint64_t window = 0;           ///< frames over which places are smoothed; 0: none
+    std::uint64_t longest = UINT64_MAX; ///< maximum number of frames for which the stroke sounds
+    std::uint64_t window = 0;           ///< frames over which places are smoothed; 0 for no smoothing
     bool bursts = false;
     std::uint64_t soa = 0;
     std::uint64_t duration = 0;
-    std::uint32_t ramp = 0;     ///< frames, for bursts at whose start and end the carrier crosses zero
-    std::uint32_t cut_ramp = 0; ///< for the other bursts
-    bool restart = false;       ///< bursts: each restarts the carrier, instead of continuing the stroke's
-    std::shared_ptr<const synth::timbre> sound = {}; ///< null: a sine
+    std::uint32_t ramp = 0;     ///< ramp of bursts whose carrier is at zero at both ends, frames
+    std::uint32_t cut_ramp = 0; ///< ramp of other bursts, frames
+    bool restart = false;       ///< true if each burst restarts the carrier, false if the carrier continues
+    std::shared_ptr<const synth::timbre> sound = {}; ///< null for a sine
     burst_envelope envelope = {};                    ///< envelope of bursts
     unsigned rate = 48000;
 };
 
-/// Amplitudes that the producer hands over: now, and as far ahead as they are known.
+/// Amplitudes that the producer hands over, from now until the stroke has reached the newest point.
 struct live_course {
-    std::uint64_t start = 0;        ///< frame of the stroke at which they begin
-    std::uint64_t length = 0;       ///< frames until the last of them holds; 0: at once
-    std::int64_t at_ns = 0;         ///< time stamp of the point
-    std::size_t knots = 1;          ///< number of sets, evenly spaced over the length
-    std::vector<double> amplitudes; ///< by knot and channel; has space for all
+    std::uint64_t start = 0;  ///< frame of the stroke at which the amplitudes begin
+    std::uint64_t length = 0; ///< frames from the first set to the last; 0: the last set applies at once
+    std::int64_t at_ns = 0;   ///< time stamp of the point
+    std::size_t knots = 1;    ///< number of sets of amplitudes, evenly spaced over `length`
+    std::vector<double> amplitudes; ///< by knot and channel; sized for the maximum number of knots
 };
 
-/// Returns the drives of the mixer that are reserved for live strokes.
+/// Returns the number of the mixer's drives that are reserved for live strokes.
 std::size_t live_reserve(const stream_setup& s) noexcept;
 
-/// A live stroke. The producer writes amplitudes by channel; the audio thread makes drives of them, period by
-/// period, so no point waits for a plan. All other requests of the producer set a flag.
+/// A live stroke. The producer writes amplitudes by channel, and the audio thread turns them into drives in
+/// each period, so points need no plan. The producer's other requests set a flag.
 class live_voice {
 public:
     enum class action : std::uint32_t { go_on, end, cancel, fail };
@@ -76,24 +76,24 @@ public:
     // Producer: one thread at a time.
     live_course& draft() noexcept { return points_.draft(); }
     void publish() noexcept { points_.publish(); }
-    /// Returns the frames of the stroke that are rendered. A point that comes now counts from the next frame
-    /// on.
+    /// Returns the number of frames of the stroke that have been rendered. A point that arrives now takes
+    /// effect from the next frame on.
     std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
 
-    /// Counts a point whose intensity was above 1, and a point outside the array.
+    /// Counts a point that was held because its intensity was above 1, or that was outside the array.
     void count_held() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
     void count_outside() noexcept { outside_points_.fetch_add(1, std::memory_order_relaxed); }
-    /// Adds a point with this time stamp, ns, to the length and the duration that doubt() judges.
+    /// Adds a point to the length and the duration that doubt() examines. `at_ns`: the point's time stamp.
     void count_way(point p, std::int64_t at_ns) noexcept;
 
-    /// Ends the stroke as interrupted, for this reason. Call it once.
+    /// Ends the stroke as interrupted, with `why` as the reason. Call it at most once.
     void fail(std::string why) noexcept;
 
     // Any thread.
     void request(action w) noexcept;
     std::uint64_t held_points() const noexcept { return held_points_.load(std::memory_order_relaxed); }
     std::uint64_t outside_points() const noexcept { return outside_points_.load(std::memory_order_relaxed); }
-    /// Returns a warning if the points are likely in another unit than millimetres; else empty.
+    /// Returns a warning if the points are probably not in millimetres, else an empty string.
     std::string doubt() const;
     /// Returns the reason of the failure. Call it only after the stroke has failed.
     const std::string& failure() const noexcept { return failure_; }
@@ -105,36 +105,37 @@ public:
     action requested() const noexcept { return requested_.load(std::memory_order_acquire); }
     const live_setup& setup() const noexcept { return setup_; }
     bool is_bursts() const noexcept { return setup_.bursts; }
-    /// Returns true if a point waits.
+    /// Returns true if a new point waits.
     bool has_news() const noexcept { return points_.has_news(); }
-    /// Returns true if it still moves to the newest point, at this frame of the mixer.
+    /// Returns true if the stroke has not reached the newest point yet at this frame of the mixer.
     bool moves(std::uint64_t position) const noexcept
     {
         const live_course& c = points_.value();
         return has_begun_ && c.length != 0 && c.start + c.length > position - base_;
     }
-    /// Counts `frames` more of waiting before it begins. Called by its present owner: the feeder, and after
-    /// the hand-over the audio thread.
+    /// Adds `frames` to the time that the stroke has waited to begin. The feeder calls this before it hands
+    /// the stroke over, the audio thread afterwards.
     void wait(std::uint64_t frames) noexcept;
     /// Returns true if wait() has seen a point.
     bool has_point() const noexcept { return has_point_; }
-    /// Takes the newest point, if one has come. The stroke then begins with the mixer's next frame.
+    /// Takes the newest point and begins the stroke at the mixer's frame `next`. Returns false if no point
+    /// has come.
     bool try_begin(ticket t, std::uint64_t next) noexcept;
     /// Adds the drives of the next frames. Returns false if the mixer has no space for them. `clock` may be
-    /// unknown; `offset` is the stream frame of the mixer's frame 0.
+    /// invalid; `offset` is the stream frame of the mixer's frame 0.
     bool render(synth::mixer& m, std::uint64_t frames, std::uint64_t offset,
                 const clock_line& clock) noexcept;
     bool starved() const noexcept { return idle_ > setup_.timeout; }
-    /// Returns true if, at this frame of the mixer, it has sounded as long as it may.
+    /// Returns true if the stroke has reached its maximum duration at this frame of the mixer.
     bool lasted(std::uint64_t position) const noexcept
     {
         return has_begun_ && position - base_ >= setup_.longest;
     }
-    /// Continuous: falls to zero in `frames`. Returns false if the mixer has no space.
+    /// Fades a continuous stroke to zero within `frames`. Returns false if the mixer has no space.
     bool fade(synth::mixer& m, std::uint32_t frames) noexcept;
-    /// Returns the frame at which the drives added so far are over.
+    /// Returns the frame at which the drives added so far end.
     std::uint64_t end() const noexcept { return end_; }
-    /// Returns the delays of its points. `started_ns`: time when its first frame was at the DAC.
+    /// Returns the delays of the points. `started_ns`: time when the stroke's first frame was at the DAC.
     live_delay delay(std::int64_t started_ns) const noexcept;
 
 private:
@@ -162,7 +163,7 @@ private:
     std::atomic<double> length_mm_{0.0};
     std::atomic<double> farthest_mm_{0.0};
     std::atomic<double> moving_s_{0.0};
-    std::optional<point> newest_ = {}; ///< the producer's; so is the time of its first point
+    std::optional<point> newest_ = {}; ///< used only by the producer, like begun_ns_
     std::int64_t begun_ns_ = 0;
     std::string failure_;
 
@@ -172,18 +173,18 @@ private:
     std::uint64_t next_burst_ = 0;
     bool has_point_ = false;
     bool has_begun_ = false;
-    std::int64_t first_ns_ = 0; ///< time stamp of the point with which it began
-    live_delay later_ = {};     ///< delays of the other points
-    std::uint64_t idle_ = 0;    ///< frames since a point came, or since the wait began
+    std::int64_t first_ns_ = 0; ///< time stamp of the point with which the stroke began
+    live_delay later_ = {};     ///< delays of all points but the first
+    std::uint64_t idle_ = 0;    ///< frames since the last point, or since the wait began
     std::uint64_t length_ = 1;  ///< length of the line between two sets of amplitudes
     std::uint64_t place_ = 1;   ///< position on that line
-    std::vector<double> from_;  ///< by channel
-    std::vector<double> to_;    ///< bursts: of the next one
+    std::vector<double> from_;  ///< amplitudes at the start of that line, by channel
+    std::vector<double> to_;    ///< amplitudes at the end of that line, or of the next burst
 };
 
-/// Place of a stroke as the mean of its points over a window that ends now. So a step becomes an even
-/// movement that takes one window, and an even movement is half a window late. At intensity 0 nothing touches
-/// the skin: such a place counts only while all places in the window have it.
+/// Smoothed place of a stroke: the mean of its points over a window that ends now. A jump becomes an even
+/// movement that lasts one window, and an even movement is delayed by half a window. At intensity 0 nothing
+/// touches the skin, so a place with intensity 0 counts only if all places in the window have intensity 0.
 class smoothing {
 public:
     struct place {
@@ -194,12 +195,12 @@ public:
     /// \param window frames, 1 or more
     explicit smoothing(std::uint64_t window) : window_(window) {}
 
-    /// Puts the stroke at `p` from this frame on. `frame` never decreases. A later place for the same frame
-    /// replaces the earlier. Before the first frame the stroke rests at the first place.
+    /// Puts the stroke at `p` from this frame on. `frame` must not decrease. A second place for the same
+    /// frame replaces the first. Before the first frame the stroke rests at the first place.
     void to(std::uint64_t frame, const place& p);
-    /// Returns the place of the stroke at a frame after the newest, if no other place comes.
+    /// Returns the place at `frame` if no further place comes. `frame` must not be before the newest place.
     place at(std::uint64_t frame) const;
-    /// Returns the number of frames after the newest point until the stroke has reached it.
+    /// Returns the number of frames that the stroke takes to reach the newest place.
     std::uint64_t frames_to_target() const noexcept { return places_.size() < 2 ? 0 : window_; }
 
 private:
@@ -209,7 +210,7 @@ private:
     };
 
     std::uint64_t window_;
-    std::vector<entry> places_; ///< places that still count, the oldest first
+    std::vector<entry> places_; ///< places that still count, oldest first
 };
 
 } // namespace tactor::engine
@@ -223,12 +224,12 @@ struct live_stroke::impl {
     impl(stroke_id number, const array& a, const layout& l, const stream_setup& s, const live_options& o);
 
     bool to(point p, double intensity, std::optional<std::int64_t> at_ns = {});
-    /// Writes the amplitudes of a place, by channel. Returns true if a limit lowered one. If the model gives
-    /// more than the intensity, `excess` says so.
+    /// Writes the amplitudes of a place, by channel. Returns true if a limit lowered an amplitude. Sets
+    /// `excess` if the model's amplitudes exceed the requested intensity.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
-    /// Writes the amplitudes from the current place to another one. The stroke ends if the model fails.
+    /// Writes the amplitudes from the current place to `p`. Ends the stroke if the model fails.
     bool write_course(point p, double intensity);
-    /// Writes the amplitudes from the current place to another one into `course`.
+    /// Computes the amplitudes from the current place to `p` into `course`.
     bool compute_course(const engine::smoothing::place& p, engine::live_course& course);
 
     stroke_id id;
@@ -240,10 +241,11 @@ struct live_stroke::impl {
     std::vector<double> limits;              ///< by channel
     engine::live_voice voice;
 
-    std::uint64_t window; ///< frames; 0: places are not smoothed
+    std::uint64_t window; ///< frames; 0 if places are not smoothed
 
-    std::mutex mutex; ///< between producers
-    /// Thread that is in the model, which may be the program's: it must not wait for itself there.
+    std::mutex mutex; ///< lets one producer in at a time
+    /// Thread that runs the phantom model now. If the model, which may be the program's code, moved the
+    /// stroke, this thread would wait for itself.
     std::atomic<std::thread::id> model_thread{};
     engine::smoothing smooth;
     std::size_t most_knots;

@@ -22,10 +22,11 @@ constexpr unsigned many_idle_steps = 16;
 // programs.
 constexpr unsigned least_wakes_per_s = 10;
 
-// A level changes within 20 ms.
+// Number of gain ramps that fit in a second: a gain change takes 20 ms.
 constexpr unsigned ramps_per_s = 50;
 
-// Limit, because snd_pcm_resume() may return "not yet" for ever; a device needs a few seconds at most.
+// Maximum time to resume: snd_pcm_resume() may return "not yet" for ever; a device needs a few seconds at
+// most.
 constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
 
 reason_kind to_reason(io_kind s) noexcept
@@ -85,11 +86,12 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
         if (stop_requested_)
             finish_when_silent();
     }
-    // In a long buffer the fade would come after everything that was written before it.
+    // In a long buffer the fade comes too late, after everything that was written before it.
     if (phase_ == phase::running && stop_requested_ && now - stop_requested_ns_ >= longest_stop_ns)
         finish(stop_why_, 0, true);
-    // Checks both, so that a process that was stopped and continues does not count as a dead device. Accepted
-    // frames prove nothing: a stroke whose end never reaches the DAC would wait for ever.
+    // Checks wake-ups and time, so that a process that was stopped and continues does not treat its device as
+    // dead. Frames that the sink accepts do not count: a stroke whose end never reaches the DAC would wait
+    // for ever.
     if (phase_ == phase::running && still_steps_ >= 4 && now - moved_ns_ > options_.stall_ns)
         finish(reason_kind::lost, -ETIMEDOUT);
     publish();
@@ -141,10 +143,10 @@ void audio_loop::take_commands() noexcept
     std::size_t n = 0;
     for (; n < waiting && take(*link_.commands.front()); ++n)
         link_.commands.drop_front();
-    // Does not wake the feeder for every free place: it waits for a quarter of the ring at most.
+    // Does not wake the feeder for every free place, but once a quarter of the ring is free.
     if (n == 0 || waiting - n > link_.commands.capacity() - link_.commands.capacity() / 4)
         return;
-    // Either the feeder sees the space when it looks again, or this thread sees that it waits.
+    // Either the feeder sees the space when it looks again, or this thread sees that the feeder waits.
     std::atomic_thread_fence(std::memory_order_seq_cst);
     if (link_.feeder_waits.exchange(false, std::memory_order_seq_cst))
         link_.to_control.signal();
@@ -152,7 +154,7 @@ void audio_loop::take_commands() noexcept
 
 bool audio_loop::take(const command& c) noexcept
 {
-    // The amplifier must be on and settled before anything begins; the ring waits with it.
+    // The amplifier must be on and settled before a score begins; until then commands stay in the ring.
     const bool held = !stop_requested_ && !link_.amplifier.ready.load(std::memory_order_acquire);
     switch (c.what) {
     case command::kind::begin:
@@ -176,12 +178,12 @@ void audio_loop::mix_period() noexcept
     link_.raised.take([this](std::size_t channel, double level_s) { mixer_.raise(channel, level_s); });
     scores_.follow_gains();
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
-    // Drives that wait for space in the mixer are there in time.
+    // Drives that wait in the ring for space in the mixer have come in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
     const bool sounds = mixer_.size() != 0;
     if (link_.sounds.exchange(sounds, std::memory_order_relaxed) != sounds && sounds)
-        link_.to_control.signal(); // the control side writes the entry of this drive before it is played
+        link_.to_control.signal(); // the control side enters this drive in the book before it is played
     mixer_.process(setup_.period_frames, block_.data());
     pending_ = setup_.period_frames;
     pending_from_ = 0;
@@ -207,8 +209,8 @@ io_result audio_loop::write_pending() noexcept
 
 void audio_loop::write_if_ready(io_kind ready, std::int64_t now) noexcept
 {
-    // After two idle wake-ups, write anyway: one may have been lost, or the state may have changed without
-    // one.
+    // After two idle wake-ups, writes anyway: a wake-up may have been lost, or the state may have changed
+    // without a wake-up.
     if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
         write_periods(now);
     else if (ready != io_kind::again)
@@ -227,7 +229,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
                                     room - setup_.period_frames),
             std::memory_order_relaxed);
 
-    // This is a bound even if a device claims more space than its buffer has.
+    // Limits the loop even if a device claims more space than its buffer has.
     room = std::min<std::size_t>(room, setup_.buffer_frames);
     while (room > 0) {
         if (pending_ == 0) {
@@ -283,7 +285,7 @@ void audio_loop::moved(std::int64_t now) noexcept
     idle_steps_ = 0;
 }
 
-// Stores in this order, so that a pulse planned with link::clock has its epoch in link::sync_clock.
+// Stores sync_clock first, so that it has the epoch of any pulse that is planned with link::clock.
 void audio_loop::publish_clock(const clock_line& line) noexcept
 {
     link_.sync_clock.store(line);
@@ -310,7 +312,7 @@ void audio_loop::publish() noexcept
     reported_stage_ = s.stage;
     reported_epoch_ = s.epoch;
     reported_clocked_ = clocked;
-    // Reports every played frame until strokes may sound.
+    // Until strokes may begin, wakes the amplifier's thread in each step.
     if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
         link_.amplifier.wake.signal();
 
@@ -346,7 +348,7 @@ io_result audio_loop::begin_epoch() noexcept
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
-    // A device that still sleeps fails here in each period. That is not a start.
+    // A device that is still suspended fails here in each period. Such a failure must not begin an epoch.
     if (const io_kind s = sink_.prepare(); s != io_kind::ok)
         return {s, 0, 0};
     clock_.begin_epoch(offset_);
@@ -388,8 +390,8 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
     }
 }
 
-// Ends the strokes that had begun, because nothing resumes in mid-burst. Returns the others to be handed over
-// again.
+// Ends the strokes that had begun, because no burst resumes in the middle. Returns the others to the control
+// side, which hands them over again.
 void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) noexcept
 {
     note_starts(played);
@@ -413,10 +415,10 @@ void audio_loop::try_resume(std::int64_t now) noexcept
 {
     if (stop_requested_)
         return finish(stop_why_, 0);
-    scores_.handle_live_requests(); // this runs in the mix, and there is no mix now
+    scores_.handle_live_requests(); // usually a part of the mix, but there is no mix now
     if (sink_.resume() == io_kind::again && now - suspended_ns_ < longest_resume)
         return;
-    // Begins a new epoch, resumed or not: the buffer holds frames of strokes that were interrupted.
+    // Begins a new epoch even if the device resumed, because the buffer holds frames of interrupted strokes.
     restart(now);
 }
 
@@ -466,8 +468,8 @@ void audio_loop::finish_when_silent() noexcept
         finish(stop_why_, 0, true);
 }
 
-// Ends the stream. A DAC that stops while the amplifier is on pops, so the line goes off first, if possible.
-// `runs`: the stream is in order, so zeros are written meanwhile.
+// Ends the stream. The line goes off first, if possible, because a DAC that stops while the amplifier is on
+// makes a pop. `runs`: the stream still works, so zeros are written until the line is off.
 void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
 {
     if (phase_ == phase::over)
@@ -477,7 +479,7 @@ void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
         return;
     }
     scores_.interrupt(why, code, played_, false);
-    mixer_.cut(); // strokes that could not fade yet are reported, and silent
+    mixer_.cut(); // silences strokes that could not fade yet; their ends have been reported
     end_why_ = why;
     end_code_ = code;
     end_runs_ = runs;
@@ -503,7 +505,7 @@ void audio_loop::end() noexcept
     sink_.drop();
     publish_clock({});
     phase_ = phase::over;
-    // Replaces any other reason, because a person must act on this one.
+    // This reason replaces any other, because a person must act on it.
     if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
         link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
         end_why_ = reason_kind::left_on;
@@ -528,7 +530,7 @@ void audio_loop::obey_amplifier() noexcept
 
 namespace {
 
-// Counter of this thread's page faults after its first wake-ups, which touch its memory. Reads once a second.
+// Counter of this thread's page faults, read once a second. Skips the first wake-ups, which touch new memory.
 class fault_watch {
 public:
     explicit fault_watch(counters& c) noexcept : count_(c) {}
@@ -567,8 +569,8 @@ audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_
     : loop_(loop), sink_(s), link_(l), fds_(s.max_descriptors() + 1)
 {
     std::latch begun(1);
-    // The thread itself starts the stream: ALSA's handle belongs to one thread, and nothing may delay the
-    // first period after the start.
+    // The audio thread itself starts the stream: ALSA's handle belongs to one thread, and nothing may delay
+    // the first period after the start.
     thread_ = std::make_unique<rt::thread>(o, [this, &begun] {
         started_ = loop_.start(rt::monotonic_ns());
         begun.count_down();

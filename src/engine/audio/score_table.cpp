@@ -7,7 +7,7 @@
 namespace tactor::engine {
 namespace {
 
-// Returns the frames of a score that starts at `base`, until frame `at`.
+// Returns how many frames of a score come before frame `at`. The score starts at frame `base`.
 std::uint64_t frames_until(std::uint64_t at, std::uint64_t base, std::uint64_t length) noexcept
 {
     return at > base ? std::min(at - base, length) : 0;
@@ -47,7 +47,7 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
     follow_gain(e, 0);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
     if (stopping_)
-        over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin any more
+        over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin after a stop
 }
 
 void score_table::follow_gain(entry& e, std::uint32_t ramp) noexcept
@@ -62,7 +62,7 @@ void score_table::follow_gains() noexcept
     if (!link_.gains.take_changed())
         return;
     for (std::uint32_t i = 0; i < top_; ++i)
-        // Before its first point nothing of a live stroke sounds.
+        // A live stroke is silent before its first point, so its gain can jump.
         if (entry& e = entries_[i]; e.used)
             follow_gain(e, e.base == never ? 0 : ramp_);
 }
@@ -82,7 +82,7 @@ bool score_table::add(const command& c) noexcept
     synth::drive_event d = c.drive;
     d.start += e->base;
     if (d.start < mixer_.position()) {
-        // The rest of a burst would be a step on the skin.
+        // A burst that begins in the middle would be felt as a step.
         want_fade(*e, state_kind::interrupted, why_late());
         return true;
     }
@@ -104,8 +104,8 @@ reason_kind score_table::why_late() const noexcept
     return mixer_.position() < full_until_ ? reason_kind::crowded : reason_kind::late;
 }
 
-// Records the end of a drive. If a drive ends before its window does, another one continues it, unless the
-// window has come down to zero.
+// Records the end of a drive. If a drive ends before its window does, another drive must continue it, unless
+// its amplitude ends at zero.
 void score_table::cover(entry& e, const synth::drive_event& d) noexcept
 {
     const std::uint64_t end = d.start + d.length;
@@ -130,8 +130,8 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
         } else if (e.ahead && e.base < next) {
-            // Between one and two periods are left, because two were left at the last call; or none is left,
-            // and it is silent.
+            // Between one and two periods are left, because at least two were left at the last call. If
+            // nothing is left, the score is already silent.
             e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
             want_fade(e, state_kind::interrupted, why_late());
         }
@@ -148,9 +148,9 @@ void score_table::cancel(ticket t) noexcept
 {
     entry* e = find(t);
     if (e == nullptr) {
-        // The score is over, or still in the command ring. Its place shows which, because no ticket is used
-        // twice. The ring may stand still for seconds, so a score in it is reported here and dropped when it
-        // comes.
+        // The score is over, or its begin is still in the command ring. Its place shows which, because no
+        // ticket is used twice. Commands may stay in the ring for seconds, so the score is reported here, and
+        // its begin is dropped when it comes.
         entry& place = entries_[ticket_place(t)];
         if (place.score == t)
             return;
@@ -172,11 +172,11 @@ void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
         return;
     }
     if (e.live == nullptr && e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
-        over(e, s, why, 0, 0); // none of it has been mixed yet
+        over(e, s, why, 0, 0); // nothing of the score has been mixed yet
         return;
     }
-    // The rest is on its way to the DAC, so it finishes. Needs `fed`: of a cancelled score no more commands
-    // come, and without its last one it would wait for ever.
+    // The rest of the score is on its way to the DAC, so the score finishes. Needs `fed`, because no more
+    // commands come for a cancelled score: it would wait for its last command for ever.
     if (e.finish <= next && e.fed && why != reason_kind::late && why != reason_kind::crowded &&
         why != reason_kind::plan)
         return;
@@ -216,7 +216,7 @@ void score_table::mute() noexcept
         entry& e = entries_[i];
         if (!e.used || e.fading || e.fade_wanted || e.base == never)
             continue;
-        if (e.base < mixer_.position() || stopping_) { // true also of each live stroke that has begun
+        if (e.base < mixer_.position() || stopping_) { // also true for each live stroke that has begun
             want_fade(e, state_kind::interrupted, reason_kind::muted);
         } else if (mixer_.fade_out(e.score, 0)) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
@@ -225,8 +225,8 @@ void score_table::mute() noexcept
     }
 }
 
-// Notes start times while a frame passes, because the clock knows it best then. Before, the clock may not be
-// known; later, the line may be another one.
+// Records start times when the frame reaches the DAC, because the clock is most accurate then. Earlier the
+// clock may be unknown; later it may have begun a new line.
 void score_table::note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept
 {
     for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
@@ -348,7 +348,7 @@ void score_table::begin_live(const request& r) noexcept
 
 void score_table::handle_live_requests() noexcept
 {
-    // Goes backwards, because entries behind one that closes move up.
+    // Goes backwards, because the entries after a closed one move up.
     for (std::size_t i = live_count_; i-- > 0;)
         handle_live_requests(*live_[i]);
 }
@@ -356,8 +356,8 @@ void score_table::handle_live_requests() noexcept
 void score_table::render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept
 {
     handle_live_requests();
-    // Goes in order, so that the first stroke to begin sounds first. A stroke that closes now makes room for
-    // the next.
+    // Goes forwards, so that the first stroke to begin sounds first. After a stroke has closed, the next one
+    // is at index i.
     for (std::size_t i = 0; i < live_count_;) {
         entry& e = *live_[i];
         if (!e.fade_wanted)

@@ -18,7 +18,8 @@
 namespace tactor::engine {
 namespace {
 
-// Drives that strokes get at once when they begin together. The mixer has space for twice as many.
+// Total number of drives that strokes get at once when they begin together. The mixer has space for twice as
+// many.
 constexpr std::size_t drives_ahead = 4096;
 
 template <typename Tasks>
@@ -41,7 +42,7 @@ bool erase_task(Tasks& tasks, stroke_id id)
 // Possible error of the DAC clock's line between two readings.
 constexpr double clock_right_s = 0.001;
 
-// Returns the delay in seconds, 0 within a frame. The requested time can be any number.
+// Returns the delay in seconds, 0 if it is within a frame. `due_ns` may be any number.
 double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
 {
     const double ns = static_cast<double>(started_ns) - static_cast<double>(due_ns);
@@ -160,7 +161,7 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     if (stream_over_)
         return;
     end_cancelled();
-    // Converts times to frames as late as possible, when the clock knows best.
+    // Converts times to frames as late as possible, when the clock is most accurate.
     while (!timed_.empty() && clock_.valid()) {
         const auto next = timed_.begin();
         const std::uint64_t at = clock_.frame_at(next->first);
@@ -200,7 +201,7 @@ bool feeder::admit(std::uint64_t written)
                                                .at = at,
                                                .source = synth::event_source(t.score)});
         try {
-            // A score that begins later gets its drives in time, in the common order.
+            // A score that begins later gets its drives from feed(), in order of their start.
             hand_over_beginning(*slots_[place].use, current_ticket(place),
                                 soon ? std::max<std::size_t>(share, 1) : 0);
         } catch (...) {
@@ -223,8 +224,8 @@ std::uint32_t feeder::take_slot(active a)
     return place;
 }
 
-// Makes the begin and its first drives visible together: the audio thread starts the score as soon as it sees
-// the begin, and this thread may lose its processor at any point.
+// Pushes the begin command and the first drives together: the audio thread starts the score as soon as it
+// sees the begin command, and this thread may be preempted at any point.
 void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
 {
     batch_.clear();
@@ -241,7 +242,7 @@ void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
     urgent_ = true;
 }
 
-// Takes the next drive from the source, or its end.
+// Takes the next drive from the source and returns its command, or the end command if there is none.
 command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
@@ -258,12 +259,12 @@ command feeder::next_command(active& a, ticket t)
 std::uint64_t feeder::next_start(active& a, std::uint64_t written)
 {
     const synth::drive_event* e = a.source->peek();
-    // Until the audio thread reports where it begins, only this bound is certain.
+    // Until the audio thread reports the start of the score, only this lower bound is certain.
     const std::uint64_t base = a.begun ? a.base : std::max(a.at, written);
     return e != nullptr ? base + e->start : 0;
 }
 
-// Hands over drives in order of their start, until none is left within the horizon, or no space.
+// Hands over drives in order of their start, until no drive within the horizon or no space is left.
 void feeder::feed(std::uint64_t written, std::uint64_t horizon)
 {
     next_.clear();
@@ -292,7 +293,7 @@ bool feeder::has_room(std::size_t n)
 {
     if (link_.commands.available() >= n)
         return true;
-    // The audio thread either sees this flag after it made space, or the space is there already.
+    // Either the audio thread makes space later and sees this flag, or the space is there already.
     link_.feeder_waits.store(true, std::memory_order_seq_cst);
     std::atomic_thread_fence(std::memory_order_seq_cst);
     return link_.commands.available() >= n;
@@ -402,7 +403,7 @@ std::size_t feeder::fire(std::int64_t time_ns)
     return n;
 }
 
-// Counts waiting time, as the audio thread does for its live strokes.
+// Counts waiting time, as the audio thread does for the live strokes that it holds.
 void feeder::look_at_waiting_live(std::uint64_t written)
 {
     const std::uint64_t frames = written - std::exchange(seen_written_, written).value_or(written);
@@ -443,7 +444,7 @@ bool feeder::cancel_waiting(stroke_id id)
 {
     if (!waits(id))
         return false;
-    // Reports first, because there may be no memory for it.
+    // Reports first, because there may be no memory for the report.
     report_end({.id = id, .state = state_kind::cancelled, .frames = 0});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
@@ -464,8 +465,8 @@ void feeder::begun(active& a, std::uint64_t frame)
     a.begun = true;
     a.base = frame;
     const clock_line clock = link_.clock.load();
-    // Allocates before it plans a pulse, and passes the beginning on last. If memory runs out, the report is
-    // handled again, and neither the line nor a handler may get a beginning twice.
+    // Allocates first, then plans pulses, and passes the beginning on last. If memory runs out, the report is
+    // handled again, but neither the line nor a handler may get a beginning twice.
     const bool known = clock.valid() && frame >= clock.first;
     std::list<stroke_start> start;
     start.emplace_back(a.id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
@@ -500,7 +501,7 @@ void feeder::over(const active& a, const report& r)
         done.started_ns = r.started_ns;
     if (r.delay.points != 0)
         done.delay = r.delay;
-    // The clock was not known when it began, or the stream stood still between then and its first sample.
+    // The clock was not known when the stroke began, or the stream stood still before its first sample.
     if (r.started && a.due_ns)
         if (const double was = late(r.started_ns, *a.due_ns, 1e9 / a.score->rate());
             !a.late_s || was > *a.late_s + clock_right_s)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The control side of playback: it hands scores to the audio thread a horizon ahead.
+/// Control side of playback: it hands the drives of scores to the audio thread in advance, up to a horizon.
 #pragma once
 
 #include <array>
@@ -24,40 +24,40 @@ namespace tactor::engine {
 
 class trigger_thread;
 
-/// Merger of the submitted scores' drives by start frame, which keeps the ring filled. A full ring or table
-/// makes scores wait here. Nothing is lost, and memory does not grow with the length of a score. No threads:
-/// one caller at a time.
+/// Feeder of the command ring: it merges the drives of the submitted scores by start frame. Scores wait here
+/// while the ring or the table is full. Nothing is lost, and memory does not grow with the length of a score.
+/// No threads: one caller at a time.
 class feeder {
 public:
     feeder(link& l, std::uint64_t horizon_frames);
 
     /// Submits a stroke. `gain`: factor of its amplitudes, as set_gain() sets it.
     void submit(stroke_id id, const score& s, start_at start, float gain = 1.0F);
-    /// Submits a live stroke, which begins with its first point. Keeps `voice` until it has ended.
+    /// Submits a live stroke, which begins with its first point. Keeps `voice` until the stroke has ended.
     void submit(stroke_id id, std::shared_ptr<live_voice> voice);
 
-    /// Starts the armed strokes at a CLOCK_MONOTONIC time, ns. Returns their number.
+    /// Starts the armed strokes at a CLOCK_MONOTONIC time, ns. Returns the number of strokes.
     std::size_t fire(std::int64_t time_ns);
 
     /// Cancels a stroke. Returns false if it has ended, is not known, or is being cancelled already.
     bool cancel(stroke_id id);
     /// Sets the factor of a stroke's amplitudes. Returns false if it has ended or is not known.
     bool set_gain(stroke_id id, float gain);
-    /// Returns the frame of the stream with which a planned stroke that sounds began.
+    /// Returns the stream frame at which a planned stroke began, if it sounds now.
     std::optional<std::uint64_t> find_first_frame(stroke_id id) const;
-    /// Cancels all strokes up to `last`. The audio thread gets its requests at once; strokes that wait end
-    /// with the next pump(), because thousands may wait.
+    /// Cancels all strokes up to `last`. The audio thread gets its requests at once. Strokes that wait end in
+    /// the next pump(), because there may be thousands.
     void cancel_all(stroke_id last) noexcept;
 
-    /// Plans a sync pulse for each stroke that begins from now on. `t` must outlive the strokes.
+    /// Sends a sync pulse for each stroke that begins from now on. `t` must outlive the strokes.
     void set_pulses(trigger_thread& t) noexcept { pulses_ = &t; }
 
-    /// Hands over the drives within the horizon after stream frame `written`, as far as they fit. Strokes
-    /// with a start time wait until the clock is known.
+    /// Hands over the drives within the horizon after stream frame `written`, or as many as fit. Strokes with
+    /// a start time wait until the clock is known.
     void pump(std::uint64_t written, const clock_line& clock = {});
 
-    /// Returns true if the audio thread must wake, because a stroke that begins was handed over since the
-    /// last call. Drives of strokes that sound are in time with the next period.
+    /// Returns true if the audio thread must be woken, because a stroke that begins was handed over since the
+    /// last call. Drives of strokes that already sound can wait for the next period.
     bool take_urgent() noexcept { return std::exchange(urgent_, false); }
 
     void handle(const report& r);
@@ -66,22 +66,23 @@ public:
     std::list<stroke_report>& reports() noexcept { return reports_; }
 
     /// A stroke that began, and the CLOCK_MONOTONIC time, ns, of its first frame at the DAC, if the clock is
-    /// known. The caller removes them from the list.
+    /// known. The caller removes the elements from the list.
     using stroke_start = std::pair<stroke_id, std::optional<std::int64_t>>;
     std::list<stroke_start>& beginnings() noexcept { return beginnings_; }
 
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
     /// Returns the live strokes that have ended. Take them out and destroy them without a lock: the last
-    /// owner of one destroys its phantom model, which may be the program's.
+    /// owner destroys the phantom model, which may be the program's own code.
     live_map& ended_live() noexcept { return ended_live_; }
 
     /// Returns true if the stroke has not ended, or its report has not been removed yet.
     bool knows(stroke_id id) const;
     /// Returns true if the stream has ended; then every stroke has been reported.
     bool stream_over() const noexcept { return stream_over_; }
-    /// Returns the end of the stream; without a reason if it was stopped.
+    /// Returns how the stream ended. The reason is `none` if the stream was stopped.
     const stream_end& end() const noexcept { return end_; }
-    /// Marks the player as closed: strokes that have not been handed over then count as interrupted by that.
+    /// Marks the player as closed: strokes that have not been handed over then end as interrupted by the
+    /// closing.
     void set_closing() noexcept { closing_ = true; }
 
 private:
@@ -97,13 +98,13 @@ private:
         std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
         std::uint64_t base = 0;         ///< stream frame of its start, once begun
-        std::optional<double> late_s{}; ///< none: the clock was not known when it began
+        std::optional<double> late_s{}; ///< empty if the clock was not known when the stroke began
         std::optional<synth::event_source> source{};
         bool begun = false;
         bool fed = false;
         bool cancelled = false;
     };
-    /// Next drive of a score that gets drives.
+    /// Next drive of a score that still gets drives.
     struct next_drive {
         std::uint64_t start = 0; ///< stream frame
         std::uint32_t order = 0; ///< position in in_use_
@@ -146,30 +147,30 @@ private:
 
     link& link_;
     std::uint64_t horizon_;
-    std::multimap<std::uint64_t, task> waiting_; ///< by frame of the stream
+    std::multimap<std::uint64_t, task> waiting_; ///< by stream frame
     std::multimap<std::int64_t, task> timed_;    ///< by CLOCK_MONOTONIC, ns
     std::map<stroke_id, task> armed_;
     live_map waiting_live_;
     live_map playing_live_;
     live_map ended_live_;
-    std::optional<std::uint64_t> seen_written_ = {}; ///< at the last look at waiting_live_
+    std::optional<std::uint64_t> seen_written_ = {}; ///< stream frame at the last look at waiting_live_
     clock_line clock_;
     std::array<slot, voices> slots_;
     std::vector<std::uint32_t> in_use_; ///< places, in the order in which they began
     std::vector<next_drive> next_;      ///< a heap, the earliest first; of fixed capacity
     std::vector<command> batch_;        ///< buffer of fixed capacity
-    std::map<stroke_id, float> gains_;  ///< only of strokes that have one
+    std::map<stroke_id, float> gains_;  ///< only of strokes whose gain was set
     std::list<stroke_report> reports_;
     std::list<stroke_start> beginnings_;
     trigger_thread* pulses_ = nullptr;
-    stroke_id cancelled_to_ = {}; ///< last one of cancel_all(), until the strokes that wait have ended
+    stroke_id cancelled_to_ = {}; ///< argument of cancel_all(), until the waiting strokes have ended
     bool urgent_ = false;
     bool stream_over_ = false;
     bool closing_ = false;
     stream_end end_;
 };
 
-/// Returns a reason for people, with its negative errno if known; empty for `none`.
+/// Returns a reason as text for people; empty for `none`. `code`: negative errno, or 0 if unknown.
 std::string text(reason_kind r, int code);
 
 } // namespace tactor::engine

@@ -14,7 +14,7 @@
 namespace tactor::engine {
 namespace {
 
-// Sleeps until a signal, at most so many ns, and consumes it.
+// Sleeps until a signal comes, for `ns` at most, and consumes the signal.
 void await_signal(rt::event_fd& e, std::int64_t ns) noexcept
 {
     const timespec timeout = rt::to_timespec(ns);
@@ -65,8 +65,8 @@ void amplifier_driver::read_status(const stream_status& s, std::int64_t now) noe
     const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
     for (; xruns_ < xruns; ++xruns_)
         amplifier_.handle(amplifier::event::xrun, now);
-    // Reports a suspend also if the system slept and woke between two looks, and while it sleeps, whatever
-    // came before.
+    // Reports a suspend while the stream is suspended, and also if the system slept and woke between two
+    // calls.
     const std::uint64_t suspends = link_.count.suspends.load(std::memory_order_acquire);
     if (std::exchange(suspends_, suspends) != suspends || s.stage == stream_stage::suspended)
         amplifier_.handle(amplifier::event::suspended, now);
@@ -134,8 +134,9 @@ void amplifier_driver::apply() noexcept
         link_.to_audio.signal();
 }
 
-// Switches on, unless the stream ends. The audio thread may decide to stop the DAC at this moment: either it
-// sees that the line is (about to be) on and waits, or this thread sees that it is ending.
+// Switches on, unless the stream is ending. The audio thread may decide to stop the DAC at this moment:
+// either the audio thread sees that the line is (about to be) on and waits, or this thread sees that the
+// stream is ending.
 void amplifier_driver::switch_on() noexcept
 {
     link_.amplifier.off.store(false, std::memory_order_seq_cst);
@@ -205,7 +206,7 @@ std::int64_t amplifier_driver::next_ns() const noexcept
     const std::int64_t now = clock_();
     if (trying())
         return std::clamp<std::int64_t>(tried_ns_ + options_.retry_ns - now, 0, options_.retry_ns);
-    // A deadline that had passed at the last update waits for an event, not for time.
+    // If the deadline had passed at the last update, the amplifier waits for an event, not for time.
     return due && *due > updated_ns_ ? std::clamp<std::int64_t>(*due - now, 0, options_.beat_ns)
                                      : options_.beat_ns;
 }
@@ -249,10 +250,10 @@ constexpr bool is_taken(std::uint32_t turn) noexcept
 }
 
 constexpr std::int64_t idle_ns = 60 * rt::ns_per_s;
-// Longest wait on one line of the clock: the line improves with time, and an xrun ends it.
+// Longest sleep before the clock is read again: the clock improves with time, and an xrun ends its line.
 constexpr std::int64_t longest_wait_ns = 100'000'000;
 constexpr std::int64_t no_clock_ns = 2'000'000;
-// Delay after which a pulse is not sent any more: a wrong time is worse than none.
+// Delay after which a pulse is dropped: a pulse at a wrong time is worse than none.
 constexpr std::int64_t latest_pulse_ns = 20'000'000;
 // Time before a pulse is due at which the emitter starts to sleep for this pulse alone.
 constexpr std::int64_t pulse_lead_ns = 2'000'000;
@@ -317,7 +318,7 @@ std::optional<pulse> pulse_board::offer(const pulse& p) noexcept
     if (last == places)
         return p;
     const bool made_way = end_turn(last, latest_turn);
-    // The place is free either way: if its pulse did not make way, it has just been sent.
+    // The place is free in either case: if its pulse was not removed here, the sender has just taken it.
     fill(places_[last], p, latest_turn + 1);
     return made_way ? std::optional(latest) : std::nullopt;
 }
@@ -402,7 +403,7 @@ void trigger_thread::run() noexcept
     line_.set(false);
 }
 
-// Handles the next pulse. Returns the time without work, ns.
+// Handles the next pulse. Returns the time until the next call is needed, ns.
 std::int64_t trigger_thread::step() noexcept
 {
     const clock_line line = link_.sync_clock.load();

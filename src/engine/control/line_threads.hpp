@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Threads that switch lines. One drives the amplifier's line as the audio thread's reports require, and
-/// watches that thread. The other sends sync pulses at the time when a frame is at the DAC; its plan and
-/// emitter are pure except for the clock and the line that they get, so that tests run them on virtual time.
+/// watches the audio thread. The other sends a sync pulse when a frame is at the DAC. Its plan and its
+/// emitter get the clock and the line as arguments, so that tests can run them in virtual time.
 #pragma once
 
 #include <array>
@@ -28,15 +28,15 @@ namespace tactor::engine {
 
 struct driver_options {
     amplifier::sequence_options amplifier{};
-    std::int64_t beat_ns = 40'000'000;      ///< the holder waits for 150 ms
+    std::int64_t beat_ns = 40'000'000;      ///< interval of beats; the holder waits for 150 ms
     std::int64_t watchdog_ns = 100'000'000; ///< time without a period after which the audio thread is stalled
-    std::int64_t retry_ns = 10'000'000;     ///< between two tries to switch off
-    std::int64_t persist_ns = 1'000'000'000; ///< time for which a refused "off" is tried again
+    std::int64_t retry_ns = 10'000'000;     ///< pause between two attempts to switch off
+    std::int64_t persist_ns = 1'000'000'000; ///< time for which attempts to switch off are repeated
 };
 
-/// Driver of the line, without a thread; one caller at a time. The line's set() may block, so the caller must
-/// not be the audio thread. Nor may it be the thread of the program's handlers: a slow handler could keep the
-/// holder waiting.
+/// Driver of the amplifier's line, without a thread; one caller at a time. Do not call it from the audio
+/// thread, because the line's set() may block. Do not call it from the thread of the program's handlers,
+/// because a slow handler could keep the holder waiting.
 class amplifier_driver {
 public:
     /// Starts with the line off. `clock`: CLOCK_MONOTONIC, ns. The references must outlive the driver.
@@ -46,9 +46,10 @@ public:
     /// Handles events. Call it after each wake-up, at the latest next_ns() after the previous call.
     void update() noexcept;
     std::int64_t next_ns() const noexcept;
-    /// Switches off at once, for good. If the line refuses, update() tries again while trying() is true.
+    /// Switches off at once, and never on again. If the line refuses, update() tries again while trying() is
+    /// true.
     void close() noexcept;
-    /// Returns true while a refused "off" is tried again.
+    /// Returns true while the line refuses to go off and more attempts follow.
     bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
 
 private:
@@ -69,7 +70,7 @@ private:
     amplifier::sequence amplifier_;
     enum class line_state { off, on, refused }; // refused: the line should be off, and may be on
     line_state line_state_ = line_state::off;
-    bool stuck_ = false;          ///< refused for persist_ns
+    bool stuck_ = false;          ///< the line has refused for persist_ns
     std::int64_t refused_ns_ = 0; ///< time of the first refusal
     std::int64_t tried_ns_ = 0;   ///< time of the last attempt
     std::uint64_t epoch_ = 0;
@@ -84,12 +85,12 @@ private:
     std::uint64_t reported_events_ = 0;
 };
 
-/// Thread of an amplifier_driver. The audio thread and time wake it.
+/// Thread of an amplifier_driver. It wakes when the audio thread signals and when the driver is due.
 class amplifier_thread {
 public:
     /// \throws std::system_error when no thread can be started.
     amplifier_thread(link& l, enable_line& line, const driver_options& o, const rt::thread_options& t);
-    /// Switches off if the line is on. Blocks while the line refuses and is tried again.
+    /// Switches the line off. Blocks while the line refuses and more attempts follow.
     ~amplifier_thread();
     amplifier_thread(const amplifier_thread&) = delete;
     amplifier_thread& operator=(const amplifier_thread&) = delete;
@@ -112,9 +113,10 @@ struct pulse {
     auto operator<=>(const pulse&) const = default;
 };
 
-/// A few places for pulses, without a lock, because the sending thread has the highest priority of all and
-/// must not wait for another. A place has a counter, `turn`, which is odd while a pulse waits there. Either
-/// side may take the pulse by a compare-and-swap that adds one; the side whose swap succeeds has it.
+/// Board with a few places for pulses. It has no lock, because the sending thread has the highest priority
+/// and must not wait for another thread. Each place has a counter, `turn`, which is odd while a pulse waits
+/// there. Either side may take the pulse by a compare-and-swap that adds one; the side whose swap succeeds
+/// owns it.
 class pulse_board {
 public:
     static constexpr std::size_t places = 256;
@@ -128,8 +130,8 @@ public:
 
     // Planning side: one caller at a time.
 
-    /// Puts a pulse on the board, from where it can be sent. Returns the pulse that has no place: none, a
-    /// later one that made way, or `p` itself.
+    /// Puts a pulse on the board for the sender. If the board is full, the latest pulse has to leave; returns
+    /// that pulse, which may be `p` itself. Returns nothing if no pulse had to leave.
     std::optional<pulse> offer(const pulse& p) noexcept;
     /// Removes a stroke's pulses that the sender has not taken, and returns their number.
     std::size_t forget(stroke_id id) noexcept;
@@ -137,16 +139,15 @@ public:
 
     // Sending side.
 
-    /// Returns the first pulse that waits, of the clock's epoch.
+    /// Returns the earliest waiting pulse of the clock's epoch.
     std::optional<seen> next(const clock_line& line) const noexcept;
-    /// Takes a pulse in order to send it at once. Returns false if it was withdrawn or made way since it was
-    /// seen.
+    /// Takes a pulse for sending. Returns false if the pulse has been removed since it was seen.
     bool take(const seen& s) noexcept { return end_turn(s.place, s.turn); }
 
 private:
     struct place {
         std::atomic<std::uint32_t> turn{0};
-        // Atomic, because a place may change hands while the sender reads it. `turn` shows this, and the
+        // Atomic, because a place may get another pulse while the sender reads it. `turn` shows this, and the
         // sender then drops what it has read.
         std::atomic<stroke_id> id{};
         std::atomic<std::uint64_t> epoch{0};
@@ -170,18 +171,18 @@ struct pulse_stats {
     double worst_late_s = 0.0;
 };
 
-/// Pulses that wait; a score of many strokes may have thousands. The first ones are on the board. One caller
-/// at a time.
+/// Waiting pulses; a score of many strokes may have thousands. The earliest pulses are on the board. One
+/// caller at a time.
 class pulse_plan {
 public:
     explicit pulse_plan(pulse_board& b) noexcept : board_(b) {}
 
-    /// Adds the pulse of a stroke's first sample, at a frame of the running epoch, which `line` gives, and
-    /// forgets the pulses of other epochs. Returns false if this frame is not in the epoch.
+    /// Adds a pulse for the first sample of a stroke, and forgets the pulses of other epochs. `frame`: a
+    /// frame of the running epoch, which `line` gives. Returns false if the frame is not in that epoch.
     bool add(stroke_id id, std::uint64_t frame, const clock_line& line);
     /// Drops the pulses of a stroke that has ended. If its first frame was played, they count as missed.
     void forget(stroke_id id, bool was_played);
-    /// Moves pulses to the board as far as it has places. Returns false if none moved.
+    /// Moves pulses to free places of the board. Returns false if no pulse moved.
     bool hand_over();
     std::uint64_t missed() const noexcept { return missed_; }
 
@@ -207,9 +208,9 @@ public:
     {
     }
 
-    /// Sleeps until the line must switch for a pulse at `due_ns`. Returns false if that was too long ago.
+    /// Sleeps until the line must switch for a pulse at `due_ns`. Returns false if that time is too long ago.
     bool await(std::int64_t due_ns) noexcept;
-    /// Sends that pulse. Blocks until the pulse is over.
+    /// Sends the pulse that is due at `due_ns`. Blocks until the pulse is over.
     void send(std::int64_t due_ns) noexcept;
     /// Counts a pulse that came too late.
     void miss() noexcept { ++stats_.missed; }
@@ -219,17 +220,17 @@ private:
     enable_line& line_;
     std::int64_t pulse_ns_;
     pulse_time& time_;
-    std::int64_t cost_ns_ = 0; ///< time of switching, smoothed
+    std::int64_t cost_ns_ = 0; ///< duration of the call that switches the line, smoothed
     pulse_stats stats_;
 };
 
-/// Thread that sends pulses. The audio thread does not send them, because its periods would be their jitter.
-/// This thread has a higher priority, so it must not wait for any other: it shares neither mutex nor heap
-/// with another thread. The members are for the control side, one caller at a time.
+/// Thread that sends pulses. The audio thread does not send them, because they would jitter by a period. This
+/// thread has a higher priority, so it must not wait for any other thread: it shares neither a mutex nor the
+/// heap with another thread. The members are for the control side, one caller at a time.
 class trigger_thread {
 public:
-    /// Starts the thread, which reads link::sync_clock for the due times. `time`: CLOCK_MONOTONIC but in
-    /// tests.
+    /// Starts the thread, which reads link::sync_clock for the due times. `time`: null for CLOCK_MONOTONIC;
+    /// tests give another clock.
     /// \throws std::system_error when no thread can be started.
     trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t,
                    pulse_time* time = nullptr);

@@ -46,7 +46,7 @@ TACTOR_KIND_NAMES(wait_kind, "wait", {ended, "ended"}, {timeout, "timeout"}, {ta
 
 namespace {
 
-// Converts a time of 0 to ten minutes to frames. Refuses NaN, too.
+// Converts a time to frames. Throws error for NaN and for times outside 0 to 600 s.
 std::uint32_t to_frames(double seconds, unsigned rate, const char* name)
 {
     if (!(seconds >= 0.0 && seconds <= 600.0))
@@ -59,7 +59,7 @@ std::int64_t to_ns(double seconds, const char* name)
     return std::int64_t{to_frames(seconds, 1'000'000, name)} * 1000;
 }
 
-// Returns the horizon: at least as long as drives need to be in time.
+// Returns the horizon, which is at least as long as drives need to come in time.
 std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
 {
     const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
@@ -129,7 +129,7 @@ float to_gain(double level_db)
     return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
 
-// Returns the time of a time-out, at most a century from now, so that the clock cannot overflow.
+// Returns the end of a timeout, but at most a century from now, so that the clock cannot overflow.
 monotonic_time deadline(std::chrono::duration<double> timeout)
 {
     constexpr double century_s = 100.0 * 365.0 * 86400.0;
@@ -137,7 +137,7 @@ monotonic_time deadline(std::chrono::duration<double> timeout)
     return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
 }
 
-// Throws error if the stream does not start, or lacks a real-time priority that is required.
+// Throws error if the stream did not start, or if a required real-time priority was refused.
 void check_start(const engine::audio_thread& audio, const std::string& stream, const player_options& o)
 {
     const io_result& r = audio.started();
@@ -359,7 +359,8 @@ bool player::cancel(stroke_id id)
 bool player::cancel_all()
 {
     const std::lock_guard lock(impl_->mutex);
-    // In a longer buffer a fade comes too late: the end of the stream cuts what was written before it.
+    // A buffer longer than longest_stop_ns delays a fade too much. Ending the stream cuts what is in the
+    // buffer.
     if (impl_->made.buffer_frames * rt::ns_per_s > engine::longest_stop_ns * impl_->made.rate)
         impl_->end_stream(false);
     if (impl_->stopping || impl_->feed.stream_over())
@@ -375,7 +376,7 @@ wait_result player::wait(stroke_id id, std::optional<std::chrono::duration<doubl
     impl& p = *impl_;
     std::unique_lock lock(p.mutex);
     const auto is_over = [&] { return p.find_report(id) != p.ended.end() || !p.feed.knows(id); };
-    // In the control thread it would wait for itself.
+    // The control thread would wait for itself.
     if (!p.control->is_current()) {
         if (timeout)
             p.news.wait_until(lock, deadline(*timeout), is_over);
@@ -397,14 +398,14 @@ void player::on_report(std::function<void(const stroke_report&)> handler)
 {
     auto shared = handler ? std::make_shared<const impl::report_handler>(std::move(handler)) : nullptr;
     const std::lock_guard lock(impl_->mutex);
-    impl_->handler.swap(shared); // the old one is destroyed after the lock: it may call the player
+    impl_->handler.swap(shared); // the old handler is destroyed without the lock: it may call the player
 }
 
 void player::on_begin(std::function<void(stroke_id, std::optional<std::int64_t>)> handler)
 {
     auto shared = handler ? std::make_shared<const impl::begin_handler>(std::move(handler)) : nullptr;
     const std::lock_guard lock(impl_->mutex);
-    impl_->on_begun.swap(shared); // destroyed after the lock, as above
+    impl_->on_begun.swap(shared); // the old handler is destroyed without the lock, as above
 }
 
 void player::stop()
@@ -511,13 +512,13 @@ void player::impl::start(const player_options& o)
         else if (refused > 0)
             detail::log(log.function(), log_kind::warning, "the audio thread has no real-time priority: {}",
                         std::error_code(refused, std::generic_category()).message());
-        // Below the audio thread, which it watches, but high, because the line's holder waits for 150 ms
-        // only.
+        // The amplifier's thread has a lower priority than the audio thread, which it watches, but still a
+        // high one, because the line's holder waits for only 150 ms.
         if (lines.amplifier != nullptr)
             amplifier = std::make_unique<engine::amplifier_thread>(
                 link, *lines.amplifier, driver_options(lines, out->setup()),
                 thread_options(o, "tactor-amp", -5, false));
-        // Above the audio thread: it sleeps nearly always, and its work takes microseconds.
+        // The pulse thread has a higher priority: it sleeps nearly always, and its work takes microseconds.
         if (lines.sync_out != nullptr) {
             pulses = std::make_unique<engine::trigger_thread>(link, *lines.sync_out,
                                                               to_ns(lines.pulse_s, "pulse_s"),

@@ -31,7 +31,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// Number of unread reports that are kept. A program that only uses the handler must not grow.
+// Number of unread reports that are kept. Limits the memory of a program that only uses the handler.
 constexpr std::size_t most_unread_reports = 4096;
 
 // Number of reads without an edge after which a readable descriptor counts as broken.
@@ -284,7 +284,7 @@ void player::impl::call_handlers()
         lock.unlock();
         if (f != nullptr)
             call([&, id = id, at_ns = at_ns] { (*f)(id, at_ns); });
-        f.reset(); // the last reference, if it was replaced: its contents may call the player
+        f.reset(); // may be the last reference, and its destructor may call the player
         lock.lock();
     }
     while (!unreported.empty()) {
@@ -308,7 +308,7 @@ void player::impl::call_watchers(const stroke_report& r)
     for (auto own = watchers.extract(r.id); own; own = watchers.extract(r.id)) {
         lock.unlock();
         call([&] { own.mapped()(r); });
-        own = {}; // destroy it without the lock: its destructor may call the player
+        own = {}; // destroys the handler without the lock: its destructor may call the player
         lock.lock();
     }
 }
@@ -364,7 +364,7 @@ std::string gain_text(double gain)
                        gain < 0.0 ? " with its polarity reversed" : "");
 }
 
-// Describes gains that a plan's levels do not include; empty if there are none.
+// Describes gains that the plan's levels do not include. Empty if there are none.
 std::string remark(std::span<const double> gains)
 {
     const auto is_one = [](double g) { return std::abs(g - 1.0) <= rounding; };

@@ -29,8 +29,8 @@
 namespace tactor {
 inline namespace v0 {
 
-/// State of a player, shared with the control thread while that works, so that a handler can destroy the
-/// player.
+/// State of a player. The control thread shares its ownership while it works, so that a handler can destroy
+/// the player.
 struct player::impl : std::enable_shared_from_this<player::impl> {
     using report_handler = std::function<void(const stroke_report&)>;
     using begin_handler = std::function<void(stroke_id, std::optional<std::int64_t>)>;
@@ -42,7 +42,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
         /// Starts the thread.
         /// \throws std::system_error when the system refuses threads.
         explicit control_thread(impl& p);
-        /// Ends the thread; it does not call the player any more. If the player's own handler destroys this
+        /// Ends the thread; it does not call the player afterwards. If the player's own handler destroys this
         /// object in the thread itself, the destructor returns at once, and the thread ends when the handler
         /// has returned. The event and the descriptor may be gone by then.
         ~control_thread();
@@ -61,7 +61,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     };
 
     impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
-    /// Starts the other threads. If it throws, none of them is left.
+    /// Starts the other threads. If it throws, no thread is left running.
     void start(const player_options& o);
     /// Ends all threads, and closes the sink and the lines. Call it once, after start().
     void close();
@@ -76,27 +76,27 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     /// Hands over drives. Returns false if memory ran out: nothing is lost, and the control thread tries
     /// again.
     bool pump();
-    /// Requests the end of the stream from the audio thread, after a fade.
+    /// Asks the audio thread to fade out and end the stream.
     void end_stream(bool closing) noexcept;
-    /// Returns the end of the stream, also if it is only near.
+    /// Returns the end of the stream, or the reason why it is about to end if a handler has failed.
     stream_end end() const;
     /// Finds an unread report; ended.end() if there is none.
     std::deque<stroke_report>::iterator find_report(stroke_id id);
     stroke_id next_id() noexcept { return {++last_id.number}; }
 
     std::unique_ptr<sink> out;
-    /// Set-up at the stream's start. The audio thread may change the sink's own.
+    /// Set-up at the stream's start. The audio thread may change the set-up in the sink later.
     stream_setup made;
-    const std::string stream; ///< its name in messages
+    const std::string stream; ///< name of the stream in messages
     player_lines lines;
     engine::link link;
-    std::mutex mutex; ///< guards all members below but the threads; the audio thread never uses it
+    std::mutex mutex; ///< guards the members below, except the threads; the audio thread never locks it
     std::condition_variable news;
     engine::feeder feed;
     std::deque<stroke_report> ended;     ///< unread reports, the oldest first
     std::list<stroke_report> unreported; ///< not yet passed to the handlers
     std::shared_ptr<const report_handler> handler;
-    std::list<engine::feeder::stroke_start> begun; ///< not yet passed to its handler
+    std::list<engine::feeder::stroke_start> begun; ///< not yet passed to the handler
     std::shared_ptr<const begin_handler> on_begun;
     std::multimap<stroke_id, report_handler> watchers;
     array tactors;
@@ -104,14 +104,14 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::optional<layout> faces; ///< faces of the array, once a live stroke needs them
     stroke_id last_id = {};
     bool stopping = false;
-    std::string handler_failed; ///< text of an exception from a handler of the program; empty: none
-    int empty_reads = 0;        ///< empty reads of the trigger line, control thread
+    std::string handler_failed;               ///< text of an exception from a handler of the program, if any
+    int empty_reads = 0;                      ///< empty reads of the trigger line, control thread
     const stroke_report* reporting = nullptr; ///< report that the handlers get now; control thread
     std::optional<std::int64_t> unfired;      ///< an edge for which there was no memory; control thread
-    bool all_delivered = false;               ///< the stream is over and the handlers have got everything
+    bool all_delivered = false;               ///< the stream is over, and the handlers have got all reports
 
-    engine::stream_log log;  ///< control thread, once that runs
-    engine::drive_book book; ///< control thread, once that runs
+    engine::stream_log log;  ///< used by the control thread once it runs
+    engine::drive_book book; ///< used by the control thread once it runs
 
     const std::vector<double> drive_levels_s; ///< levels of the book when the stream began
     engine::audio_loop loop;

@@ -35,7 +35,7 @@ constexpr std::string_view last_line = "\nend\n";
 constexpr double ahead_s = 0.5;
 constexpr std::int64_t renewed_ns = rt::ns_per_s / 10;
 constexpr std::int64_t patience_ns = rt::ns_per_s / 5; // wait for a process that keeps the file locked
-constexpr int patient_tries = 40;                      // tries of 5 ms: the same time
+constexpr int patient_tries = 40;                      // attempts, 5 ms apart: as long as patience_ns
 constexpr std::size_t longest_name = 200;              // longer names that begin alike share a file
 constexpr double noticed_s = 1e-4;                     // levels in files are rounded
 constexpr double longest_s = 3600.0;                   // no limit is above it
@@ -76,11 +76,11 @@ std::string file_name(std::string_view device)
 }
 
 struct place {
-    std::string folder = {}; ///< empty: there is none
+    std::string folder = {}; ///< empty if there is none
     std::string why = {};    ///< reason why there is none
 };
 
-/// Finds a folder in which no other user can create files: the service's, else the user's.
+/// Finds the folder for books, which is in the runtime folder. No other user can create files in it.
 place find_folder()
 {
     const std::string runtime = rt::runtime_folder();
@@ -136,8 +136,8 @@ public:
     locked_file& operator=(const locked_file&) = delete;
 
     bool open() const noexcept { return static_cast<bool>(fd_); }
-    /// Returns true if a later try may open the file: another process keeps it locked, or this one has no
-    /// descriptors.
+    /// Returns true if a later attempt may open the file: another process keeps it locked, or this process
+    /// has no descriptors or memory left.
     bool busy() const noexcept { return busy_; }
     /// Returns true if the file exists and cannot be opened.
     bool exists() const noexcept { return exists_; }
@@ -155,7 +155,7 @@ public:
         return text;
     }
     /// Replaces the text of the file. Returns false on failure. If the process is killed between the two
-    /// system calls, the end of the old text stays behind the new one.
+    /// system calls, the end of the old text remains after the new one.
     bool write(const std::string& text) noexcept
     {
         if (code_ != 0) // the file can only be read
@@ -180,7 +180,7 @@ private:
             errno = ENOSPC;
         return n == static_cast<ssize_t>(text.size());
     }
-    // Makes a whole file or none, because a file that is cut counts as full.
+    // Makes a complete file or none, because an incomplete file counts as if all channels were at the limit.
     static bool make(const std::string& path, std::string_view text)
     {
         const std::string unready = fmt::format("{}.{}", path, ::getpid());
@@ -240,7 +240,7 @@ fault not_written(const std::string& path, int code)
 
 struct book_place {
     const std::string& device;
-    const std::string& path; ///< empty: in memory
+    const std::string& path; ///< empty if the book is in memory
     const std::string& boot;
     double limit_s;
 };
@@ -250,8 +250,8 @@ drive_levels full_levels(double limit_s, std::int64_t now_ns)
     return {.levels_s = std::vector<double>(detail::max_channels, limit_s), .at_ns = now_ns};
 }
 
-/// Calls `change` with the levels of a device and the time, then stores the levels. Takes them from its file
-/// or from memory, whichever are newer.
+/// Takes the levels of a device from its file or from memory, whichever are newer. Calls `change` with the
+/// levels and the time, then stores the levels.
 template <class Clock, class Change>
 fault look_up(const book_place& at, const Clock& clock, int tries, Change change)
 {
@@ -295,7 +295,8 @@ void drive_levels::add(std::span<const double> drive_s, std::int64_t now_ns, con
     levels_s.resize(std::max(levels_s.size(), drive_s.size()));
     for (std::size_t i = 0; i < levels_s.size(); ++i) {
         const double drive = i < drive_s.size() ? drive_s[i] : 0.0;
-        // Other runs let the level fall until their last entry, so the remaining rest may be below 0.
+        // Entries of other runs have counted a part of this time as rest, so the remaining rest may be
+        // negative.
         const double rested = std::min(levels_s[i], law.limit_s) - law.leak * (passed_s - drive);
         levels_s[i] = std::min(std::max(rested, 0.0) + drive, law.limit_s);
     }
@@ -473,7 +474,7 @@ bool drive_book::enter(std::span<const std::atomic<std::uint64_t>> driven, bool 
         if (!sounds && !share_.sounds && now == share_.driven)
             return false;
         return enter(now, sounds, raised);
-    } catch (const std::exception&) { // no memory; the next call enters it
+    } catch (const std::exception&) { // no memory: the next call enters the drive
         return false;
     }
 }

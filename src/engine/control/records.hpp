@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Records of a stream: drive time of a device's channels, which continues from player to player and from
-/// process to process, and messages to the program's log about the stream. The audio thread itself writes
-/// none.
+/// Records of a stream: the drive time of a device's channels, which continues across players and processes,
+/// and messages about the stream in the program's log. The audio thread itself writes no records.
 #pragma once
 
 #include <atomic>
@@ -28,16 +27,16 @@
 
 namespace tactor::engine {
 
-/// Law of drive time: the greatest level, s, and how fast a level falls while a channel rests, s a second.
+/// Law of drive time: the maximum level, s, and how fast a level falls while a channel rests, s per second.
 struct drive_law {
     double limit_s = 0.0;
     double leak = 1.0;
 };
 
-/// Levels of drive time of a device, s, at a CLOCK_BOOTTIME. A plain value.
+/// Levels of drive time of a device, s, at a CLOCK_BOOTTIME time. A plain value.
 struct drive_levels {
-    /// A run that drives the device, and the time until which it may drive before its next entry. A run that
-    /// makes no entry by then was killed: it counts as if it had driven all channels for `ahead_s`.
+    /// A run that drives the device, and the time by which it must make its next entry. A run that makes no
+    /// entry by then was killed: it counts as if it had driven all channels for `ahead_s`.
     struct run {
         std::int64_t name = 0;
         std::int64_t until_ns = 0;
@@ -55,35 +54,35 @@ struct drive_levels {
 
     /// Returns the levels and runs as text, a line each. `boot`: identifier of this boot.
     std::string text(std::string_view boot) const;
-    /// Reads such a text and ignores anything behind it. Returns nothing if it is incomplete or from the
-    /// future, and empty levels if it is from another boot.
+    /// Reads a text that text() made, and ignores anything after it. Returns nothing if the text is
+    /// incomplete or from the future, and empty levels if it is from another boot.
     static std::optional<drive_levels> read(std::string_view text, std::string_view boot,
                                             std::int64_t now_ns);
 };
 
-/// Entries of a player so far. A plain value.
+/// Drive that a player has entered so far. A plain value.
 struct drive_share {
     std::int64_t name = 0;                  ///< differs from the names of all other runs
-    std::vector<std::uint64_t> driven = {}; ///< frames that were entered, by channel
-    std::vector<double> last_levels_s = {}; ///< levels by channel of the device after the last entry, ...
-    std::int64_t entered_ns = 0;            ///< ... and when that was, CLOCK_BOOTTIME
-    bool sounds = false;                    ///< channels may be driven since then
+    std::vector<std::uint64_t> driven = {}; ///< number of frames entered so far, by channel
+    std::vector<double> last_levels_s = {}; ///< levels after the last entry, by channel of the device
+    std::int64_t entered_ns = 0;            ///< time of the last entry, CLOCK_BOOTTIME
+    bool sounds = false;                    ///< channels may have been driven since the last entry
 
-    /// Adds the drive since the last call to `l`, s, by channel of the device. `goes_on`: channels may be
-    /// driven until the next call, at most 0.5 s later. Returns the level of each channel that others have
-    /// driven meanwhile, else 0.
+    /// Adds the drive since the last call, s, by channel of the device, to `l`. `goes_on`: channels may be
+    /// driven until the next call, at most 0.5 s later. Returns the level of each channel that other runs
+    /// have driven since the last call, and 0 for the other channels.
     std::vector<double> enter(drive_levels& l, std::span<const double> drive_s, const drive_law& law,
                               bool goes_on, std::int64_t now_ns);
 };
 
-/// The book of a device: a file in the folder `tactor` of the user's runtime folder, or this process's memory
-/// if there is no such folder. The book names each run that sounds, so that a killed run counts, too. A file
-/// that exists but cannot be read as a whole, or is locked for 0.2 s, counts as if each channel were at the
-/// limit. One thread at a time, except doubt().
+/// The book of a device's drive time: a file in the folder `tactor` of the user's runtime folder, or this
+/// process's memory if there is no such folder. The book names each run that sounds, so that a killed run
+/// counts, too. If a file exists but cannot be read completely, or is locked for 0.2 s, each channel counts
+/// as being at the limit. One thread at a time, except for doubt().
 class drive_book {
 public:
     /// Opens the book and checks that it can be written. Blocks for 0.2 s at most.
-    /// \param s stream; without a `device` no book is kept
+    /// \param s stream; there is no book if `device` is empty
     /// \param clock CLOCK_BOOTTIME, ns
     drive_book(const stream_setup& s, const synth::guard_settings& g,
                std::function<std::int64_t()> clock = rt::boottime_ns);
@@ -91,13 +90,13 @@ public:
     bool has_device() const noexcept { return !device_.empty(); }
     /// Returns the levels of drive time when the book was opened, s, by channel.
     std::vector<double> levels() const { return levels_at_channels(share_.last_levels_s); }
-    /// Returns the reason why drive time does not continue, or counts as used up; empty: it continues. Any
-    /// thread.
+    /// Returns the reason why drive time is not kept across players, or counts as used up. Empty if there is
+    /// no such reason. Any thread.
     std::string doubt() const;
-    /// Enters the drive of this run if an entry is due, and reads that of others. `driven`: frames by channel
-    /// so far. `sounds`: a channel may be driven from now on. `raised`: receives the levels, s, to which
-    /// others have driven channels. Blocks shortly, for 0.2 s at most if nothing sounds. Returns true if
-    /// there is a new doubt.
+    /// Enters the drive of this run if an entry is due, and reads the drive of other runs. `driven`: frames
+    /// by channel so far. `sounds`: a channel may be driven from now on. `raised`: receives the levels, s, of
+    /// channels that other runs have driven. Blocks briefly; for up to 0.2 s if nothing sounds. Returns true
+    /// if there is a new doubt.
     bool enter(std::span<const std::atomic<std::uint64_t>> driven, bool sounds,
                level_requests& raised) noexcept;
 
@@ -108,7 +107,7 @@ private:
     bool enter(const std::vector<std::uint64_t>& now, bool sounds, level_requests& raised);
 
     std::string device_;
-    std::string path_ = {}; ///< empty: there is no folder
+    std::string path_ = {}; ///< empty if there is no folder
     std::string boot_ = {};
     std::vector<std::vector<unsigned>> outputs_; ///< as stream_wiring::outputs
     std::size_t channels_;
@@ -116,13 +115,13 @@ private:
     double rate_;
     std::function<std::int64_t()> clock_;
     drive_share share_ = {};
-    std::optional<std::int64_t> locked_ns_ = {}; ///< time from which another process has kept it locked
+    std::optional<std::int64_t> locked_ns_ = {}; ///< time since which another process has locked the file
     mutable std::mutex mutex_;                   ///< guards doubt_
     std::string doubt_ = {};
 };
 
-/// Log of the control thread. look() collects under the player's mutex; write() calls the function without
-/// it.
+/// Log of the control thread. look() collects lines under the player's mutex; write() passes them to the
+/// function without the mutex.
 class stream_log {
 public:
     stream_log(log_function to, const link& l, const drive_limits& limits)
@@ -130,17 +129,17 @@ public:
     {
     }
 
-    /// Returns true if there is a function. Without one the other members do nothing.
+    /// Returns true if there is a function. Otherwise the other members do nothing.
     bool on() const noexcept { return static_cast<bool>(to_); }
     const log_function& function() const noexcept { return to_; }
 
     /// Collects changes since the last look, at a CLOCK_MONOTONIC time.
     void look(const stream_status& s, std::int64_t now_ns) noexcept;
-    /// Notes points of a live stroke above its level.
+    /// Adds warnings about the points of a live stroke that has ended.
     void look_at_end(const stroke_report& r) noexcept;
-    /// Notes a warning about the stream.
+    /// Adds a warning about the stream.
     void warn(std::string_view stream, std::string_view what) noexcept;
-    /// Notes once that the stream is over, and why. Empty: it was stopped in order.
+    /// Adds the line about the end of the stream, once. `why`: empty if the stream was stopped as requested.
     void end(const std::string& why) noexcept;
     void write() noexcept;
 
